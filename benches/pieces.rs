@@ -1,0 +1,147 @@
+//! What it costs to make contour, pieces and tables anew, and to walk them: `cargo bench --bench pieces`.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+
+#[path = "../tests/common/shapes.rs"]
+#[allow(dead_code)]
+mod shapes;
+
+use divan::{Bencher, black_box};
+use glam::{DVec2, DVec3};
+use revmap::pieces::{
+    ContourSource, CutOptions, Hull, HullOptions, Tables, cut, outline_of, trace_pieces,
+};
+use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
+use revmap::scene::Offset;
+
+fn main() {
+    divan::main();
+}
+
+const NAMES: [&str; 6] = ["vase", "discs", "glass", "pawn", "bishop", "king"];
+
+fn outline(name: &str) -> Outline {
+    let profile = match name {
+        "vase" => shapes::vase(),
+        "discs" => shapes::discs(),
+        "glass" => shapes::glass(),
+        _ => {
+            let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
+            Profile::load(file, ProfileAxis::Center).unwrap()
+        }
+    };
+    match profile.shape {
+        Shape::Outline(outline) => outline,
+        Shape::Raster(_) => panic!("an outline is wanted"),
+    }
+}
+
+const OFFSETS: [(&str, Offset); 3] = [
+    (
+        "plain",
+        Offset {
+            extend: 0.0,
+            bevel: 0.0,
+            chamfer: 1.0,
+        },
+    ),
+    (
+        "extended",
+        Offset {
+            extend: 0.02,
+            bevel: 0.0,
+            chamfer: 1.0,
+        },
+    ),
+    (
+        "chamfered",
+        Offset {
+            extend: -0.01,
+            bevel: 0.1,
+            chamfer: 0.5,
+        },
+    ),
+];
+
+fn cases() -> Vec<(&'static str, &'static str)> {
+    NAMES
+        .iter()
+        .flat_map(|&n| OFFSETS.iter().map(move |o| (n, o.0)))
+        .collect()
+}
+
+fn offset(name: &str) -> Offset {
+    OFFSETS.iter().find(|o| o.0 == name).unwrap().1
+}
+
+/// What depends on the outline alone.
+#[divan::bench(args = NAMES)]
+fn prepare(bencher: Bencher, name: &str) {
+    let outline = outline(name);
+    bencher.bench(|| ContourSource::new(black_box(&outline)).unwrap());
+}
+
+/// What a slider moves: all of it.
+#[divan::bench(args = cases())]
+fn rebuild(bencher: Bencher, (name, technique): (&str, &str)) {
+    let source = ContourSource::new(&outline(name)).unwrap();
+    let offset = offset(technique);
+    bencher.bench(|| {
+        let contour = source.contour(black_box(&offset)).unwrap();
+        let pieces = cut(&contour, &CutOptions::default());
+        Tables::new(&pieces, 64)
+    });
+}
+
+#[divan::bench(args = cases())]
+fn contour(bencher: Bencher, (name, technique): (&str, &str)) {
+    let source = ContourSource::new(&outline(name)).unwrap();
+    let offset = offset(technique);
+    bencher.bench(|| source.contour(black_box(&offset)).unwrap());
+}
+
+#[divan::bench(args = cases())]
+fn pieces(bencher: Bencher, (name, technique): (&str, &str)) {
+    let source = ContourSource::new(&outline(name)).unwrap();
+    let contour = source.contour(&offset(technique)).unwrap();
+    bencher.bench(|| cut(black_box(&contour), &CutOptions::default()));
+}
+
+/// Dealing out to 64 and 128 rows.
+#[divan::bench(args = [64, 128])]
+fn rows(bencher: Bencher, rows: u32) {
+    let source = ContourSource::new(&outline("king")).unwrap();
+    let contour = source.contour(&offset("plain")).unwrap();
+    let pieces = cut(&contour, &CutOptions::default());
+    bencher.bench(|| Tables::new(black_box(&pieces), rows));
+}
+
+/// The shells of all cells.
+#[divan::bench(args = NAMES)]
+fn hull(bencher: Bencher, name: &str) {
+    let source = ContourSource::new(&outline(name)).unwrap();
+    let contour = source.contour(&offset("plain")).unwrap();
+    let pieces = cut(&contour, &CutOptions::default());
+    bencher.bench(|| Hull::new(black_box(&pieces), &HullOptions::default()));
+}
+
+/// The outline of a picture of 512 rows, anti-aliased.
+#[divan::bench]
+fn picture(bencher: Bencher) {
+    let raster = outline("king").rasterize(128, 512);
+    bencher.bench(|| outline_of(black_box(&raster)));
+}
+
+/// One ray.
+#[divan::bench(args = [32, 64, 128])]
+fn ray(bencher: Bencher, rows: u32) {
+    let source = ContourSource::new(&outline("king")).unwrap();
+    let contour = source.contour(&offset("plain")).unwrap();
+    let tables = Tables::new(&cut(&contour, &CutOptions::default()), rows);
+    let mut k = 0u32;
+    bencher.bench_local(|| {
+        k += 1;
+        let aim = DVec3::new(0.1, 0.05, (f64::from(k) * 0.618).fract());
+        let origin = DVec3::new(2.0, (f64::from(k) * 0.7548).fract() - 0.5, 1.0);
+        trace_pieces(&tables, 0.5, DVec2::ZERO, origin, aim - origin)
+    });
+}

@@ -1,0 +1,191 @@
+//! Draws the pictures of docs/gallery.md into docs/pictures/: `scripts/gallery`, or `cargo run --release --example gallery [NAME ...]`.
+//!
+//! Each scene of assets/gallery/ becomes one picture. Pixels are the mean light of 3 x 3 rays. The line `# size WIDTHxHEIGHT`, with which
+//! a scene begins, says how large; each line `# beside KEY=VALUE` adds the same scene once more to the right, with that key set.
+#![allow(clippy::expect_used)]
+
+use image::{GrayImage, Luma, RgbaImage, imageops};
+use revmap::error::{Error, Result, Stage};
+use revmap::frame::{Frame, write_png};
+use revmap::gpu::{self, Device};
+use revmap::scene::file;
+use revmap::settings::{Planes, Settings};
+use std::path::{Path, PathBuf};
+
+/// Rays across a pixel.
+const RAYS: u32 = 3;
+
+fn main() -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let takes = |name: &str| wanted.is_empty() || wanted.iter().any(|w| w == name);
+    let pictures = root.join("docs/pictures");
+    let device = Device::open(None)?;
+    println!("on {}", device.report().name);
+    for scene in scenes(&root.join("assets/gallery"))? {
+        let name = scene
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        if takes(&name) {
+            let target = pictures.join(format!("{name}.png"));
+            let bytes = draw(&device, &scene, &target)?;
+            println!(
+                "{}: shape maps {:.2} MB, colour and displacement maps {:.2} MB",
+                target.display(),
+                bytes[0] as f64 / 1e6,
+                bytes[1] as f64 / 1e6
+            );
+        }
+    }
+    if takes("maps") {
+        maps(root, &pictures.join("maps.png"))?;
+    }
+    Ok(())
+}
+
+fn fault(message: impl Into<String>) -> Error {
+    Error::new(Stage::Usage, message)
+}
+
+fn scenes(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder)
+        .map_err(|e| fault(format!("cannot be listed ({e})")).in_file(folder))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    Ok(files)
+}
+
+/// Draws a scene, and what stands beside it; the bytes of its maps on the device.
+fn draw(device: &Device, scene: &Path, target: &Path) -> Result<[u64; 2]> {
+    let text = std::fs::read_to_string(scene)
+        .map_err(|e| fault(format!("cannot be read ({e})")).in_file(scene))?;
+    let line = |start: &'static str| text.lines().filter_map(move |l| l.strip_prefix(start));
+    let size = line("# size ").next().and_then(|s| s.split_once('x'));
+    let size = size.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let (width, height): (u32, u32) =
+        size.ok_or_else(|| fault("does not begin with `# size WIDTHxHEIGHT`").in_file(scene))?;
+    let sets: Vec<Vec<String>> = std::iter::once(Vec::new())
+        .chain(line("# beside ").map(|set| vec![set.to_owned()]))
+        .collect();
+    let across = width / sets.len() as u32;
+    let mut picture = Frame::new(across * sets.len() as u32, height, [0.0; 4])?;
+    let mut bytes = [0; 2];
+    for (place, sets) in sets.iter().enumerate() {
+        let scene = file::load(scene, sets)?;
+        let settings = Settings {
+            width: across * RAYS,
+            height: height * RAYS,
+            planes: Planes::Color,
+            ..Settings::default()
+        };
+        let drawn = gpu::draw(device, &scene, &settings)?;
+        bytes = drawn.map_bytes;
+        shrink(&drawn.frame, &mut picture, place as u32 * across);
+    }
+    write_png(&picture, target)?;
+    Ok(bytes)
+}
+
+/// The means of `RAYS` x `RAYS` pixels of `large` into `small`, from the column `left` on.
+fn shrink(large: &Frame, small: &mut Frame, left: u32) {
+    for y in 0..small.height {
+        for x in 0..large.width / RAYS {
+            let mut sum = [0.0f32; 4];
+            for k in 0..RAYS * RAYS {
+                let (i, j) = (x * RAYS + k % RAYS, y * RAYS + k / RAYS);
+                let pixel = large.color[(j * large.width + i) as usize];
+                for (s, v) in sum.iter_mut().zip(pixel) {
+                    *s += v / (RAYS * RAYS) as f32;
+                }
+            }
+            small.color[(y * small.width + left + x) as usize] = sum;
+        }
+    }
+}
+
+/// A shape map's channels and a displacement map's, each beside the whole, as the program's `bake` writes them.
+fn maps(root: &Path, target: &Path) -> Result<()> {
+    const SIDE: u32 = 184;
+    use revmap::maps::{BakeOptions, DisplacementMap, MapFormat, MapSource, ShapeMap};
+    let profile = revmap::profile::Profile::load(
+        root.join("assets/gallery/jewel.svg"),
+        revmap::profile::ProfileAxis::Left,
+    )?;
+    let options = BakeOptions {
+        source: MapSource::Exact,
+        rows: SIDE,
+        reach: profile.radius,
+    };
+    let shape = ShapeMap::bake(&profile, &options)?.encode(MapFormat::Rgba8);
+    let shape =
+        RgbaImage::from_raw(shape.columns, shape.rows, shape.bytes).expect("four bytes a texel");
+    let slopes = DisplacementMap::from_image(root.join("assets/heights/brick.png"))?;
+    let level = &slopes.levels[1];
+    let largest = level
+        .texels
+        .iter()
+        .flatten()
+        .fold(0.0f32, |m, v| m.max(v.abs()));
+    let slopes = RgbaImage::from_fn(level.width, level.height, |x, y| {
+        let [du, dv] = level.texels[(y * level.width + x) as usize];
+        let code = |v: f32| (127.5 + 127.5 * (v / largest)).round() as u8;
+        image::Rgba([code(du), code(dv), 255, 255])
+    });
+    let slopes = imageops::resize(&slopes, SIDE, SIDE, imageops::FilterType::Triangle);
+    let height = image::open(root.join("assets/heights/brick.png"))
+        .map_err(|e| fault(e.to_string()))?
+        .resize_exact(SIDE, SIDE, imageops::FilterType::Triangle)
+        .into_rgba8();
+
+    let channel = |of: &RgbaImage, c: usize| -> RgbaImage {
+        let gray = GrayImage::from_fn(of.width(), of.height(), |x, y| {
+            // The whole's alpha is the form: what is solid is 255, drawn dark as in the profile.
+            Luma([of.get_pixel(x, y).0[c]])
+        });
+        image::DynamicImage::ImageLuma8(gray).into_rgba8()
+    };
+    let opaque = |of: &RgbaImage| {
+        let mut of = of.clone();
+        of.pixels_mut().for_each(|p| p.0[3] = 255);
+        of
+    };
+    let rows = [
+        vec![
+            channel(&shape, 3),
+            channel(&shape, 2),
+            channel(&shape, 0),
+            channel(&shape, 1),
+            opaque(&shape),
+        ],
+        vec![
+            height,
+            channel(&slopes, 0),
+            channel(&slopes, 1),
+            slopes.clone(),
+        ],
+    ];
+    const GAP: u32 = 12;
+    let across = |row: &[RgbaImage]| GAP + row.iter().map(|i| i.width() + GAP).sum::<u32>();
+    let width = rows.iter().map(|r| across(r)).max().unwrap_or(GAP);
+    let mut sheet = RgbaImage::from_pixel(
+        width,
+        GAP + rows.len() as u32 * (SIDE + GAP),
+        image::Rgba([255; 4]),
+    );
+    for (place, row) in rows.iter().enumerate() {
+        let mut left = (width - across(row)) / 2 + GAP;
+        for picture in row {
+            let top = GAP + place as u32 * (SIDE + GAP);
+            imageops::overlay(&mut sheet, picture, i64::from(left), i64::from(top));
+            left += picture.width() + GAP;
+        }
+    }
+    sheet
+        .save(target)
+        .map_err(|e| fault(e.to_string()).in_file(target))?;
+    println!("{}", target.display());
+    Ok(())
+}

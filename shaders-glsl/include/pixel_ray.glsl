@@ -1,0 +1,39 @@
+// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so that
+// `t` is the depth along the camera's forward axis in every space.
+#ifndef PIXEL_RAY_GLSL
+#define PIXEL_RAY_GLSL
+#include "placement.glsl"
+
+struct PixelRays {
+    vec3 eye;    // relative to the axis at z = 0
+    vec3 dir_00; // through pixel (0, 0)
+    vec3 dir_x;
+    vec3 dir_y;
+};
+
+PixelRays pixel_rays(Instance i)
+{
+    PixelRays rays;
+    rays.eye = point_to_axis(i, frame.eye.xyz);
+    rays.dir_00 = direction_to_object(i, frame.dir_00.xyz);
+    rays.dir_x = direction_to_object(i, frame.dir_x.xyz);
+    rays.dir_y = direction_to_object(i, frame.dir_y.xyz);
+    return rays;
+}
+
+vec3 ray_direction(PixelRays rays, uvec2 pixel)
+{
+    return rays.dir_00 + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
+}
+
+vec3 world_direction(uvec2 pixel)
+{
+    return frame.dir_00.xyz + float(pixel.x) * frame.dir_x.xyz + float(pixel.y) * frame.dir_y.xyz;
+}
+
+float depth_of(float t)
+{
+    return clamp(frame.dir_x.w + frame.dir_y.w / t, 0.0, 1.0);
+}
+
+#endif

@@ -1,0 +1,141 @@
+// The quadric search: the solid's boundary as pieces of quadrics of revolution, dealt out to rows of equal height, under a 4-ary tree
+// of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a piece; rows are met in the order of t. Layout and walk are
+// those of src/pieces/rows.rs and walk.rs, which is this file's twin on the CPU.
+//
+// Exact but for rounding: no step, no threshold, nothing to run out of.
+#ifndef SEARCH_QUADRIC_GLSL
+#define SEARCH_QUADRIC_GLSL
+#include "meridian.glsl"
+
+// Nodes: (min r^2, max r^2, bits of the row's run, 0), level by level; then records: 3 vectors each.
+layout(set = 0, binding = 4, std430) readonly buffer PieceTables {
+    vec4 piece_tables[];
+};
+
+// The batch's own tables alone: software drivers gather from uniform buffers several times as fast.
+layout(set = 0, binding = 5, std140) uniform OwnPieceTables {
+    vec4 own_piece_tables[PIECE_VECTORS];
+};
+
+vec4 piece_table(uint at)
+{
+    if (OWN_TABLES != 0u && (SHADOW == SHADOW_OFF || shadow_map < 0)) {
+        return own_piece_tables[at];
+    }
+    return piece_tables[solid.pieces.x + at];
+}
+
+const uint RUN_BITS = 12u;
+
+// The root at which G falls from out to in; NaN or out of range where there is none.
+float entering_root(Meridian m, vec4 q, float side)
+{
+    float al = side * (q.x * m.a + q.w * m.v.z * m.v.z);
+    float be = side * (q.x * m.b + (0.5 * q.z + q.w * m.o.z) * m.v.z);
+    float ga = side * (q.x * m.c + (q.y + m.o.z * (q.z + m.o.z * q.w)));
+    float root = sqrt(be * be - al * ga);
+    return be <= 0.0 ? ga / (root - be) : -(be + root) / al;
+}
+
+float square_at(Meridian m, float s)
+{
+    return m.c + s * (2.0 * m.b + s * m.a);
+}
+
+// Whether the start of the ray is in the solid: by the number of pieces beyond it, away from the axis.
+bool starts_within(Meridian m)
+{
+    uint rows = solid.pieces.y;
+    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(rows));
+    uint run = floatBitsToUint(piece_table(min(row, rows - 1u)).z);
+    uint beyond = 0u;
+    for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
+        uint at = solid.pieces.z + 3u * ((run >> RUN_BITS) + n);
+        vec4 q = piece_table(at);
+        vec4 range = piece_table(at + 2u);
+        float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
+        beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
+    }
+    return (beyond & 1u) != 0u;
+}
+
+// FOUND or LEFT; `hit_quadric` is the piece that was hit.
+uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
+{
+    int rows = int(solid.pieces.y);
+    float n = float(rows);
+    bool up = m.v.z >= 0.0;
+    float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
+    float nearest = -m.b / max(m.a, 1e-30);
+    float slack = 4e-6 * m.inverse_speed;
+    int top = int(solid.pieces.w);
+    int level = top;
+    int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
+    float t = 0.0;
+    float most = square_at(m, 0.0);
+    float best = 3e38;
+    hit_quadric = vec4(0.0);
+    for (;;) {
+        // Through the tree to the next row whose pieces the ray may meet.
+        uint run = 0u;
+        int border;
+        float leave;
+        float most_out;
+        for (;;) {
+            int node = row >> (2 * level);
+            border = (up ? node + 1 : node) << (2 * level);
+            leave = max(min((float(border) / n - m.o.z) * per_z, m.s_end), t);
+            most_out = square_at(m, leave);
+            float least = square_at(m, clamp(nearest, t, leave));
+            int base = (rows - (rows >> (2 * level))) * 4 / 3;
+            vec4 extent = piece_table(uint(base + node));
+            ++steps;
+            bool meets = max(most, most_out) >= extent.x && least <= extent.y;
+            if (meets && level == 0) {
+                run = floatBitsToUint(extent.z);
+                break;
+            }
+            if (meets) {
+                --level;
+                continue;
+            }
+            row = up ? border : border - 1;
+            if (leave >= m.s_end || row < 0 || row >= rows) {
+                break;
+            }
+            t = leave;
+            most = most_out;
+            level = min(findLSB(border) >> 1, top);
+        }
+        uint first = solid.pieces.z + 3u * (run >> RUN_BITS);
+        for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
+            vec4 q = piece_table(first + 3u * k);
+            vec4 guard = piece_table(first + 3u * k + 1u);
+            ++steps;
+            float root = entering_root(m, q, side);
+            float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
+            if (place >= guard.z && place <= guard.w && root >= -slack && root < best && root <= m.s_end + slack) {
+                best = root;
+                hit_quadric = q;
+            }
+        }
+        row = run == 0u ? row : (up ? border : border - 1);
+        if (best <= leave || leave >= m.s_end || row < 0 || row >= rows) {
+            break;
+        }
+        t = leave;
+        most = most_out;
+        level = min(findLSB(border) >> 1, top);
+    }
+    s = best;
+    return best < 2e38 ? FOUND : LEFT;
+}
+
+// Unit outward normal in object space.
+vec3 quadric_normal(Meridian m, float s, vec4 q)
+{
+    vec3 p = m.o + s * m.v;
+    return normalize(vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z));
+}
+
+#endif

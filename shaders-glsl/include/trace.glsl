@@ -1,0 +1,83 @@
+// One ray against one solid: clip, search, close. The only tracer; both stages call it.
+#ifndef TRACE_GLSL
+#define TRACE_GLSL
+#include "search_circle.glsl"
+#include "search_linear.glsl"
+#include "search_live.glsl"
+#include "search_quadric.glsl"
+
+struct Hit {
+    float t;
+    vec3 normal; // object space, unit, outward
+    vec3 point;  // object units about the axis of the replica that was hit
+    vec3 sense;  // -1 where that replica is reflected
+    uint steps;  // look-ups of the search
+    bool exhausted; // the search ran out of steps
+};
+
+// `pixel` is the width of a pixel in t: what the search need not tell apart.
+uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
+{
+    if (SOLVER == SOLVER_LIVE) {
+        return search_live(m, side, f, pixel, s, steps);
+    }
+    if (SOLVER == SOLVER_CIRCLE) {
+        return search_circle(m, side, f, s, steps);
+    }
+    return search_linear(m, side, f, s, steps);
+}
+
+// Look-ups are counted in `hit.steps` even when nothing is met.
+bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
+{
+    Meridian m;
+    if (!clip_ray(eye, v, m)) {
+        return false;
+    }
+    float s = 0.0;
+    float f = 0.0;
+    bool within;
+    if (SOLVER == SOLVER_QUADRIC) {
+        // Floor and ceiling are pieces. Through the sides one enters the solid only where it reaches past them.
+        float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
+        bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
+        within = (m.from_eye || open_side) && starts_within(m);
+    } else {
+        f = field(point_rz(m, 0.0));
+        ++hit.steps;
+        within = f <= 0.0;
+    }
+    if (within && m.face_in != FACE_NONE) {
+        // The box cuts the solid, and the cut is closed.
+        hit.t = m.t_start;
+        hit.normal = face_normal(m.face_in, v, -1.0);
+        hit.point = m.o;
+        return true;
+    }
+    // From within the solid its boundary is seen from behind; unsigned distances know no inside.
+    bool unsigned_map = SOLVER != SOLVER_QUADRIC && MAP_FORMAT == FORMAT_RGBA8;
+    float side = within && m.from_eye && !unsigned_map ? -1.0 : 1.0;
+    vec4 quadric;
+    uint end;
+    if (SOLVER == SOLVER_QUADRIC) {
+        end = search_quadric(m, side, s, hit.steps, quadric);
+    } else {
+        end = search(m, side, max(side * f, 0.0), frame.dir_00.w * m.t_start, s, hit.steps);
+    }
+    if (end == LEFT && side < 0.0 && m.face_out != FACE_NONE) {
+        hit.t = m.t_start + m.s_end;
+        hit.normal = face_normal(m.face_out, v, 1.0);
+        hit.point = m.o + m.s_end * v;
+        return true;
+    }
+    hit.exhausted = hit.exhausted || end == EXHAUSTED;
+    if (end != FOUND) {
+        return false;
+    }
+    hit.t = m.t_start + s;
+    hit.normal = SOLVER == SOLVER_QUADRIC ? quadric_normal(m, s, quadric) : surface_normal(m, s, side);
+    hit.point = m.o + s * v;
+    return true;
+}
+
+#endif

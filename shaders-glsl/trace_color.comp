@@ -1,0 +1,21 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Traces the pixels of a batch's bins: colour, packed sRGB, and depth.
+#include "include/bins.glsl"
+#include "include/pixel_words.glsl"
+#include "include/srgb.glsl"
+
+void main()
+{
+    Bin bin = this_bin();
+    uvec2 pixel = this_pixel(bin);
+    if (any(greaterThanEqual(pixel, frame.size.xy))) {
+        return;
+    }
+    Nearest nearest;
+    if (nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest)) {
+        vec4 color = shade(batch_instance(nearest.instance), nearest.rays, pixel, nearest.hit).color;
+        pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
+        pixel_words[second_word(pixel)] = pack_srgb(color);
+    }
+}

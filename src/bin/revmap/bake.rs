@@ -1,0 +1,168 @@
+//! `revmap bake`: the maps that a solid is drawn from, as images.
+
+use super::options::{self, named};
+use super::output;
+use super::progress::Progress;
+use clap::Args;
+use revmap::error::{Error, Result, Stage};
+use revmap::maps::{BakeOptions, DisplacementMap, MapSource, Projection, ShapeMap};
+use revmap::profile::{Profile, ProfileAxis};
+use revmap::scene::Object;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+const AXES: [(&str, ProfileAxis); 2] =
+    [("left", ProfileAxis::Left), ("center", ProfileAxis::Center)];
+const PROJECTIONS: [(&str, Projection); 4] = [
+    ("planar", Projection::Planar),
+    ("cylindrical", Projection::Cylindrical),
+    ("spherical", Projection::Spherical),
+    ("arc", Projection::Arc),
+];
+
+/// Writes a profile's shape map, and a height map's displacement map, as images
+#[derive(Args)]
+pub struct Bake {
+    /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
+    profile: PathBuf,
+    /// Where the shape map goes: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit floats, without loss)
+    #[arg(long, short, value_name = "MAP")]
+    output: PathBuf,
+    /// Rows of the shape map
+    #[arg(long, value_name = "N", default_value_t = Object::MAP_ROWS, value_parser = clap::value_parser!(u32).range(2..=16384))]
+    map_rows: u32,
+    /// Where distances come from [default: exact for drawings, coverage for pictures]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&options::SOURCES))]
+    map_source: Option<MapSource>,
+    /// Where the axis is: the left edge of half a profile, or the middle of a silhouette
+    #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&AXES))]
+    profile_axis: ProfileAxis,
+    /// Puts the projection of textures into the map's file name, as in vase.spherical.png
+    #[arg(long, value_name = "NAME", value_parser = named(&PROJECTIONS))]
+    projection: Option<Projection>,
+    /// A picture of heights, whose displacement map is written beside the shape map, as vase.displacement.png
+    #[arg(long, value_name = "FILE")]
+    height_map: Option<PathBuf>,
+    /// Say nothing but failures
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl Bake {
+    pub fn run(self) -> Result<()> {
+        let map_file = match self.projection {
+            Some(projection) => marked(projection, &self.output)?,
+            None => self.output.clone(),
+        };
+        let slopes_file = self.height_map.as_ref().map(|_| beside(&map_file));
+        let mut inputs = vec![self.profile.as_path()];
+        inputs.extend(self.height_map.as_deref());
+        output::check(
+            std::slice::from_ref(&map_file),
+            "--output",
+            &["png", "exr"],
+            &inputs,
+        )?;
+        if let Some(file) = &slopes_file {
+            output::check(std::slice::from_ref(file), "--output", &["png"], &inputs)?;
+        }
+
+        let begin = Instant::now();
+        let progress = Progress::start("baking", self.quiet);
+        let profile = Profile::load(&self.profile, self.profile_axis)?;
+        let source = self.map_source.unwrap_or(MapSource::best_for(&profile));
+        let options = BakeOptions::new(source, self.map_rows);
+        let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
+        let slopes = self
+            .height_map
+            .as_ref()
+            .map(DisplacementMap::from_image)
+            .transpose()?;
+        let took = begin.elapsed().as_secs_f64() * 1e3;
+        drop(progress);
+
+        map.save(&map_file)?;
+        self.tell(&format!(
+            "{}: {}x{} texels, {}, baked in {took:.1} ms",
+            map_file.display(),
+            map.columns,
+            map.rows,
+            options::name_of(&options::SOURCES, &map.source)
+        ));
+        if let (Some(slopes), Some(file)) = (&slopes, &slopes_file) {
+            slopes.save(file)?;
+            let [width, height] = slopes.size();
+            self.tell(&format!(
+                "{}: {width}x{height} texels, slopes",
+                file.display()
+            ));
+        }
+        Ok(())
+    }
+
+    fn tell(&self, line: &str) {
+        if !self.quiet {
+            output::result(line);
+        }
+    }
+}
+
+/// `file` with the projection in its name; a name that tells another one is refused.
+fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
+    match Projection::of_file(file) {
+        Some(other) if other != projection => Err(Error::new(
+            Stage::Usage,
+            format!(
+                "is named {}; give it the name or the option of the other",
+                other.name()
+            ),
+        )
+        .at_key("--projection")
+        .in_file(file)),
+        _ => Ok(projection.mark_file(file)),
+    }
+}
+
+/// Where the displacement map of a shape map goes: `vase.spherical.exr` and `vase.displacement.png`.
+fn beside(map: &Path) -> PathBuf {
+    let unmarked = match Projection::of_file(map) {
+        Some(_) => map.with_extension(""),
+        None => map.to_path_buf(),
+    };
+    unmarked.with_extension("displacement.png")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn names_of_files() {
+        let name = |projection, file: &str| marked(projection, Path::new(file));
+        assert_eq!(
+            name(Projection::Arc, "a/vase.png").unwrap(),
+            Path::new("a/vase.arc.png")
+        );
+        assert_eq!(
+            name(Projection::Arc, "a/vase.arc.exr").unwrap(),
+            Path::new("a/vase.arc.exr")
+        );
+        assert_eq!(
+            name(Projection::Arc, "vase.planar.png").unwrap_err().stage,
+            Stage::Usage
+        );
+        assert_eq!(
+            beside(Path::new("a/vase.png")),
+            Path::new("a/vase.displacement.png")
+        );
+        assert_eq!(
+            beside(Path::new("vase.arc.exr")),
+            Path::new("vase.displacement.png")
+        );
+        assert_eq!(
+            beside(Path::new("v.2.png")),
+            Path::new("v.2.displacement.png")
+        );
+    }
+}

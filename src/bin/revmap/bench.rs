@@ -1,0 +1,206 @@
+//! `revmap bench`: frame rates, step counts and errors, measured side by side.
+
+use super::interrupt;
+use super::lists::Lists;
+use super::output;
+use super::progress::Progress;
+use clap::Args;
+use revmap::error::{Error, Result, Stage};
+use revmap::gpu::Device;
+use revmap::report::machine::Machine;
+use revmap::report::measure::{Limits, Measured, Watch, measure};
+use revmap::report::pictures::Album;
+use revmap::report::plan::{Axes, Labels, Plan, is_papers_loop};
+use revmap::report::scaling::Ranges;
+use revmap::report::suite::Extent;
+use revmap::report::{DeviceBench, against, folder, overview, papers, scaling, text};
+use revmap::settings::Settings;
+use std::path::{Path, PathBuf};
+
+/// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
+#[derive(Args)]
+pub struct Bench {
+    #[command(flatten)]
+    lists: Lists,
+    /// A look within 20 seconds: one solid unless scenes are named
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// The whole suite from three elevations at two sizes: takes half an hour on two cores
+    #[arg(long)]
+    full: bool,
+    /// The papers' tables: extended, beveled and chamfered solids at their two sizes, our rates beside theirs
+    #[arg(long, conflicts_with_all = ["full", "scenes"])]
+    tables: bool,
+    /// How time grows with pixels, with solids and with rows of the map
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "tables"])]
+    scaling: bool,
+    /// Holds the results in folder NEW against those in folder OLD; measures nothing
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling"])]
+    compare: Vec<PathBuf>,
+}
+
+impl Bench {
+    pub fn run(self) -> Result<()> {
+        self.lists.check()?;
+        if let [old, new] = self.compare.as_slice() {
+            let found = against::compare(old, new)?;
+            print(&against::as_text(&found));
+            return Ok(());
+        }
+        if self.tables {
+            return self.tables();
+        }
+        if self.scaling {
+            return self.scaling();
+        }
+        let (limits, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
+            (Limits::QUICK, Extent::One, &[25.0], &[(800, 600)])
+        } else if self.full {
+            (
+                Limits::FULL,
+                Extent::All,
+                &[0.0, 25.0, 60.0],
+                &papers::SIZES,
+            )
+        } else {
+            (Limits::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
+        };
+        let views = self.lists.views(extent, elevations)?;
+        let mut plan = Plan::new(views, &self.axes(sizes).combinations());
+        plan.add_papers_loop();
+        let session = Session::open(&self.lists)?;
+        let (measured, album) = session.measure(&plan, &limits, |_| true)?;
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
+        print(&text::ratios(&measured.rows));
+        session.finish(&measured)
+    }
+
+    fn axes(&self, sizes: &[(u32, u32)]) -> Axes {
+        self.lists.axes(&Axes {
+            sizes: sizes.to_vec(),
+            ..Axes::default()
+        })
+    }
+
+    /// The papers' tables. The solid is one that the program carries: the papers do not name theirs.
+    fn tables(&self) -> Result<()> {
+        let mut plan = Plan::new(papers::views()?, &self.axes(&papers::SIZES).combinations());
+        plan.add_papers_loop();
+        plan.mixed = true;
+        let limits = if self.quick {
+            Limits::QUICK
+        } else {
+            Limits::CHART
+        };
+        let session = Session::open(&self.lists)?;
+        let (measured, album) = session.measure(&plan, &limits, is_papers_loop)?;
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
+        print(&papers::as_text(&measured.rows));
+        session.finish(&measured)
+    }
+
+    fn scaling(&self) -> Result<()> {
+        let axes = self.axes(&[]);
+        let (limits, ranges) = if self.quick {
+            (Limits::QUICK, Ranges::QUICK)
+        } else {
+            (Limits::CHART, Ranges::ALL)
+        };
+        let plan = scaling::plan(&axes.stages, &axes.solvers, ranges)?;
+        let session = Session::open(&self.lists)?;
+        let (measured, _) = session.measure(&plan, &limits, |_| false)?;
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        scaling::write(&session.out, &plan, &measured, &session.machine)?;
+        print(&scaling::as_text(&measured.rows));
+        session.finish(&measured)
+    }
+}
+
+/// Results, line by line.
+fn print(text: &str) {
+    text.lines().for_each(output::result);
+}
+
+/// A device, a folder and a note on the machine.
+pub struct Session {
+    pub device: Device,
+    pub machine: Machine,
+    pub out: PathBuf,
+    pub quiet: bool,
+}
+
+impl Session {
+    /// Opens the device and makes the folder before any work.
+    pub fn open(lists: &Lists) -> Result<Self> {
+        let device = Device::open(lists.device.as_deref())?;
+        let report = device.report();
+        let machine = Machine::here(&report.name, report.kind, &report.driver, &Lists::command());
+        let out = match &lists.out {
+            Some(out) => {
+                folder::make(out)?;
+                out.clone()
+            }
+            None => folder::fresh(Path::new("results"), &machine.folder())?,
+        };
+        if !lists.quiet {
+            output::note(&format!(
+                "device: {} ({}), driver {}",
+                report.name, report.kind, report.driver
+            ));
+        }
+        Ok(Self {
+            device,
+            machine,
+            out,
+            quiet: lists.quiet,
+        })
+    }
+
+    /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt ends early and keeps what there is.
+    pub fn measure(
+        &self,
+        plan: &Plan,
+        limits: &Limits,
+        worth: fn(&Settings) -> bool,
+    ) -> Result<(Measured, Album)> {
+        let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
+        let mut album = Album::new(&self.out, labels, worth)?;
+        let progress = Progress::start("measuring", self.quiet);
+        let mut bench = DeviceBench::new(self.device.clone());
+        let measured = measure(
+            plan,
+            &mut bench,
+            limits,
+            &mut Watch {
+                stop: interrupt::flag()?,
+                progress: &|what, gone, all| {
+                    progress.say(what);
+                    progress.report(gone as usize, all as usize);
+                },
+                picture: &mut |seen| album.add(seen),
+                passed: &mut |rows| folder::write_rows(&self.out, rows, &self.machine),
+            },
+        )?;
+        Ok((measured, album))
+    }
+
+    /// Says where the results are. A run that was ended early has failed, though its results are kept.
+    pub fn finish(&self, measured: &Measured) -> Result<()> {
+        let report = self.out.join("report.html");
+        output::result(&format!(
+            "{}: {} rows",
+            report.display(),
+            measured.rows.len()
+        ));
+        if measured.interrupted {
+            return Err(Error::new(
+                Stage::Report,
+                "interrupted; it holds what was measured until then, run the command again for the rest",
+            )
+            .in_file(&self.out));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,109 @@
+//! `revmap chart`: speed against accuracy.
+
+use super::bench::Session;
+use super::lists::Lists;
+use super::output;
+use super::progress::Progress;
+use clap::Args;
+use revmap::error::Result;
+use revmap::report::measure::Limits;
+use revmap::report::plan::{Axes, Plan, is_papers_loop};
+use revmap::report::suite::Extent;
+use revmap::report::sweep::Sweep;
+use revmap::report::{curves, folder, map_error, text};
+use revmap::settings::Settings;
+use std::path::PathBuf;
+
+/// Charts speed against accuracy: every search over its budget and its maps
+///
+/// Steps, rows, sources and formats of maps are swept one at a time; where one of their lists is given, every combination of the lists is
+/// measured instead.
+#[derive(Args)]
+pub struct Chart {
+    #[command(flatten)]
+    lists: Lists,
+    /// A look: one solid unless scenes are named, one stage, small pictures, few values
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// The whole suite from three elevations, many values: takes hours on two cores
+    #[arg(long)]
+    full: bool,
+}
+
+impl Chart {
+    pub fn run(self) -> Result<()> {
+        self.lists.check()?;
+        let (mut sweep, limits, extent, elevations): (_, _, _, &[f64]) = if self.quick {
+            (Sweep::quick(), Limits::QUICK, Extent::One, &[25.0])
+        } else if self.full {
+            (Sweep::full(), Limits::FULL, Extent::All, &[0.0, 25.0, 60.0])
+        } else {
+            (Sweep::new(), Limits::CHART, Extent::Three, &[25.0])
+        };
+        let views = self.lists.views(extent, elevations)?;
+        let lists = &self.lists;
+        let given = [
+            lists.max_steps.len(),
+            lists.map_rows.len(),
+            lists.map_source.len(),
+            lists.map_format.len(),
+        ];
+        let axes = lists.axes(&Axes {
+            stages: sweep.stages.clone(),
+            sizes: vec![sweep.size],
+            ..Axes::default()
+        });
+        let mut plan = if given.iter().any(|n| *n > 0) {
+            Plan::new(views, &axes.combinations())
+        } else {
+            sweep.stages = axes.stages;
+            sweep.solvers = axes.solvers;
+            let mut all = Plan {
+                views,
+                cases: Vec::new(),
+                mixed: false,
+            };
+            for size in axes.sizes {
+                sweep.size = size;
+                all.cases.extend(sweep.plan(all.views.clone()).cases);
+            }
+            all
+        };
+        plan.add_papers_loop();
+        let session = Session::open(lists)?;
+        let (measured, album) = session.measure(&plan, &limits, worth_a_picture)?;
+        let alone = if measured.interrupted {
+            Vec::new()
+        } else {
+            let progress = Progress::start("errors of the maps alone", lists.quiet);
+            let size = plan
+                .cases
+                .first()
+                .map_or(sweep.size, |c| (c.settings.width, c.settings.height));
+            map_error::measure(&plan, size, &mut |done, all| progress.report(done, all))?
+        };
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        curves::write(
+            &session.out,
+            &plan,
+            &measured,
+            &session.machine,
+            &album,
+            &alone,
+        )?;
+        let summary: PathBuf = session.out.join("charts").join("summary-depth-error.png");
+        for line in text::ratios(&measured.rows).lines() {
+            output::result(line);
+        }
+        output::result(&summary.display().to_string());
+        session.finish(&measured)
+    }
+}
+
+/// Of a sweep only searches as they are drawn by default, and at one middling budget.
+fn worth_a_picture(settings: &Settings) -> bool {
+    let plain = settings.map_rows.is_none()
+        && settings.map_source.is_none()
+        && settings.map_format == Settings::default().map_format;
+    is_papers_loop(settings) || (plain && matches!(settings.max_steps, None | Some(64)))
+}

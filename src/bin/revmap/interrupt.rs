@@ -1,0 +1,30 @@
+//! Ctrl-C: the first ends long work early and in order, the second at once.
+
+use revmap::error::{Error, Result, Stage};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// The exit code that shells give to a program ended by an interrupt.
+const INTERRUPTED: i32 = 130;
+
+/// The flag that an interrupt sets, from now on.
+pub fn flag() -> Result<&'static AtomicBool> {
+    static SET: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+    let set = SET.get_or_init(|| {
+        ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(INTERRUPTED);
+            }
+        })
+        .map_err(|e| e.to_string())
+    });
+    match set {
+        Ok(()) => Ok(&STOP),
+        Err(why) => Err(Error::new(
+            Stage::Report,
+            format!("interrupts cannot be watched for ({why}); run it again"),
+        )),
+    }
+}

@@ -1,0 +1,159 @@
+//! Options that take several values, of which every combination is measured.
+
+use super::options::{FORMATS, SOLVERS, SOURCES, STAGES, name_of, named, size};
+use clap::Args;
+use revmap::error::{Error, Result, Stage};
+use revmap::maps::{MapFormat, MapSource};
+use revmap::report::plan::Axes;
+use revmap::report::suite::{self, Extent};
+use revmap::report::view::View;
+use revmap::scene::file;
+use revmap::settings::{DrawStage, Solver};
+use std::path::PathBuf;
+
+/// What to measure; lists are separated by commas
+#[derive(Args, Clone, Debug)]
+pub struct Lists {
+    /// The scenes, TOML files [default: solids that the program carries]
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Pixels across and down [default: 800x600]
+    #[arg(long, value_name = "WIDTHxHEIGHT,...", value_delimiter = ',', value_parser = size)]
+    pub size: Vec<(u32, u32)>,
+    /// Where rays are traced [default: fragment,compute]
+    #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
+    pub stage: Vec<DrawStage>,
+    /// The searches [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
+    pub solver: Vec<Solver>,
+    /// Bounds on the searches' steps [default: each solver's own]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub max_steps: Vec<u32>,
+    /// Rows of every shape map [default: each object's map_rows]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub map_rows: Vec<u32>,
+    /// Where distances come from [default: exact for drawings and polygons, coverage for images]
+    #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&SOURCES))]
+    pub map_source: Vec<MapSource>,
+    /// How distances are stored on the device [default: r32]
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&FORMATS))]
+    pub map_format: Vec<MapFormat>,
+    /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
+    #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
+    pub elevation: Vec<f64>,
+    /// Any key of the scenes, as in object.0.bevel=0.4; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE", requires = "scenes")]
+    pub set: Vec<String>,
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    pub device: Option<String>,
+    /// The folder for results [default: results/DATE-DEVICE, made anew]
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Say nothing but results and failures
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl Lists {
+    /// The lists as the library takes them; what is not named comes from `base`.
+    pub fn axes(&self, base: &Axes) -> Axes {
+        fn or<T: Clone>(given: &[T], other: &[T]) -> Vec<T> {
+            if given.is_empty() { other } else { given }.to_vec()
+        }
+        fn some<T: Copy>(given: &[T]) -> Vec<Option<T>> {
+            given.iter().copied().map(Some).collect()
+        }
+        Axes {
+            stages: or(&self.stage, &base.stages),
+            solvers: or(&self.solver, &base.solvers),
+            max_steps: or(&some(&self.max_steps), &base.max_steps),
+            sizes: or(&self.size, &base.sizes),
+            map_rows: or(&some(&self.map_rows), &base.map_rows),
+            sources: or(&some(&self.map_source), &base.sources),
+            formats: or(&self.map_format, &base.formats),
+        }
+    }
+
+    /// The scenes named, or the suite's; from each elevation named, or `elevations` of the suite.
+    ///
+    /// # Errors
+    /// Of reading scenes.
+    pub fn views(&self, extent: Extent, elevations: &[f64]) -> Result<Vec<View>> {
+        if self.scenes.is_empty() {
+            let given = if self.elevation.is_empty() {
+                elevations
+            } else {
+                &self.elevation
+            };
+            return suite::views(extent, given);
+        }
+        let mut views = Vec::new();
+        for file in &self.scenes {
+            let scene = file::load(file, &self.set)?;
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            let twin = |other: &PathBuf| other != file && other.file_stem() == file.file_stem();
+            // The same name in two folders: the paths tell them apart.
+            let name = if self.scenes.iter().any(twin) {
+                file.to_string_lossy()
+            } else {
+                stem
+            };
+            let view = View::new(name, scene);
+            if self.elevation.is_empty() {
+                views.push(view);
+            } else {
+                views.extend(
+                    self.elevation
+                        .iter()
+                        .map(|&degrees| view.clone().at_elevation(degrees)),
+                );
+            }
+        }
+        Ok(views)
+    }
+
+    /// A command that measures the same again, told by its words.
+    pub fn command() -> String {
+        let quote = |word: String| {
+            let plain = |c: char| c.is_ascii_alphanumeric() || "-_=.,/:@+%".contains(c);
+            if !word.is_empty() && word.chars().all(plain) {
+                word
+            } else {
+                format!("'{}'", word.replace('\'', "'\\''"))
+            }
+        };
+        let words = std::env::args_os()
+            .skip(1)
+            .map(|w| quote(w.to_string_lossy().into_owned()));
+        std::iter::once("revmap".to_owned())
+            .chain(words)
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+
+    /// Refuses the reference as a stage beside a picture that it would be compared with.
+    ///
+    /// # Errors
+    /// [`Stage::Usage`].
+    pub fn check(&self) -> Result<()> {
+        if self.stage.contains(&DrawStage::Reference) {
+            return Err(Error::new(
+                Stage::Usage,
+                format!(
+                    "{} is what all others are compared with; give fragment or compute",
+                    name_of(&STAGES, &DrawStage::Reference)
+                ),
+            )
+            .at_key("--stage"));
+        }
+        Ok(())
+    }
+}
+
+fn elevation(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if (-90.0..=90.0).contains(&degrees) => Ok(degrees),
+        _ => Err("give degrees from -90 to 90".to_owned()),
+    }
+}

@@ -1,0 +1,86 @@
+//! The `revmap` program: solids of revolution drawn from one 2D map.
+//!
+//! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed feature. A failure is one
+//! line on standard error.
+
+mod bake;
+mod bench;
+mod chart;
+mod compare;
+mod devices;
+mod interrupt;
+mod lists;
+mod options;
+mod output;
+mod progress;
+mod render;
+mod usage;
+
+use clap::{Parser, Subcommand};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// Revolution mapping: draws solids of revolution from one 2D map, without a mesh.
+#[derive(Parser)]
+#[command(name = "revmap", version, max_term_width = 110, after_help = EXIT_CODES)]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
+feature. A failure is one line on standard error.";
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Render),
+    Bake(bake::Bake),
+    Bench(bench::Bench),
+    Chart(chart::Chart),
+    Devices(devices::Devices),
+    Compare(compare::Compare),
+}
+
+impl Command {
+    fn run(self) -> revmap::Result<()> {
+        match self {
+            Self::Render(command) => command.run(),
+            Self::Bake(command) => command.run(),
+            Self::Bench(command) => command.run(),
+            Self::Chart(command) => command.run(),
+            Self::Devices(command) => command.run(),
+            Self::Compare(command) => command.run(),
+        }
+    }
+}
+
+/// A fault of ours: a bug, told in one line like every failure.
+const FAILED: u8 = 1;
+
+fn main() -> ExitCode {
+    let program = match Program::try_parse() {
+        Ok(program) => program,
+        Err(error) => return usage::report(&error),
+    };
+    // With a backtrace asked for, the usual message is wanted; else a bug is one line too, below.
+    if std::env::var_os("RUST_BACKTRACE").is_none() {
+        std::panic::set_hook(Box::new(|_| ()));
+    }
+    match catch_unwind(AssertUnwindSafe(|| program.command.run())) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(error)) => {
+            output::complain(&error.to_string());
+            ExitCode::from(error.exit_code())
+        }
+        Err(cause) => {
+            let text = cause.downcast_ref::<String>().map(String::as_str);
+            let text = text
+                .or_else(|| cause.downcast_ref::<&str>().copied())
+                .unwrap_or("no message");
+            output::complain(&format!(
+                "a bug of revmap: {text}; please report it, with what RUST_BACKTRACE=1 prints"
+            ));
+            ExitCode::from(FAILED)
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Options that every drawing command takes.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+
+/// The largest width and height of a picture.
+const MAX_SIDE: u32 = 16384;
+
+/// Names of the stages.
+pub const STAGES: [(&str, DrawStage); 3] = [
+    ("fragment", DrawStage::Fragment),
+    ("compute", DrawStage::Compute),
+    ("reference", DrawStage::Reference),
+];
+
+/// Names of the searches; the first is the one taken when none is named.
+pub const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
+    let mut all = [("default", Solver::DEFAULT); Solver::ALL.len() + 1];
+    let mut i = 0;
+    while i < Solver::ALL.len() {
+        all[i + 1] = (Solver::ALL[i].name(), Solver::ALL[i]);
+        i += 1;
+    }
+    all
+};
+
+/// Names of the sources of distances.
+pub const SOURCES: [(&str, MapSource); 3] = [
+    ("binary", MapSource::Binary),
+    ("coverage", MapSource::Coverage),
+    ("exact", MapSource::Exact),
+];
+
+/// Names of the formats of maps.
+pub const FORMATS: [(&str, MapFormat); 3] = [
+    ("rgba8", MapFormat::Rgba8),
+    ("r16", MapFormat::R16),
+    ("r32", MapFormat::R32),
+];
+
+/// How to draw, and what to say about it.
+#[derive(Args, Clone, Debug)]
+pub struct Drawing {
+    /// Pixels across and down
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "800x600", value_parser = size)]
+    pub size: (u32, u32),
+    /// Where rays are traced: in the fragment shader, in a compute shader, or on the CPU in double precision
+    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
+    pub stage: DrawStage,
+    /// How the first hit along a ray is found
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = named(&SOLVERS))]
+    pub solver: Solver,
+    /// Bound on the search's steps [default: the solver's own]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub max_steps: Option<u32>,
+    /// Rows of every shape map [default: each object's map_rows]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16384))]
+    pub map_rows: Option<u32>,
+    /// Where distances come from [default: exact for drawings and polygons, coverage for images]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&SOURCES))]
+    pub map_source: Option<MapSource>,
+    /// How distances are stored on the device
+    #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&FORMATS))]
+    pub map_format: MapFormat,
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    pub device: Option<String>,
+    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Say nothing but failures
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Say sizes of maps, counts of steps and times too
+    #[arg(long, short, conflicts_with = "quiet")]
+    pub verbose: bool,
+}
+
+impl Drawing {
+    /// The library's settings.
+    pub fn settings(&self, planes: Planes) -> Settings {
+        Settings {
+            width: self.size.0,
+            height: self.size.1,
+            stage: self.stage,
+            solver: self.solver,
+            max_steps: self.max_steps,
+            map_rows: self.map_rows,
+            map_source: self.map_source,
+            map_format: self.map_format,
+            planes,
+        }
+    }
+}
+
+/// A parser of one of a few names.
+pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
+    names: &'static [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).try_map(move |name: String| {
+        let found = names.iter().find(|(known, _)| *known == name);
+        found.map(|&(_, value)| value).ok_or("not known")
+    })
+}
+
+/// The name of a value of [`named`]: the last, so that `default` gives its own name.
+pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
+    names
+        .iter()
+        .rev()
+        .find(|(_, known)| known == value)
+        .map_or("unknown", |(name, _)| name)
+}
+
+/// `WIDTHxHEIGHT`, each from 1 to [`MAX_SIDE`].
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']).ok_or("write it as 800x600")?;
+    let side = |side: &str, what: &str| match side.parse::<u64>() {
+        Ok(n) if (1..=u64::from(MAX_SIDE)).contains(&n) => Ok(n as u32),
+        Ok(n) => Err(format!("the {what} is {n}; give 1 to {MAX_SIDE}")),
+        Err(_) => Err(format!(
+            "the {what} {side:?} is no number of pixels; write it as 800x600"
+        )),
+    };
+    Ok((side(sides.0, "width")?, side(sides.1, "height")?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_bounded() {
+        assert_eq!(size("800x600"), Ok((800, 600)));
+        assert_eq!(size("1X16384"), Ok((1, 16384)));
+        for bad in [
+            "",
+            "800",
+            "0x0",
+            "1x0",
+            "100000x100000",
+            "16385x1",
+            "-1x5",
+            "axb",
+            "1x2x3",
+            "99999999999999999999x1",
+        ] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn the_default_solver_is_told_by_its_own_name() {
+        assert_eq!(name_of(&SOLVERS, &SOLVERS[0].1), Solver::DEFAULT.name());
+    }
+}

@@ -1,0 +1,97 @@
+//! What the program says and where it writes.
+
+use revmap::error::{Error, Result, Stage};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// One line of results on standard output. A reader that has gone away is no failure.
+pub fn result(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+/// One line beside the results, on standard error.
+pub fn note(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", flat(line));
+}
+
+/// A failure: the one line on standard error.
+pub fn complain(message: &str) {
+    note(&format!("revmap: {message}"));
+}
+
+/// File names may hold line breaks; messages may not.
+fn flat(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// Looks at the output files that `option` names before any work: their endings are among `endings`, none is named twice, none is one of
+/// the `inputs`, and each can be written.
+///
+/// # Errors
+/// [`Stage::Usage`] for the names, [`Stage::Frame`] for what cannot be written.
+pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]) -> Result<()> {
+    for (i, file) in files.iter().enumerate() {
+        let usage = |message: String| {
+            Error::new(Stage::Usage, message)
+                .in_file(file)
+                .at_key(option)
+        };
+        if !endings.iter().any(|ending| has_ending(file, ending)) {
+            let all: Vec<_> = endings.iter().map(|e| format!(".{e}")).collect();
+            return Err(usage(format!(
+                "ends in none of {}; name it so",
+                all.join(", ")
+            )));
+        }
+        if files[..i].contains(file) {
+            return Err(usage("is named twice; name each file once".to_owned()));
+        }
+        if inputs.iter().any(|input| same(input, file)) {
+            return Err(usage("is read as well; write to another file".to_owned()));
+        }
+        writable(file, option)?;
+    }
+    Ok(())
+}
+
+/// Whether `file` ends in `.ending`, in any case.
+pub fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Tries to make a file beside `file`, as writing will.
+fn writable(file: &Path, option: &str) -> Result<()> {
+    let fail = |message: String| {
+        Error::new(Stage::Frame, message)
+            .in_file(file)
+            .at_key(option)
+    };
+    if file.is_dir() {
+        return Err(fail("is a folder; name a file".to_owned()));
+    }
+    let folder = match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if !folder.is_dir() {
+        return Err(fail(format!(
+            "the folder {} does not exist; make it first",
+            folder.display()
+        )));
+    }
+    let probe = folder.join(format!(".revmap-probe-{}", std::process::id()));
+    let made = std::fs::OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(&probe);
+    let outcome = made.map(drop);
+    let _ = std::fs::remove_file(&probe);
+    outcome.map_err(|e| fail(format!("cannot be written ({e}); choose another folder")))
+}

@@ -1,0 +1,66 @@
+//! A progress bar on standard error: only on a terminal, only for work that takes over a second.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Work shorter than this shows nothing.
+const PATIENCE: Duration = Duration::from_secs(1);
+const TICK: Duration = Duration::from_millis(100);
+
+/// Work under way. Dropping it takes the bar off the screen.
+pub struct Progress {
+    bar: ProgressBar,
+    watcher: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Progress {
+    /// Begins; `quiet` shows nothing at all.
+    pub fn start(what: &str, quiet: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        bar.set_message(what.to_owned());
+        let shown = !quiet && std::io::stderr().is_terminal();
+        let watcher = shown.then(|| {
+            let (sender, receiver) = channel();
+            let bar = bar.clone();
+            let wait = move || {
+                if receiver.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                    bar.set_draw_target(ProgressDrawTarget::stderr());
+                    bar.enable_steady_tick(TICK);
+                }
+            };
+            (sender, std::thread::spawn(wait))
+        });
+        Self { bar, watcher }
+    }
+
+    /// Changes what stands before the bar.
+    pub fn say(&self, what: &str) {
+        self.bar.set_message(what.to_owned());
+    }
+
+    /// Tells how much is done; may be called from any thread.
+    pub fn report(&self, done: usize, total: usize) {
+        if self.bar.length() != Some(total as u64) {
+            self.bar.set_length(total as u64);
+            if let Ok(style) =
+                ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} %, {eta} left")
+            {
+                self.bar.set_style(style);
+            }
+        }
+        self.bar.set_position(done as u64);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((sender, thread)) = self.watcher.take() {
+            let _ = sender.send(());
+            let _ = thread.join();
+        }
+        self.bar.finish_and_clear();
+    }
+}

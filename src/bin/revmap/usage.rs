@@ -1,0 +1,64 @@
+//! Wrong usage, told in one line.
+
+use super::output;
+use clap::error::ErrorKind;
+use std::process::ExitCode;
+
+/// The exit code for options or arguments that make no sense.
+const WRONG_USAGE: u8 = 2;
+
+/// Prints help and version as they are, every fault as one line.
+pub fn report(error: &clap::Error) -> ExitCode {
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    ) {
+        // A reader that closes the pipe early, as `head` does, has what it wants.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        output::complain(
+            "names no command; give render, bake, bench, chart, devices or compare; see `revmap --help`",
+        );
+    } else {
+        output::complain(&one_line(&error.to_string()));
+    }
+    ExitCode::from(WRONG_USAGE)
+}
+
+/// Clap's message without its usage and its line breaks.
+fn one_line(message: &str) -> String {
+    let body = message.split("\nUsage:").next().unwrap_or(message);
+    let body = body.split("\nFor more information").next().unwrap_or(body);
+    let parts: Vec<&str> = body
+        .lines()
+        .map(str::trim)
+        .filter(|l| !l.is_empty())
+        .collect();
+    let line = parts
+        .join(" ")
+        .replace("error: ", "")
+        .replace(" tip: ", "; ");
+    format!("{line}; see `revmap --help`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_of_clap_is_one_line() {
+        let text = "error: unexpected argument '--siez' found\n\n  tip: a similar argument exists: '--size'\n\n\
+                    Usage: revmap render <SCENE>\n\nFor more information, try '--help'.\n";
+        assert_eq!(
+            one_line(text),
+            "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap --help`"
+        );
+        let text = "error: the following required arguments were not provided:\n  --output <FILE>\n\nUsage: x\n";
+        assert_eq!(
+            one_line(text),
+            "the following required arguments were not provided: --output <FILE>; see `revmap --help`"
+        );
+    }
+}

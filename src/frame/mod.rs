@@ -1,0 +1,329 @@
+//! What was drawn, pixel by pixel: the planes of a frame, written as PNG and EXR, and compared.
+
+pub mod beside;
+mod compare;
+mod flip;
+mod heat;
+#[cfg(feature = "exr")]
+mod openexr;
+mod png;
+mod silhouette;
+
+pub use compare::{CompareOptions, Comparison, Spread, compare};
+pub use flip::flip_map;
+#[cfg(feature = "report")]
+pub(crate) use heat::ramp;
+pub use heat::{Heat, Picture, heat_map, heat_sheet};
+#[cfg(feature = "exr")]
+pub use openexr::{read_exr, write_exr};
+#[cfg(feature = "report")]
+pub(crate) use png::encode as srgb_pixels;
+pub use png::{srgb_from_linear, write_png};
+pub use silhouette::silhouette_hausdorff;
+
+use crate::error::{Error, Result, Stage};
+
+/// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this is 9 GB.
+pub const MAX_PIXELS: u64 = 1 << 27;
+
+/// All planes of a drawn picture; each holds `width * height` values, row 0 on top.
+///
+/// Where nothing is hit: `color` is the background, `distance` is `+inf`, all else is 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Linear RGBA; the colour is not multiplied by alpha.
+    pub color: Vec<[f32; 4]>,
+    /// Distance from the eye along the ray, world units; `+inf` where nothing is hit.
+    pub distance: Vec<f32>,
+    /// Unit world normal of the surface, without bump.
+    pub normal: Vec<[f32; 3]>,
+    /// The normal that was shaded.
+    pub shading_normal: Vec<[f32; 3]>,
+    /// Colour of the surface before light, linear.
+    pub albedo: Vec<[f32; 3]>,
+    /// Texture coordinates before the texture's repetition.
+    pub uv: Vec<[f32; 2]>,
+    /// Look-ups that the search made.
+    pub steps: Vec<f32>,
+}
+
+/// Where two frames first differ, in reading order of the pixels and, within a pixel, in the order of the channels.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// The frames are not of one size: `(width, height)` of each.
+    Size([u32; 2], [u32; 2]),
+    /// A value differs in at least one bit.
+    Value {
+        /// The channel, by its name in an EXR file.
+        channel: &'static str,
+        /// Column, from the left.
+        x: u32,
+        /// Row, from the top.
+        y: u32,
+        /// The value in the first frame and in the second.
+        values: [f32; 2],
+    },
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Size(a, b) => write!(f, "sizes differ: {}x{} and {}x{}", a[0], a[1], b[0], b[1]),
+            Self::Value {
+                channel,
+                x,
+                y,
+                values,
+            } => {
+                write!(
+                    f,
+                    "{channel} at pixel ({x}, {y}): {:?} and {:?}",
+                    values[0], values[1]
+                )
+            }
+        }
+    }
+}
+
+/// Names of a frame's channels in an EXR file, in the order in which [`Frame::pixel`] gives them.
+pub const CHANNELS: [&str; 17] = [
+    "R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "albedo.R", "albedo.G",
+    "albedo.B", "u", "v", "steps",
+];
+
+impl Frame {
+    /// A frame in which nothing is hit.
+    ///
+    /// # Errors
+    /// [`Stage::Frame`] when a side is 0, when there are more than [`MAX_PIXELS`], or when memory for them is refused.
+    pub fn new(width: u32, height: u32, background: [f32; 4]) -> Result<Self> {
+        let pixels = pixel_count(width, height)?;
+        Ok(Self {
+            width,
+            height,
+            color: plane(pixels, background)?,
+            distance: plane(pixels, f32::INFINITY)?,
+            normal: plane(pixels, [0.0; 3])?,
+            shading_normal: plane(pixels, [0.0; 3])?,
+            albedo: plane(pixels, [0.0; 3])?,
+            uv: plane(pixels, [0.0; 2])?,
+            steps: plane(pixels, 0.0)?,
+        })
+    }
+
+    /// Number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.distance.len()
+    }
+
+    /// Whether pixel number `index` shows a solid.
+    #[must_use]
+    pub fn hits(&self, index: usize) -> bool {
+        self.distance.get(index).is_some_and(|z| z.is_finite())
+    }
+
+    /// All channels of pixel number `index` (`y * width + x`), in the order of [`CHANNELS`]; zeros past the end.
+    #[must_use]
+    pub fn pixel(&self, index: usize) -> [f32; 17] {
+        if index >= self.pixels() {
+            return [0.0; 17];
+        }
+        let [r, g, b, a] = self.color[index];
+        let [nx, ny, nz] = self.normal[index];
+        let [sx, sy, sz] = self.shading_normal[index];
+        let [ar, ag, ab] = self.albedo[index];
+        let [u, v] = self.uv[index];
+        [
+            r,
+            g,
+            b,
+            a,
+            self.distance[index],
+            nx,
+            ny,
+            nz,
+            sx,
+            sy,
+            sz,
+            ar,
+            ag,
+            ab,
+            u,
+            v,
+            self.steps[index],
+        ]
+    }
+
+    /// Sets all channels of pixel number `index`; does nothing past the end.
+    pub fn set_pixel(&mut self, index: usize, value: [f32; 17]) {
+        if index >= self.pixels() {
+            return;
+        }
+        let [
+            r,
+            g,
+            b,
+            a,
+            z,
+            nx,
+            ny,
+            nz,
+            sx,
+            sy,
+            sz,
+            ar,
+            ag,
+            ab,
+            u,
+            v,
+            steps,
+        ] = value;
+        self.color[index] = [r, g, b, a];
+        self.distance[index] = z;
+        self.normal[index] = [nx, ny, nz];
+        self.shading_normal[index] = [sx, sy, sz];
+        self.albedo[index] = [ar, ag, ab];
+        self.uv[index] = [u, v];
+        self.steps[index] = steps;
+    }
+
+    /// Where `self` and `other` first differ in a bit, or `None` when they are equal in all channels.
+    ///
+    /// Bits are compared, so `0.0` and `-0.0` differ and a NaN equals itself.
+    #[must_use]
+    pub fn first_difference(&self, other: &Self) -> Option<Difference> {
+        if (self.width, self.height) != (other.width, other.height) {
+            return Some(Difference::Size(
+                [self.width, self.height],
+                [other.width, other.height],
+            ));
+        }
+        (0..self.pixels()).find_map(|index| {
+            let (a, b) = (self.pixel(index), other.pixel(index));
+            let channel = (0..CHANNELS.len()).find(|&c| a[c].to_bits() != b[c].to_bits())?;
+            Some(Difference::Value {
+                channel: CHANNELS[channel],
+                x: (index % self.width as usize) as u32,
+                y: (index / self.width as usize) as u32,
+                values: [a[channel], b[channel]],
+            })
+        })
+    }
+}
+
+/// Number of pixels of a frame of this size, if one may be that large.
+///
+/// # Errors
+/// [`Stage::Frame`] when a side is 0 or there are more than [`MAX_PIXELS`].
+pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels == 0 {
+        let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
+        return Err(Error::new(Stage::Frame, message));
+    }
+    match usize::try_from(pixels) {
+        Ok(count) if pixels <= MAX_PIXELS => Ok(count),
+        _ => Err(Error::new(
+            Stage::Frame,
+            format!(
+                "a picture of {width}x{height} is too large; at most {MAX_PIXELS} pixels (16384x8192) can be drawn"
+            ),
+        )),
+    }
+}
+
+fn plane<T: Copy>(pixels: usize, value: T) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(pixels).map_err(|_| {
+        Error::new(
+            Stage::Frame,
+            format!("no memory for a picture of {pixels} pixels; give a smaller size"),
+        )
+    })?;
+    values.resize(pixels, value);
+    Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+
+    #[test]
+    fn a_new_frame_hits_nothing_and_shows_the_background() {
+        let frame = Frame::new(3, 2, [0.1, 0.2, 0.3, 0.4]).unwrap();
+        assert_eq!(frame.pixels(), 6);
+        for index in 0..6 {
+            assert!(!frame.hits(index));
+            let mut expected = [0.0; 17];
+            expected[..5].copy_from_slice(&[0.1, 0.2, 0.3, 0.4, f32::INFINITY]);
+            assert_eq!(frame.pixel(index), expected);
+        }
+    }
+
+    #[test]
+    fn impossible_sizes_are_refused() {
+        for (w, h) in [
+            (0, 0),
+            (0, 5),
+            (5, 0),
+            (100_000, 100_000),
+            (u32::MAX, u32::MAX),
+            (16385, 8192),
+        ] {
+            let error = Frame::new(w, h, [0.0; 4]).unwrap_err();
+            assert_eq!(error.stage, Stage::Frame);
+            assert!(error.to_string().contains(&format!("{w}x{h}")), "{error}");
+        }
+    }
+
+    #[test]
+    fn every_channel_is_compared_bit_for_bit() {
+        let base = Frame::new(4, 3, [0.0; 4]).unwrap();
+        assert_eq!(base.first_difference(&base), None);
+        for (channel, name) in CHANNELS.iter().enumerate() {
+            let mut other = base.clone();
+            let mut value = other.pixel(6);
+            value[channel] = f32::from_bits(value[channel].to_bits() ^ 1);
+            other.set_pixel(6, value);
+            let found = base.first_difference(&other).unwrap();
+            let Difference::Value {
+                channel,
+                x,
+                y,
+                values,
+            } = &found
+            else {
+                panic!("{found}")
+            };
+            assert_eq!((*channel, *x, *y), (*name, 2, 1));
+            assert_ne!(values[0].to_bits(), values[1].to_bits());
+        }
+        let mut other = base.clone();
+        other.normal[0][1] = -0.0;
+        assert_eq!(
+            base.first_difference(&other).unwrap().to_string(),
+            "N.Y at pixel (0, 0): 0.0 and -0.0"
+        );
+        let wide = Frame::new(5, 3, [0.0; 4]).unwrap();
+        assert_eq!(
+            base.first_difference(&wide).unwrap().to_string(),
+            "sizes differ: 4x3 and 5x3"
+        );
+    }
+
+    #[test]
+    fn set_and_get_agree() {
+        let mut frame = Frame::new(2, 2, [0.0; 4]).unwrap();
+        let value: [f32; 17] = std::array::from_fn(|i| i as f32 + 0.5);
+        frame.set_pixel(3, value);
+        assert_eq!(frame.pixel(3), value);
+        frame.set_pixel(4, value);
+        assert_eq!(frame.pixel(4), [0.0; 17]);
+    }
+}

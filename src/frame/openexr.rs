@@ -1,0 +1,209 @@
+//! Frames as OpenEXR: every plane, in 32-bit floats, lossless.
+
+use super::beside::write_beside;
+use super::{CHANNELS, Frame, pixel_count};
+use crate::error::{Error, Result, Stage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, MetaData,
+    ReadChannels, ReadLayers, SmallVec, Text, WritableImage, read,
+};
+use std::path::Path;
+
+/// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed.
+///
+/// # Errors
+/// [`Stage::Frame`], naming the file, when it cannot be written.
+pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
+    let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
+    for index in 0..frame.pixels() {
+        for (plane, value) in planes.iter_mut().zip(frame.pixel(index)) {
+            plane.push(value);
+        }
+    }
+    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = CHANNELS
+        .iter()
+        .zip(planes)
+        .map(|(name, plane)| AnyChannel::new(Text::new_or_panic(name), FlatSamples::F32(plane)))
+        .collect();
+    let size = (frame.width as usize, frame.height as usize);
+    let attributes = LayerAttributes {
+        software_name: Text::new_or_none("revmap"),
+        ..LayerAttributes::default()
+    };
+    let image = Image::from_layer(Layer::new(
+        size,
+        attributes,
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(channels),
+    ));
+    write_beside(Stage::Frame, path.as_ref(), |writer| {
+        image
+            .write()
+            .non_parallel()
+            .to_buffered(writer)
+            .map_err(|e| Error::new(Stage::Frame, format!("cannot be written: {}", one_line(&e))))
+    })
+}
+
+/// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
+///
+/// # Errors
+/// [`Stage::Frame`], naming the file, when it cannot be read, is too large, or lacks a channel (then naming that).
+pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
+    let path = path.as_ref();
+    read_checked(path).map_err(|e| e.in_file(path))
+}
+
+fn read_checked(path: &Path) -> Result<Frame> {
+    let unreadable = |e: exr::error::Error| {
+        Error::new(
+            Stage::Frame,
+            format!("cannot be read as EXR: {}", one_line(&e)),
+        )
+    };
+    // The header first: its size decides what the reader would allocate.
+    let meta = MetaData::read_from_file(path, false).map_err(unreadable)?;
+    let mut widest = (0, 0);
+    for header in &meta.headers {
+        let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        widest = (
+            side(header.layer_size.width()),
+            side(header.layer_size.height()),
+        );
+        pixel_count(widest.0, widest.1)?;
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_file(path)
+        .map_err(unreadable)?;
+    let layer = image.layer_data;
+    let mut frame = Frame::new(
+        u32::try_from(layer.size.width()).unwrap_or(widest.0),
+        u32::try_from(layer.size.height()).unwrap_or(widest.1),
+        [0.0; 4],
+    )?;
+    let mut planes: Vec<Vec<f32>> = Vec::with_capacity(CHANNELS.len());
+    for name in CHANNELS {
+        let channel = layer
+            .channel_data
+            .list
+            .iter()
+            .find(|c| c.name.eq(name))
+            .ok_or_else(|| {
+                Error::new(
+                    Stage::Frame,
+                    "there is no such channel; give a file that revmap wrote",
+                )
+                .at_key(name)
+            })?;
+        let plane: Vec<f32> = channel.sample_data.values_as_f32().collect();
+        if plane.len() != frame.pixels() {
+            return Err(Error::new(
+                Stage::Frame,
+                "the channel is subsampled; write it at full size",
+            )
+            .at_key(name));
+        }
+        planes.push(plane);
+    }
+    (0..frame.pixels()).for_each(|index| {
+        let value = std::array::from_fn(|c| planes[c][index]);
+        frame.set_pixel(index, value);
+    });
+    Ok(frame)
+}
+
+fn one_line(error: &exr::error::Error) -> String {
+    match error {
+        exr::error::Error::Io(e) if e.kind() == std::io::ErrorKind::StorageFull => {
+            "the disk is full; free some space".into()
+        }
+        exr::error::Error::Io(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            "there is no such file".into()
+        }
+        other => other.to_string().replace('\n', " "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn sample() -> Frame {
+        let mut frame = Frame::new(37, 21, [0.1, 0.2, 0.3, 0.0]).unwrap();
+        for index in (0..frame.pixels()).step_by(3) {
+            frame.set_pixel(
+                index,
+                std::array::from_fn(|c| (index * 17 + c) as f32 * 0.731 - 40.0),
+            );
+        }
+        frame
+    }
+
+    #[test]
+    fn every_bit_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        write_exr(&sample(), &path).unwrap();
+        assert_eq!(read_exr(&path).unwrap().first_difference(&sample()), None);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn the_channels_have_the_promised_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        write_exr(&sample(), &path).unwrap();
+        let meta = MetaData::read_from_file(&path, true).unwrap();
+        let names: Vec<String> = meta.headers[0]
+            .channels
+            .list
+            .iter()
+            .map(|c| c.name.to_string())
+            .collect();
+        let mut expected = CHANNELS.map(String::from).to_vec();
+        expected.sort();
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn damaged_and_foreign_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let good = folder.path().join("good.exr");
+        write_exr(&sample(), &good).unwrap();
+        let bytes = std::fs::read(&good).unwrap();
+        let bad = folder.path().join("bad.exr");
+        for cut in [0, 3, 100, bytes.len() / 2, bytes.len() - 1] {
+            std::fs::write(&bad, &bytes[..cut]).unwrap();
+            let error = read_exr(&bad).unwrap_err();
+            assert!(
+                error.to_string().starts_with(&bad.display().to_string()),
+                "{error}"
+            );
+        }
+        let error = read_exr(folder.path().join("none.exr")).unwrap_err();
+        assert!(error.to_string().contains("no such file"), "{error}");
+
+        exr::prelude::write_rgb_file(&bad, 4, 4, |_, _| (0.0f32, 0.0f32, 0.0f32)).unwrap();
+        assert_eq!(read_exr(&bad).unwrap_err().key.as_deref(), Some("A"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_one_line_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let text = write_exr(&sample(), &path).unwrap_err().to_string();
+        assert!(
+            text.contains("a.exr") && text.contains("full") && !text.contains('\n'),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! Frames as PNG: 8-bit sRGB RGBA, for eyes.
+
+use super::Frame;
+use super::beside::write_beside;
+use crate::error::{Error, Result, Stage};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use std::path::Path;
+
+/// Writes the colour of a frame as 8-bit sRGB RGBA. Values are clamped to `[0, 1]`; alpha is linear.
+///
+/// # Errors
+/// [`Stage::Frame`], naming the file, when it cannot be written.
+pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
+    write_rgba(
+        path.as_ref(),
+        frame.width,
+        frame.height,
+        encode(frame).as_flattened(),
+    )
+}
+
+/// A frame's colour as 8-bit sRGB RGBA.
+pub(crate) fn encode(frame: &Frame) -> Vec<[u8; 4]> {
+    let codes = Codes::new();
+    let encoded = frame
+        .color
+        .iter()
+        .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)]);
+    encoded.collect()
+}
+
+/// Writes `width * height` RGBA bytes, row 0 on top.
+pub(super) fn write_rgba(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<()> {
+    write_beside(Stage::Frame, path, |writer| {
+        PngEncoder::new(writer)
+            .write_image(bytes, width, height, ExtendedColorType::Rgba8)
+            .map_err(|e| {
+                let full = matches!(&e, image::ImageError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
+                let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
+                Error::new(Stage::Frame, format!("cannot be written: {why}"))
+            })
+    })
+}
+
+/// The sRGB code value in `[0, 1]` of a linear one (IEC 61966-2-1).
+#[must_use]
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+fn linear_from_srgb(code: f64) -> f64 {
+    if code <= 0.040_45 {
+        code / 12.92
+    } else {
+        ((code + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Exact rounding to the nearest code without a power per value: the linear values at which one code turns into the next.
+struct Codes([f64; 255]);
+
+impl Codes {
+    fn new() -> Self {
+        Self(std::array::from_fn(|k| {
+            linear_from_srgb((k as f64 + 0.5) / 255.0)
+        }))
+    }
+
+    fn code(&self, linear: f32) -> u8 {
+        // A NaN is below no bound: it becomes 0, not white.
+        self.0.partition_point(|&bound| f64::from(linear) >= bound) as u8
+    }
+}
+
+fn alpha_code(alpha: f32) -> u8 {
+    (f64::from(alpha).clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn codes_are_the_nearest_ones() {
+        let codes = Codes::new();
+        for k in 0..=100_000 {
+            let linear = k as f32 / 100_000.0;
+            let exact = srgb_from_linear(f64::from(linear)) * 255.0;
+            let code = f64::from(codes.code(linear));
+            assert!(
+                (code - exact).abs() <= 0.500_01,
+                "{linear}: {code} for {exact}"
+            );
+        }
+        for (linear, code) in [
+            (-1.0, 0),
+            (0.0, 0),
+            (1.0, 255),
+            (9.0, 255),
+            (f32::NAN, 0),
+            (f32::INFINITY, 255),
+        ] {
+            assert_eq!(codes.code(linear), code);
+        }
+        // Published pairs.
+        assert_eq!(codes.code(0.5), 188);
+        assert_eq!(codes.code(0.215_860_5), 128);
+        assert_eq!(
+            (alpha_code(f32::NAN), alpha_code(0.5), alpha_code(2.0)),
+            (0, 128, 255)
+        );
+    }
+
+    #[test]
+    fn a_picture_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut frame = Frame::new(3, 2, [0.0; 4]).unwrap();
+        frame.color[1] = [1.0, 0.5, 0.0, 1.0];
+        frame.color[3] = [0.0, 0.215_860_5, 5.0, 0.5];
+        write_png(&frame, &path).unwrap();
+        let read = image::open(&path).unwrap().to_rgba8();
+        assert_eq!(read.dimensions(), (3, 2));
+        assert_eq!(read.get_pixel(1, 0).0, [255, 188, 0, 255]);
+        assert_eq!(read.get_pixel(0, 1).0, [0, 128, 255, 128]);
+        assert_eq!(read.get_pixel(2, 1).0, [0, 0, 0, 0]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_one_line_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let frame = Frame::new(300, 200, [0.3; 4]).unwrap();
+        let text = write_png(&frame, &path).unwrap_err().to_string();
+        assert!(
+            text.contains("a.png") && text.contains("full") && !text.contains('\n'),
+            "{text}"
+        );
+    }
+}

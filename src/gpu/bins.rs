@@ -1,0 +1,152 @@
+//! Which squares of the screen each instance's box covers: the work list of the compute path.
+
+use crate::scene::{CameraFrame, Placement};
+use crate::shader::generated::BIN_PIXELS;
+use glam::{DVec2, DVec3};
+
+/// A square of the screen and the boxes that cover it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bin {
+    /// In bins: `x | y << 16`.
+    corner: u32,
+    /// Into the list of instances.
+    first: u32,
+    /// How many.
+    count: u32,
+}
+
+/// Bins of all batches, one after another, and the lists they point into, as the shader's one buffer of words holds them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bins {
+    pub bins: Vec<Bin>,
+    pub instances: Vec<u32>,
+}
+
+/// A rectangle of bins or work groups, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Rectangle {
+    pub low: (u32, u32),
+    pub high: (u32, u32),
+}
+
+impl Bins {
+    /// The shader's words: four a bin, then the lists.
+    pub fn words(&self) -> Vec<u32> {
+        let lists = 4 * self.bins.len() as u32;
+        let mut words = Vec::with_capacity(4 * self.bins.len() + self.instances.len());
+        for bin in &self.bins {
+            words.extend([bin.corner, lists + bin.first, bin.count, 0]);
+        }
+        words.extend(&self.instances);
+        words
+    }
+
+    /// Adds a batch of boxes of radius `radius`; `first` is its first instance's number. Returns its range of bins.
+    pub fn add(
+        &mut self,
+        camera: &CameraFrame,
+        size: (u32, u32),
+        radius: f64,
+        first: u32,
+        placements: &[Placement],
+    ) -> std::ops::Range<u32> {
+        let across = size.0.div_ceil(BIN_PIXELS);
+        let down = size.1.div_ceil(BIN_PIXELS);
+        let covered: Vec<_> = placements
+            .iter()
+            .map(|p| rectangle(camera, size, BIN_PIXELS, radius, p))
+            .collect();
+        let mut counts = vec![0u32; (across * down) as usize];
+        let each = |r: &Rectangle, visit: &mut dyn FnMut(usize)| {
+            for y in r.low.1..=r.high.1 {
+                for x in r.low.0..=r.high.0 {
+                    visit((y * across + x) as usize);
+                }
+            }
+        };
+        for r in covered.iter().flatten() {
+            each(r, &mut |bin| counts[bin] += 1);
+        }
+        let start = self.bins.len();
+        let mut next = vec![0u32; counts.len()];
+        let mut at = self.instances.len();
+        for (bin, count) in counts.iter().enumerate() {
+            if *count > 0 {
+                let bin_number = bin as u32;
+                self.bins.push(Bin {
+                    corner: (bin_number % across) | (bin_number / across) << 16,
+                    first: at as u32,
+                    count: *count,
+                });
+                next[bin] = at as u32;
+                at += *count as usize;
+            }
+        }
+        self.instances.resize(at, 0);
+        for (instance, r) in (first..).zip(&covered) {
+            if let Some(r) = r {
+                each(r, &mut |bin| {
+                    self.instances[next[bin] as usize] = instance;
+                    next[bin] += 1;
+                });
+            }
+        }
+        start as u32..self.bins.len() as u32
+    }
+}
+
+/// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the picture.
+pub(crate) fn rectangle(
+    camera: &CameraFrame,
+    size: (u32, u32),
+    unit: u32,
+    radius: f64,
+    placement: &Placement,
+) -> Option<Rectangle> {
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    let mut nearest = f64::INFINITY;
+    let mut farthest = f64::NEG_INFINITY;
+    for corner in 0..8 {
+        let sign = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
+        let p = DVec3::new(
+            sign(1) * radius,
+            sign(2) * radius,
+            f64::from(corner / 4 % 2),
+        );
+        let world = placement.position + placement.rotation * (placement.scale * p);
+        let (pixel, depth) = project(camera, world);
+        nearest = nearest.min(depth);
+        farthest = farthest.max(depth);
+        low = low.min(pixel);
+        high = high.max(pixel);
+    }
+    if farthest <= 0.0 {
+        return None;
+    }
+    let full = DVec2::new(f64::from(size.0), f64::from(size.1));
+    if nearest <= 1e-9 * farthest {
+        // A box around or beside the eye projects to no rectangle.
+        (low, high) = (DVec2::ZERO, full);
+    }
+    low = (low - 1.0).max(DVec2::ZERO);
+    high = (high + 1.0).min(full - 1.0);
+    if low.x > high.x || low.y > high.y || !(low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    let bin = |v: f64| (v / f64::from(unit)) as u32;
+    Some(Rectangle {
+        low: (bin(low.x), bin(low.y)),
+        high: (bin(high.x), bin(high.y)),
+    })
+}
+
+/// Where a world point is seen, in pixels from the upper left corner, and its depth along the view.
+fn project(camera: &CameraFrame, world: DVec3) -> (DVec2, f64) {
+    let from_eye = world - camera.eye;
+    let depth = from_eye.dot(camera.forward);
+    let x = from_eye.dot(camera.right) / (camera.right.length_squared() * depth);
+    let y = from_eye.dot(camera.up) / (camera.up.length_squared() * depth);
+    let pixel = DVec2::new(camera.middle[0] + x, camera.middle[1] - y);
+    (pixel, depth)
+}

@@ -1,0 +1,88 @@
+//! What the CPU tells the GPU; the layouts of `blocks.glsl`, compared by a test.
+
+use crate::shader::generated::{MAX_LIGHTS, MAX_SHADOW_BATCHES};
+use bytemuck::{Pod, Zeroable};
+
+/// `Light` of `blocks.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct LightBlock {
+    /// Unit vector from the surface to the light.
+    pub towards: [f32; 4],
+    /// Linear RGB.
+    pub color: [f32; 4],
+}
+
+/// `FrameBlock` of `blocks.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FrameBlock {
+    /// Column-major.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// World position; w: depth of the near plane.
+    pub eye: [f32; 4],
+    /// Ray through the centre of pixel (0, 0), forward component 1; w: a pixel's size at unit depth.
+    pub dir_00: [f32; 4],
+    /// Its change from column to column; w: the constant of depth = w + `dir_y.w` / t.
+    pub dir_x: [f32; 4],
+    /// Its change from row to row; w: see `dir_x`.
+    pub dir_y: [f32; 4],
+    /// Unit.
+    pub forward: [f32; 4],
+    /// Linear RGB.
+    pub ambient: [f32; 4],
+    /// Width, height, number of lights, unused.
+    pub size: [u32; 4],
+    /// The first `size[2]` count.
+    pub lights: [LightBlock; MAX_LIGHTS as usize],
+}
+
+/// `Instance` of `blocks.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct InstanceBlock {
+    /// Of the middle of the box's lower face; scale along x.
+    pub position_sx: [f32; 4],
+    /// Unit quaternion, x y z w.
+    pub rotation: [f32; 4],
+    /// Scale along y and z.
+    pub scale_yz: [f32; 4],
+}
+
+/// `Solid` of `blocks.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SolidBlock {
+    /// Columns, rows, texel in object units, factor from stored to object units.
+    pub map: [f32; 4],
+    /// `R`, clip radius about the axis, clip z low and high.
+    pub bounds: [f32; 4],
+    /// `e`, `b`, `c`, largest `w`.
+    pub offset: [f32; 4],
+    /// Where the axis stands, object units from the middle of the box; 1 / length of the outline.
+    pub axis: [f32; 4],
+    /// Linear RGB.
+    pub albedo: [f32; 4],
+    /// Strength and shininess.
+    pub specular: [f32; 4],
+    /// Repetitions along xi and eta; bump depth `a`.
+    pub texturing: [f32; 4],
+    /// Replicas along x, y, z; bits: reflected along x, y, z.
+    pub cells: [u32; 4],
+    /// First, number, index of the shape map among those of shadows.
+    pub instances: [u32; 4],
+    /// Of the quadric search's tables: where they begin, rows, first record, topmost level.
+    pub pieces: [u32; 4],
+    /// The batch's instance, where it has but one.
+    pub single: InstanceBlock,
+}
+
+/// `ShadowBlock` of `blocks.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ShadowBlock {
+    /// Their number.
+    pub shadow_batches: [u32; 4],
+    /// The first of them count.
+    pub shadow_solids: [SolidBlock; MAX_SHADOW_BATCHES as usize],
+}

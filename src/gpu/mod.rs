@@ -1,0 +1,65 @@
+//! Drawing on a Vulkan device. The only module with `unsafe`, next to the C ABI.
+//!
+//! A [`Device`] is opened once; a [`Renderer`] holds a scene's maps, blocks and pipelines on it, for one stage and size;
+//! [`Renderer::update`] takes over changed parameters, [`Renderer::draw`] draws, [`Renderer::read`] fetches the frame.
+#![allow(unsafe_code)]
+
+mod batch;
+mod bins;
+pub mod blocks;
+mod call;
+mod clock;
+mod commands;
+mod contours;
+mod descriptors;
+mod device;
+mod instance;
+mod memory;
+mod messages;
+mod pipelines;
+mod read_back;
+mod renderer;
+mod report;
+mod srgb;
+mod target;
+mod textures;
+mod usage;
+
+pub use device::Device;
+pub use instance::VALIDATION_VARIABLE;
+pub use renderer::{Renderer, Times};
+pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
+
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+/// A drawn frame and what it cost.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The picture.
+    pub frame: Frame,
+    /// What drawing it took, of a second frame: the first waits for the driver's compiler.
+    pub times: Times,
+    /// Bytes on the device: of shape maps, of colour and displacement maps.
+    pub map_bytes: [u64; 2],
+}
+
+/// Draws a scene once: bakes its maps, uploads, draws, reads back.
+///
+/// # Errors
+/// Any stage's.
+pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn> {
+    let mut renderer = Renderer::new(device, scene, settings)?;
+    renderer.draw()?;
+    let times = renderer.draw()?;
+    let drawn = Drawn {
+        frame: renderer.read()?,
+        times,
+        map_bytes: renderer.map_bytes(),
+    };
+    drop(renderer);
+    device.check()?;
+    Ok(drawn)
+}

@@ -1,0 +1,345 @@
+//! Pipelines, one per variant and use, made when first wanted and kept.
+
+use super::call::Call;
+use super::device::Shared;
+use crate::error::Result;
+use crate::settings::{DrawStage, Planes};
+use crate::shader::generated::MAX_SHADOW_MAPS;
+use crate::shader::{Variant, generated as spirv};
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Formats of the colour attachments of the fragment path, in order of location.
+pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
+    match planes {
+        Planes::Color => &[vk::Format::R8G8B8A8_SRGB],
+        Planes::All => &[vk::Format::R32G32B32A32_SFLOAT; 4],
+    }
+}
+
+pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
+pub(crate) struct Pipelines {
+    /// By frequency: 0 buffers of a frame, 1 textures of a batch, 2 the target of a compute pass.
+    pub set_layouts: [vk::DescriptorSetLayout; 3],
+    pub layout: vk::PipelineLayout,
+    pub render_pass: vk::RenderPass,
+    planes: Planes,
+    cache: vk::PipelineCache,
+    made: HashMap<(Variant, bool), vk::Pipeline>,
+    device: Arc<Shared>,
+}
+
+impl Pipelines {
+    pub fn new(device: &Arc<Shared>, planes: Planes) -> Result<Self> {
+        let mut all = Self {
+            set_layouts: [vk::DescriptorSetLayout::null(); 3],
+            layout: vk::PipelineLayout::null(),
+            render_pass: vk::RenderPass::null(),
+            planes,
+            cache: vk::PipelineCache::null(),
+            made: HashMap::new(),
+            device: device.clone(),
+        };
+        let raw = &device.raw;
+        use vk::DescriptorType as T;
+        use vk::ShaderStageFlags as S;
+        let every = S::VERTEX | S::FRAGMENT | S::COMPUTE;
+        let pixel = S::FRAGMENT | S::COMPUTE;
+        let sets: [&[(T, S)]; 3] = [
+            &[
+                (T::UNIFORM_BUFFER, every),
+                (T::UNIFORM_BUFFER_DYNAMIC, every),
+                (T::STORAGE_BUFFER, every),
+                (T::UNIFORM_BUFFER, every),
+                (T::STORAGE_BUFFER, pixel),
+                (T::UNIFORM_BUFFER_DYNAMIC, pixel),
+            ],
+            &[(T::COMBINED_IMAGE_SAMPLER, pixel); 5],
+            &[
+                (T::STORAGE_BUFFER, pixel),
+                (T::STORAGE_BUFFER, S::COMPUTE),
+                (T::STORAGE_IMAGE, S::COMPUTE),
+                (T::STORAGE_IMAGE, S::COMPUTE),
+                (T::STORAGE_IMAGE, S::COMPUTE),
+                (T::STORAGE_IMAGE, S::COMPUTE),
+            ],
+        ];
+        for (set, (layout, bindings)) in all.set_layouts.iter_mut().zip(sets).enumerate() {
+            let bindings: Vec<_> = (0u32..)
+                .zip(bindings)
+                .map(|(binding, (kind, stages))| {
+                    let shadow_maps = set == 1 && binding == 4;
+                    vk::DescriptorSetLayoutBinding::default()
+                        .binding(binding)
+                        .descriptor_type(*kind)
+                        .descriptor_count(if shadow_maps { MAX_SHADOW_MAPS } else { 1 })
+                        .stage_flags(*stages)
+                })
+                .collect();
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            // SAFETY: a plain creation, destroyed in Drop.
+            *layout = unsafe { raw.create_descriptor_set_layout(&info, None) }
+                .call("vkCreateDescriptorSetLayout")?;
+        }
+        let pushed = [vk::PushConstantRange::default()
+            .stage_flags(S::COMPUTE)
+            .size(8)];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&all.set_layouts)
+            .push_constant_ranges(&pushed);
+        // SAFETY: plain creations, destroyed in Drop.
+        unsafe {
+            all.layout = raw
+                .create_pipeline_layout(&info, None)
+                .call("vkCreatePipelineLayout")?;
+            all.cache = raw
+                .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
+                .call("vkCreatePipelineCache")?;
+        }
+        all.render_pass = render_pass(device, planes)?;
+        Ok(all)
+    }
+
+    /// The pipeline of `variant` in `stage`, made now if it is new.
+    pub fn get(&mut self, variant: Variant, stage: DrawStage) -> Result<vk::Pipeline> {
+        let key = (variant, stage == DrawStage::Compute);
+        if let Some(made) = self.made.get(&key) {
+            return Ok(*made);
+        }
+        let entries: Vec<_> = variant
+            .constants()
+            .iter()
+            .zip(0u32..)
+            .map(|((id, _), n)| {
+                vk::SpecializationMapEntry::default()
+                    .constant_id(*id)
+                    .offset(4 * n)
+                    .size(4)
+            })
+            .collect();
+        let values: Vec<u32> = variant
+            .constants()
+            .iter()
+            .map(|(_, value)| *value)
+            .collect();
+        let specialization = vk::SpecializationInfo::default()
+            .map_entries(&entries)
+            .data(bytemuck::cast_slice(&values));
+        let pipeline = if stage == DrawStage::Compute {
+            self.compute(&specialization)?
+        } else {
+            self.graphics(&specialization)?
+        };
+        self.made.insert(key, pipeline);
+        Ok(pipeline)
+    }
+
+    fn module(&self, words: &[u32]) -> Result<Module<'_>> {
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
+        // SAFETY: the words are SPIR-V made by build.rs.
+        let raw = unsafe { self.device.raw.create_shader_module(&info, None) }
+            .call("vkCreateShaderModule")?;
+        Ok(Module {
+            raw,
+            device: &self.device,
+        })
+    }
+
+    fn compute(&self, specialization: &vk::SpecializationInfo<'_>) -> Result<vk::Pipeline> {
+        let module = self.module(match self.planes {
+            Planes::Color => spirv::TRACE_COLOR_COMP,
+            Planes::All => spirv::TRACE_PLANES_COMP,
+        })?;
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
+            .layout(self.layout);
+        // SAFETY: `info` and all it points to live until the call returns.
+        let made = unsafe {
+            self.device
+                .raw
+                .create_compute_pipelines(self.cache, &[info], None)
+        };
+        first(made, "vkCreateComputePipelines")
+    }
+
+    fn graphics(&self, specialization: &vk::SpecializationInfo<'_>) -> Result<vk::Pipeline> {
+        let vertex = self.module(spirv::SHAPE_BOX_VERT)?;
+        let fragment = self.module(match self.planes {
+            Planes::Color => spirv::SHAPE_BOX_COLOR_FRAG,
+            Planes::All => spirv::SHAPE_BOX_PLANES_FRAG,
+        })?;
+        let stages = [
+            vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
+            fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
+        ];
+        let no_vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        let strip = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_STRIP);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(vk::CullModeFlags::BACK)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .line_width(1.0);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(true)
+            .depth_write_enable(true)
+            .depth_compare_op(vk::CompareOp::LESS);
+        let blends = vec![
+            vk::PipelineColorBlendAttachmentState::default()
+                .color_write_mask(vk::ColorComponentFlags::RGBA);
+            color_formats(self.planes).len()
+        ];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
+            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&no_vertices)
+            .input_assembly_state(&strip)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&samples)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(self.layout)
+            .render_pass(self.render_pass);
+        // SAFETY: `info` and all it points to live until the call returns.
+        let made = unsafe {
+            self.device
+                .raw
+                .create_graphics_pipelines(self.cache, &[info], None)
+        };
+        first(made, "vkCreateGraphicsPipelines")
+    }
+}
+
+impl Drop for Pipelines {
+    fn drop(&mut self) {
+        let raw = &self.device.raw;
+        // SAFETY: every submission was waited for; null handles may be destroyed.
+        unsafe {
+            for pipeline in self.made.values() {
+                raw.destroy_pipeline(*pipeline, None);
+            }
+            raw.destroy_pipeline_cache(self.cache, None);
+            raw.destroy_render_pass(self.render_pass, None);
+            raw.destroy_pipeline_layout(self.layout, None);
+            for layout in self.set_layouts {
+                raw.destroy_descriptor_set_layout(layout, None);
+            }
+        }
+    }
+}
+
+fn first(
+    made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+    name: &str,
+) -> Result<vk::Pipeline> {
+    made.map(|all| all.first().copied().unwrap_or_default())
+        .map_err(|(_, code)| code)
+        .call(name)
+}
+
+struct Module<'a> {
+    raw: vk::ShaderModule,
+    device: &'a Shared,
+}
+
+impl Module<'_> {
+    fn stage<'i>(
+        &self,
+        stage: vk::ShaderStageFlags,
+        specialization: &'i vk::SpecializationInfo<'i>,
+    ) -> vk::PipelineShaderStageCreateInfo<'i> {
+        vk::PipelineShaderStageCreateInfo::default()
+            .stage(stage)
+            .module(self.raw)
+            .name(c"main")
+            .specialization_info(specialization)
+    }
+}
+
+impl Drop for Module<'_> {
+    fn drop(&mut self) {
+        // SAFETY: pipelines made of a module do not need it afterwards.
+        unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
+    }
+}
+
+/// Cleared at its start; its colours are left ready to be copied from.
+fn render_pass(device: &Shared, planes: Planes) -> Result<vk::RenderPass> {
+    let mut attachments: Vec<_> = color_formats(planes)
+        .iter()
+        .map(|format| {
+            vk::AttachmentDescription::default()
+                .format(*format)
+                .samples(vk::SampleCountFlags::TYPE_1)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .final_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL)
+        })
+        .collect();
+    let colors: Vec<_> = (0u32..)
+        .take(attachments.len())
+        .map(|n| {
+            vk::AttachmentReference::default()
+                .attachment(n)
+                .layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+        })
+        .collect();
+    let depth = vk::AttachmentReference::default()
+        .attachment(u32::try_from(colors.len()).unwrap_or(0))
+        .layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+    attachments.push(
+        vk::AttachmentDescription::default()
+            .format(DEPTH_FORMAT)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .store_op(vk::AttachmentStoreOp::DONT_CARE)
+            .final_layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL),
+    );
+    let subpasses = [vk::SubpassDescription::default()
+        .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+        .color_attachments(&colors)
+        .depth_stencil_attachment(&depth)];
+    use vk::AccessFlags as A;
+    use vk::PipelineStageFlags as S;
+    let fragment_tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
+    let dependencies = [
+        // The last frame's copies and depth tests are over before this one's clears.
+        vk::SubpassDependency::default()
+            .src_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(S::TRANSFER | fragment_tests | S::COLOR_ATTACHMENT_OUTPUT)
+            .dst_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | fragment_tests)
+            .src_access_mask(
+                A::TRANSFER_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_WRITE,
+            )
+            .dst_access_mask(
+                A::COLOR_ATTACHMENT_WRITE
+                    | A::DEPTH_STENCIL_ATTACHMENT_READ
+                    | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+            ),
+        // This frame's colours are there before they are copied.
+        vk::SubpassDependency::default()
+            .dst_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT)
+            .dst_stage_mask(S::TRANSFER)
+            .src_access_mask(A::COLOR_ATTACHMENT_WRITE)
+            .dst_access_mask(A::TRANSFER_READ),
+    ];
+    let info = vk::RenderPassCreateInfo::default()
+        .attachments(&attachments)
+        .subpasses(&subpasses)
+        .dependencies(&dependencies);
+    // SAFETY: `info` and all it points to live until the call returns.
+    unsafe { device.raw.create_render_pass(&info, None) }.call("vkCreateRenderPass")
+}

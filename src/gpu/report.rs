@@ -1,0 +1,291 @@
+//! What each Vulkan device offers, and which of them to take.
+
+use super::call::Call;
+use super::instance::{API_VERSION, Instance, into_device};
+use crate::error::{Error, Result, Stage};
+use ash::vk;
+
+/// The environment variable that names the device to take.
+pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
+
+/// What a Vulkan device is and offers, as `revmap devices` prints it.
+#[derive(Clone, Debug)]
+pub struct DeviceReport {
+    /// Position in the loader's list; `--device` takes it.
+    pub index: usize,
+    /// The device's name.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    pub kind: &'static str,
+    /// Driver's name and version.
+    pub driver: String,
+    /// Vulkan version, as `1.3.230`.
+    pub api_version: String,
+    /// What the program would use of it: `(what, whether or which)`.
+    pub uses: Vec<(String, String)>,
+    /// What it lacks that is needed; empty: the program runs on it.
+    pub missing: Vec<String>,
+}
+
+/// A device with what opening it takes.
+pub(crate) struct Candidate {
+    pub report: DeviceReport,
+    pub physical: vk::PhysicalDevice,
+    pub family: u32,
+    pub timestamp_bits: u32,
+    pub features: vk::PhysicalDeviceFeatures,
+    pub properties: vk::PhysicalDeviceProperties,
+    pub portability_subset: bool,
+}
+
+impl Candidate {
+    /// Whether textures are filtered anisotropically. Software devices take ten times as long over it, and llvmpipe filters
+    /// otherwise in fragment than in compute shaders.
+    pub fn anisotropic(&self) -> bool {
+        self.features.sampler_anisotropy == vk::TRUE
+            && self.properties.device_type != vk::PhysicalDeviceType::CPU
+    }
+}
+
+/// All devices that the Vulkan loader offers.
+///
+/// # Errors
+/// [`Stage::Device`] when there is no loader or no device.
+pub fn devices() -> Result<Vec<DeviceReport>> {
+    let instance = Instance::from_environment()?;
+    let found = candidates(&instance)?;
+    if found.is_empty() {
+        return Err(none());
+    }
+    Ok(found.into_iter().map(|c| c.report).collect())
+}
+
+fn none() -> Error {
+    Error::new(
+        Stage::Device,
+        "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers",
+    )
+}
+
+pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
+    // SAFETY: plain query of a live instance.
+    let all = unsafe { instance.raw.enumerate_physical_devices() }
+        .call("vkEnumeratePhysicalDevices")
+        .map_err(into_device)?;
+    Ok(all
+        .into_iter()
+        .enumerate()
+        .map(|(index, physical)| inspect(instance, index, physical))
+        .collect())
+}
+
+/// The candidate that `choice` names (an index, or part of a name, in any case); none named: the first by kind.
+pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
+    let position = match choice {
+        None => all
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.report.missing.is_empty())
+            .min_by_key(|(_, c)| rank(c.properties.device_type))
+            .or_else(|| all.iter().enumerate().next())
+            .map(|(position, _)| position)
+            .ok_or_else(none)?,
+        Some(wanted) => {
+            let part = wanted.to_lowercase();
+            wanted
+                .parse::<usize>()
+                .ok()
+                .filter(|index| *index < all.len())
+                .or_else(|| {
+                    all.iter()
+                        .position(|c| c.report.name.to_lowercase().contains(&part))
+                })
+                .ok_or_else(|| {
+                    let names: Vec<_> = all
+                        .iter()
+                        .map(|c| format!("{} {}", c.report.index, c.report.name))
+                        .collect();
+                    Error::new(
+                        Stage::Usage,
+                        format!(
+                            "no device is called '{wanted}'; there are: {}",
+                            names.join(", ")
+                        ),
+                    )
+                    .at_key("--device")
+                })?
+        }
+    };
+    let chosen = all.swap_remove(position);
+    if chosen.report.missing.is_empty() {
+        Ok(chosen)
+    } else {
+        Err(Error::new(
+            Stage::Device,
+            format!(
+                "{} lacks {}; choose another with --device",
+                chosen.report.name,
+                chosen.report.missing.join(", ")
+            ),
+        ))
+    }
+}
+
+fn rank(kind: vk::PhysicalDeviceType) -> u8 {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => 0,
+        vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
+        vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
+        vk::PhysicalDeviceType::CPU => 3,
+        _ => 4,
+    }
+}
+
+fn kind_name(kind: vk::PhysicalDeviceType) -> &'static str {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+        vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+        vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+        vk::PhysicalDeviceType::CPU => "cpu",
+        _ => "other",
+    }
+}
+
+fn version(v: u32) -> String {
+    format!(
+        "{}.{}.{}",
+        vk::api_version_major(v),
+        vk::api_version_minor(v),
+        vk::api_version_patch(v)
+    )
+}
+
+fn inspect(instance: &Instance, index: usize, physical: vk::PhysicalDevice) -> Candidate {
+    let raw = &instance.raw;
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut extended = vk::PhysicalDeviceProperties2::default();
+    // SAFETY: plain queries of a live physical device.
+    let (basic, features, families, extensions) = unsafe {
+        (
+            raw.get_physical_device_properties(physical),
+            raw.get_physical_device_features(physical),
+            raw.get_physical_device_queue_family_properties(physical),
+            raw.enumerate_device_extension_properties(physical)
+                .unwrap_or_default(),
+        )
+    };
+    let mut missing = Vec::new();
+    if basic.api_version >= API_VERSION {
+        extended = extended.push_next(&mut driver);
+        // SAFETY: the device is of version 1.2, whose core has the query.
+        unsafe { raw.get_physical_device_properties2(physical, &mut extended) };
+    } else {
+        missing.push(format!("Vulkan {}", version(API_VERSION)));
+    }
+    let both = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let family = families.iter().position(|f| f.queue_flags.contains(both));
+    if family.is_none() {
+        missing.push("a queue for graphics and compute".to_owned());
+    }
+    if features.fragment_stores_and_atomics == vk::FALSE {
+        missing.push("fragmentStoresAndAtomics".to_owned());
+    }
+    for (format, wanted, what) in FORMATS {
+        // SAFETY: plain query.
+        let offered = unsafe { raw.get_physical_device_format_properties(physical, *format) };
+        if !offered.optimal_tiling_features.contains(*wanted) {
+            missing.push((*what).to_owned());
+        }
+    }
+    let timestamp_bits = family.map_or(0, |f| families[f].timestamp_valid_bits);
+    let text = |raw: &[std::ffi::c_char]| {
+        let bytes: Vec<u8> = raw
+            .iter()
+            .take_while(|c| **c != 0)
+            .map(|c| c.to_ne_bytes()[0])
+            .collect();
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    let driver_text = format!(
+        "{} {}",
+        text(&driver.driver_name),
+        text(&driver.driver_info)
+    );
+    let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
+    let limits = &basic.limits;
+    let uses = vec![
+        (
+            "GPU timestamps".to_owned(),
+            if timestamp_bits > 0 {
+                format!("{timestamp_bits} bits of {} ns", limits.timestamp_period)
+            } else {
+                "no: times are the wall clock's alone".to_owned()
+            },
+        ),
+        (
+            "anisotropic filtering".to_owned(),
+            yes_no(
+                features.sampler_anisotropy == vk::TRUE
+                    && basic.device_type != vk::PhysicalDeviceType::CPU,
+            ),
+        ),
+        (
+            "largest map".to_owned(),
+            format!("{} texels a side", limits.max_image_dimension2_d),
+        ),
+        (
+            "largest picture".to_owned(),
+            format!(
+                "{} x {}",
+                limits.max_framebuffer_width, limits.max_framebuffer_height
+            ),
+        ),
+    ];
+    let portability_subset = extensions.iter().any(|e| {
+        e.extension_name_as_c_str()
+            .is_ok_and(|name| name == ash::khr::portability_subset::NAME)
+    });
+    Candidate {
+        report: DeviceReport {
+            index,
+            name: text(&basic.device_name),
+            kind: kind_name(basic.device_type),
+            driver: driver_text.trim().to_owned(),
+            api_version: version(basic.api_version),
+            uses,
+            missing,
+        },
+        physical,
+        family: family.and_then(|f| u32::try_from(f).ok()).unwrap_or(0),
+        timestamp_bits,
+        features,
+        properties: basic,
+        portability_subset,
+    }
+}
+
+const FORMATS: &[(vk::Format, vk::FormatFeatureFlags, &str)] = &[
+    (
+        vk::Format::R16_SFLOAT,
+        vk::FormatFeatureFlags::SAMPLED_IMAGE,
+        "sampled 16-bit float images",
+    ),
+    (
+        vk::Format::R32_SFLOAT,
+        vk::FormatFeatureFlags::SAMPLED_IMAGE,
+        "sampled 32-bit float images",
+    ),
+    (
+        vk::Format::R32G32B32A32_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw(),
+        ),
+        "render targets and storage images of 32-bit floats",
+    ),
+    (
+        vk::Format::D32_SFLOAT,
+        vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT,
+        "a 32-bit float depth buffer",
+    ),
+];

@@ -1,0 +1,335 @@
+//! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading them back.
+
+use super::call::Call;
+use super::commands::Commands;
+use super::device::Shared;
+use super::memory::{Buffer, Image, ImageKind};
+use super::pipelines::{DEPTH_FORMAT, Pipelines, color_formats};
+use super::usage::{Usage, buffer_barrier, image_barrier};
+use crate::error::{Error, Result, Stage};
+use crate::settings::{DrawStage, Planes};
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use std::sync::Arc;
+
+pub(crate) struct Target {
+    pub width: u32,
+    pub height: u32,
+    stage: DrawStage,
+    planes: Planes,
+    /// The fragment path's attachments, or the compute path's storage images; none where compute draws colour alone.
+    pub images: Vec<Image>,
+    depth: Option<Image>,
+    framebuffer: vk::Framebuffer,
+    /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where fragments draw colour alone.
+    pub words: Option<Buffer>,
+    device: Arc<Shared>,
+}
+
+impl Target {
+    pub fn new(
+        device: &Arc<Shared>,
+        pipelines: &Pipelines,
+        stage: DrawStage,
+        planes: Planes,
+        (width, height): (u32, u32),
+    ) -> Result<Self> {
+        let limits = &device.limits;
+        let (most_x, most_y) = (
+            limits
+                .max_framebuffer_width
+                .min(limits.max_image_dimension2_d),
+            limits
+                .max_framebuffer_height
+                .min(limits.max_image_dimension2_d),
+        );
+        let pixels = u64::from(width) * u64::from(height);
+        let needs_words = stage == DrawStage::Compute || planes == Planes::All;
+        let words_fit = 8 * pixels <= u64::from(limits.max_storage_buffer_range);
+        if width > most_x || height > most_y || (needs_words && !words_fit) {
+            return Err(Error::new(
+                Stage::Draw,
+                format!(
+                    "{width}x{height} pixels are more than {} takes ({most_x}x{most_y}, and {} in all for this kind of picture); make it smaller",
+                    device.report.name,
+                    limits.max_storage_buffer_range / 8
+                ),
+            )
+            .at_key("--size"));
+        }
+        let mut target = Self {
+            width,
+            height,
+            stage,
+            planes,
+            images: Vec::new(),
+            depth: None,
+            framebuffer: vk::Framebuffer::null(),
+            words: None,
+            device: device.clone(),
+        };
+        let image = |name, format, usage| {
+            let kind = ImageKind {
+                format,
+                width,
+                height,
+                mips: 1,
+                usage,
+            };
+            Image::new(device, name, kind)
+        };
+        use vk::ImageUsageFlags as U;
+        let usage = match stage {
+            DrawStage::Compute => U::STORAGE | U::TRANSFER_DST | U::TRANSFER_SRC,
+            _ => U::COLOR_ATTACHMENT | U::TRANSFER_SRC,
+        };
+        if stage != DrawStage::Compute || planes == Planes::All {
+            for format in color_formats(planes) {
+                target.images.push(image("plane", *format, usage)?);
+            }
+        }
+        if stage != DrawStage::Compute {
+            let depth = image("depth", DEPTH_FORMAT, U::DEPTH_STENCIL_ATTACHMENT)?;
+            let views: Vec<_> = target
+                .images
+                .iter()
+                .chain([&depth])
+                .map(|i| i.view)
+                .collect();
+            target.depth = Some(depth);
+            let info = vk::FramebufferCreateInfo::default()
+                .render_pass(pipelines.render_pass)
+                .attachments(&views)
+                .width(width)
+                .height(height)
+                .layers(1);
+            // SAFETY: the views live as long as the framebuffer.
+            target.framebuffer = unsafe { device.raw.create_framebuffer(&info, None) }
+                .call("vkCreateFramebuffer")?;
+        }
+        if needs_words {
+            target.words = Some(Buffer::new(
+                device,
+                "pixel words",
+                8 * pixels,
+                vk::BufferUsageFlags::STORAGE_BUFFER
+                    | vk::BufferUsageFlags::TRANSFER_DST
+                    | vk::BufferUsageFlags::TRANSFER_SRC,
+                MemoryLocation::GpuOnly,
+            )?);
+        }
+        Ok(target)
+    }
+
+    /// Records the clearing of what no render pass clears.
+    pub fn clear(&self, cmd: vk::CommandBuffer, background: [f32; 4]) {
+        let raw = &self.device.raw;
+        let next = self.shader_use();
+        if let Some(words) = &self.words {
+            let half = 4 * u64::from(self.width) * u64::from(self.height);
+            let second = match self.planes {
+                Planes::Color => super::srgb::pack_srgb(background),
+                Planes::All => 0,
+            };
+            buffer_barrier(
+                &self.device,
+                cmd,
+                words,
+                Usage::TransferRead,
+                Usage::TransferWrite,
+            );
+            // SAFETY: `cmd` is recording and both ranges lie within the buffer.
+            unsafe {
+                raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
+                raw.cmd_fill_buffer(cmd, words.raw, half, half, second);
+            }
+            buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, next);
+        }
+        if self.stage == DrawStage::Compute {
+            for (image, value) in self
+                .images
+                .iter()
+                .zip(clear_values(self.planes, background))
+            {
+                image_barrier(
+                    &self.device,
+                    cmd,
+                    image,
+                    Usage::Nothing,
+                    Usage::TransferWrite,
+                );
+                // SAFETY: as above; the image was made for transfers.
+                unsafe {
+                    raw.cmd_clear_color_image(
+                        cmd,
+                        image.raw,
+                        vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                        &value,
+                        &[image.kind.range()],
+                    );
+                }
+                image_barrier(&self.device, cmd, image, Usage::TransferWrite, next);
+            }
+        }
+    }
+
+    /// How shaders use images and words.
+    fn shader_use(&self) -> Usage {
+        if self.stage == DrawStage::Compute {
+            Usage::ComputeWrite
+        } else {
+            Usage::FragmentAtomic
+        }
+    }
+
+    /// Begins the render pass of the fragment path, cleared to `background`.
+    pub fn begin(&self, cmd: vk::CommandBuffer, pass: vk::RenderPass, background: [f32; 4]) {
+        let area = vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent: vk::Extent2D {
+                width: self.width,
+                height: self.height,
+            },
+        };
+        let mut clears: Vec<_> = clear_values(self.planes, background)
+            .into_iter()
+            .take(self.images.len())
+            .map(|color| vk::ClearValue { color })
+            .collect();
+        clears.push(vk::ClearValue {
+            depth_stencil: vk::ClearDepthStencilValue {
+                depth: 1.0,
+                stencil: 0,
+            },
+        });
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(pass)
+            .framebuffer(self.framebuffer)
+            .render_area(area)
+            .clear_values(&clears);
+        #[allow(clippy::cast_precision_loss)] // sizes are far below 2^24
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: self.width as f32,
+            height: self.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: `cmd` is recording, outside a render pass; the framebuffer fits the pass.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE);
+            raw.cmd_set_viewport(cmd, 0, &[viewport]);
+            raw.cmd_set_scissor(cmd, 0, &[area]);
+        }
+    }
+
+    /// Copies images and words to the host: one `Vec` of bytes each, the words last.
+    pub fn read(&self, commands: &Commands) -> Result<Vec<Vec<u8>>> {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let mut out = Vec::new();
+        let host = |bytes| {
+            Buffer::new(
+                &self.device,
+                "read back",
+                bytes,
+                vk::BufferUsageFlags::TRANSFER_DST,
+                MemoryLocation::GpuToCpu,
+            )
+        };
+        for image in &self.images {
+            let texel = if image.kind.format == vk::Format::R8G8B8A8_SRGB {
+                4
+            } else {
+                16
+            };
+            let mut buffer = host(pixels * texel)?;
+            let region = vk::BufferImageCopy::default()
+                .image_subresource(
+                    vk::ImageSubresourceLayers::default()
+                        .aspect_mask(vk::ImageAspectFlags::COLOR)
+                        .layer_count(1),
+                )
+                .image_extent(vk::Extent3D {
+                    width: self.width,
+                    height: self.height,
+                    depth: 1,
+                });
+            commands.run(|cmd| {
+                if self.stage == DrawStage::Compute {
+                    image_barrier(
+                        &self.device,
+                        cmd,
+                        image,
+                        Usage::ComputeWrite,
+                        Usage::TransferRead,
+                    );
+                }
+                // SAFETY: the region is the whole image, the buffer holds it.
+                unsafe {
+                    self.device.raw.cmd_copy_image_to_buffer(
+                        cmd,
+                        image.raw,
+                        vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                        buffer.raw,
+                        &[region],
+                    );
+                }
+                let (from, to) = (Usage::TransferWrite, Usage::HostRead);
+                buffer_barrier(&self.device, cmd, &buffer, from, to);
+                if self.stage == DrawStage::Compute {
+                    let (from, to) = (Usage::TransferRead, Usage::ComputeWrite);
+                    image_barrier(&self.device, cmd, image, from, to);
+                }
+            })?;
+            out.push(buffer.mapped()?.to_vec());
+        }
+        if let Some(words) = &self.words {
+            let mut buffer = host(words.bytes)?;
+            commands.run(|cmd| {
+                buffer_barrier(
+                    &self.device,
+                    cmd,
+                    words,
+                    self.shader_use(),
+                    Usage::TransferRead,
+                );
+                let region = vk::BufferCopy::default().size(words.bytes);
+                // SAFETY: both buffers hold the region.
+                unsafe {
+                    self.device
+                        .raw
+                        .cmd_copy_buffer(cmd, words.raw, buffer.raw, &[region]);
+                }
+                let (from, to) = (Usage::TransferWrite, Usage::HostRead);
+                buffer_barrier(&self.device, cmd, &buffer, from, to);
+            })?;
+            out.push(buffer.mapped()?.to_vec());
+        }
+        Ok(out)
+    }
+}
+
+/// What a pixel holds where nothing is hit: the background; no normal, at infinity; nothing else.
+fn clear_values(planes: Planes, background: [f32; 4]) -> Vec<vk::ClearColorValue> {
+    let color = |float32| vk::ClearColorValue { float32 };
+    match planes {
+        Planes::Color => vec![color(background)],
+        Planes::All => vec![
+            color(background),
+            color([0.0, 0.0, 0.0, f32::INFINITY]),
+            color([0.0; 4]),
+            color([0.0; 4]),
+        ],
+    }
+}
+
+impl Drop for Target {
+    fn drop(&mut self) {
+        // SAFETY: every submission was waited for; a null framebuffer may be destroyed.
+        unsafe {
+            self.device.raw.destroy_framebuffer(self.framebuffer, None);
+        }
+    }
+}

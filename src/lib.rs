@@ -1,0 +1,78 @@
+//! Revolution mapping on Vulkan: solids of revolution drawn from one 2D map, without a mesh.
+//!
+//! A flat **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`. Nothing is tessellated: a **shape box** is
+//! rasterised (or its rectangle of the screen handed to a compute shader), and in each pixel the ray `o + t v` is followed in the
+//! half-plane, where it is the branch of a hyperbola
+//!
+//! ```text
+//! r(t) = sqrt(a t^2 + 2 b t + c),   z(t) = o_z + t v_z,     a = v_x^2 + v_y^2,  b = o_x v_x + o_y v_y,  c = o_x^2 + o_y^2,
+//! ```
+//!
+//! until it meets the surface
+//!
+//! ```text
+//! F(r, z) = d(r, z) - w(z) = 0,     w = e + b min(1 - z, c),
+//! ```
+//!
+//! with `d` the signed distance to the profile's boundary and `e`, `b`, `c` the extension, bevel and chamfer of
+//! Ragragui et al., *The extensions of revolution-bump mapping*, Journal of Graphic Engineering and Design 13 (1), 2022. All
+//! three may change from frame to frame; no map is computed again.
+//!
+//! # What holds
+//!
+//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are equal to the last bit.
+//! * The default search, [`Solver::Quadric`](settings::Solver::Quadric), meets the exact boundary: what it draws differs from the
+//!   [`mod@reference`] in double precision by hundredths of a texel of a map of 512 rows.
+//! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand anywhere.
+//! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is left half written.
+//!
+//! # A picture
+//!
+//! ```no_run
+//! use glam::DVec3;
+//! use revmap::{gpu, frame, profile::Profile, scene::{Camera, Object, Scene}, settings::Settings};
+//! use std::sync::Arc;
+//!
+//! let spindle = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5)?;
+//! let mut scene = Scene::new(Camera::new(DVec3::new(2.0, 0.0, 1.0), DVec3::new(0.0, 0.0, 0.5)));
+//! scene.objects.push(Object::new("spindle", Arc::new(spindle)));
+//!
+//! let device = gpu::Device::open(None)?;
+//! let drawn = gpu::draw(&device, &scene, &Settings::default())?;
+//! frame::write_png(&drawn.frame, "spindle.png")?;
+//! # Ok::<(), revmap::Error>(())
+//! ```
+//!
+//! # A tour
+//!
+//! Data flows one way, and each module knows only those before it:
+//!
+//! | module | what it makes of what comes before |
+//! |---|---|
+//! | [`profile`] | image, drawing or polygon: a region of the half-plane |
+//! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of height maps; colours; lengths along the profile |
+//! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
+//! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
+//! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
+//! | [`mod@reference`] | the truth: the first hit of every ray, in double precision, on the CPU |
+//! | [`gpu`] | device, renderer, timestamps |
+//! | [`frame`] | the planes of a picture, PNG and EXR, and how two pictures differ |
+//! | `report` | benchmarks, charts and tables (feature `report`) |
+//!
+//! Without its default features the crate needs no C++ compiler, reads no files and has no program: what an engine embeds.
+
+pub mod error;
+pub mod frame;
+pub mod gpu;
+pub mod maps;
+pub mod pieces;
+pub mod profile;
+pub mod reference;
+#[cfg(feature = "report")]
+pub mod report;
+pub mod scene;
+pub mod settings;
+pub mod shader;
+
+pub use error::{Error, Result};

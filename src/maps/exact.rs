@@ -1,0 +1,18 @@
+//! Distances measured to the outline itself.
+
+use super::nearest::for_each_texel;
+use super::rounding::round_down;
+use crate::profile::{Outline, Segment};
+
+/// Signed distance of each texel's centre to the outline's surface, object units, never above the true one.
+pub(super) fn distances(outline: &Outline, columns: usize, rows: usize) -> Vec<f32> {
+    let segments: Vec<Segment> = outline.surface_segments().collect();
+    let heights = (0..rows).map(|row| 1.0 - (row as f64 + 0.5) / rows as f64);
+    // Between an odd and the next even crossing of a row the solid lies.
+    let crossings = outline.crossings(heights);
+    for_each_texel(&segments, columns, rows, |column, row, distance, _| {
+        let r = (column as f64 + 0.5) / rows as f64;
+        let inside = crossings[row].partition_point(|&c| c <= r) % 2 == 1;
+        round_down(if inside { -distance } else { distance })
+    })
+}

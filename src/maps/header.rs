@@ -1,0 +1,107 @@
+//! What a map's file says of itself beside its pixels: one line of `key=value` words.
+//!
+//! It stands in a text chunk of PNG files and in a text attribute of EXR files, under [`KEYWORD`]. Numbers are written so that
+//! they come back to the last bit.
+
+use super::{Bounds, MapSource, ShapeMap};
+use crate::error::{Error, Result, Stage};
+use std::collections::HashMap;
+use std::io::Cursor;
+
+/// The keyword of the text chunk or attribute.
+pub(crate) const KEYWORD: &str = "revmap";
+
+/// The words of a header.
+#[derive(Debug, Default)]
+pub(crate) struct Header {
+    words: HashMap<String, String>,
+}
+
+impl Header {
+    /// Splits a header's line.
+    pub fn parse(text: &str) -> Self {
+        let words = text
+            .split_whitespace()
+            .filter_map(|word| word.split_once('='));
+        Self {
+            words: words.map(|(k, v)| (k.to_owned(), v.to_owned())).collect(),
+        }
+    }
+
+    /// The header of a PNG file, if it has one.
+    pub fn of_png(bytes: &[u8]) -> Option<Self> {
+        let reader = png::Decoder::new(Cursor::new(bytes)).read_info().ok()?;
+        let chunks = &reader.info().uncompressed_latin1_text;
+        chunks
+            .iter()
+            .find(|c| c.keyword == KEYWORD)
+            .map(|c| Self::parse(&c.text))
+    }
+
+    /// What kind of map the file holds: `shape` or `displacement`.
+    pub fn kind(&self) -> Option<&str> {
+        self.words.get("kind").map(String::as_str)
+    }
+
+    /// A finite number.
+    pub fn number(&self, key: &str) -> Result<f64> {
+        let number = self
+            .words
+            .get(key)
+            .and_then(|v| v.parse().ok())
+            .filter(|v: &f64| v.is_finite());
+        number.ok_or_else(|| {
+            Error::new(
+                Stage::Map,
+                format!("the map's header lacks a good `{key}`; bake the map again"),
+            )
+        })
+    }
+
+    pub(super) fn source(&self) -> Result<MapSource> {
+        let named = |s: &MapSource| self.words.get("source").is_some_and(|v| v == s.name());
+        let sources = [MapSource::Binary, MapSource::Coverage, MapSource::Exact];
+        sources.into_iter().find(named).ok_or_else(|| {
+            Error::new(
+                Stage::Map,
+                "the map's header lacks a good `source`; bake the map again",
+            )
+        })
+    }
+
+    pub(super) fn bounds(&self) -> Result<Bounds> {
+        Ok(Bounds {
+            r_min: self.number("r_min")?,
+            r_max: self.number("r_max")?,
+            z_min: self.number("z_min")?,
+            z_max: self.number("z_max")?,
+        })
+    }
+}
+
+/// The header of a shape map; `scale` is that of its distance channel.
+pub(super) fn shape_header(map: &ShapeMap, scale: f32) -> String {
+    let Bounds {
+        r_min,
+        r_max,
+        z_min,
+        z_max,
+    } = map.bounds;
+    format!(
+        "kind=shape source={} radius={} scale={scale} r_min={r_min} r_max={r_max} z_min={z_min} z_max={z_max}",
+        map.source.name(),
+        map.radius
+    )
+}
+
+impl MapSource {
+    /// As options and files name it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Binary => "binary",
+            Self::Coverage => "coverage",
+            Self::Exact => "exact",
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Maps made from a profile: signed distances on a grid, and how they are stored.
+
+pub mod accuracy;
+mod arc;
+mod binary;
+mod color;
+mod coverage;
+mod displacement;
+mod exact;
+mod files;
+mod halving;
+pub(crate) mod header;
+mod nearest;
+pub mod rounding;
+mod shape_map;
+mod store;
+pub mod transform;
+
+pub use arc::{ArcLength, ArcTable};
+pub use color::ColorMap;
+pub use displacement::{DisplacementMap, Level, SlopeFilter};
+pub use files::Projection;
+pub use store::EncodedMap;
+
+/// Where distances come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MapSource {
+    /// The papers': exact Euclidean distance to the nearest solid pixel's centre of a binary image.
+    Binary,
+    /// Sub-texel distances from the coverage of anti-aliased edge pixels.
+    Coverage,
+    /// Exact distance to the outline's segments.
+    Exact,
+}
+
+/// How distances are stored on the GPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MapFormat {
+    /// The papers' texture: R, G gradient, B unsigned distance, A form; 8 bits each.
+    Rgba8,
+    /// Signed distance as a 16-bit float.
+    R16,
+    /// Signed distance as a 32-bit float.
+    R32,
+}
+
+/// How a shape map is baked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeOptions {
+    /// Where distances come from.
+    pub source: MapSource,
+    /// Rows of the map: one object unit is this many texels.
+    pub rows: u32,
+    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. More than that is wanted where the
+    /// solid reaches past its cylinder: polygons wider than their box, offsets, an axis off the middle.
+    pub reach: f64,
+}
+
+/// Signed distances to the profile's boundary on a grid of square texels.
+///
+/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, `h = 1 / rows`: row 0 is the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeMap {
+    /// Texels along `r`.
+    pub columns: u32,
+    /// Texels along `z`.
+    pub rows: u32,
+    /// `R` of the shape box, object units (the map may reach farther).
+    pub radius: f64,
+    /// Where the distances came from.
+    pub source: MapSource,
+    /// Signed distance in object units, positive outside; row by row from the top.
+    pub distance: Vec<f32>,
+    /// Whether the texel's centre is solid; row by row from the top.
+    pub form: Vec<bool>,
+    /// What the solid occupies of the half-plane.
+    pub bounds: Bounds,
+}
+
+/// The rectangle of the half-plane that the solid occupies, object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest `r`.
+    pub r_min: f64,
+    /// Largest `r`.
+    pub r_max: f64,
+    /// Lowest `z`.
+    pub z_min: f64,
+    /// Highest `z`.
+    pub z_max: f64,
+}

@@ -1,0 +1,193 @@
+//! Baking a shape map, and reading it as the shaders do.
+
+use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, coverage, exact};
+use crate::error::{Error, Result, Stage};
+use crate::profile::image::MAX_SIDE;
+use crate::profile::{Profile, Shape};
+use glam::DVec2;
+use std::borrow::Cow;
+
+impl MapSource {
+    /// The most accurate source for a profile: exact for an outline, coverage for a raster.
+    #[must_use]
+    pub fn best_for(profile: &Profile) -> Self {
+        match profile.shape {
+            Shape::Outline(_) => Self::Exact,
+            Shape::Raster(_) => Self::Coverage,
+        }
+    }
+}
+
+impl BakeOptions {
+    /// Baking with `rows` rows over the profile's own box.
+    #[must_use]
+    pub fn new(source: MapSource, rows: u32) -> Self {
+        Self {
+            source,
+            rows,
+            reach: 0.0,
+        }
+    }
+}
+
+impl ShapeMap {
+    /// Measures the signed distances to a profile's boundary on a grid of `options.rows` rows.
+    ///
+    /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The axis is no boundary; a raster
+    /// ends at its right, top and bottom borders.
+    ///
+    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers); a raster or outline is first turned into solid and
+    ///   empty texels, solid what is covered by more than one half.
+    /// * [`MapSource::Coverage`]: to the edge found again from anti-aliased pixels; a raster's own pixels are used, whatever
+    ///   `rows` is.
+    /// * [`MapSource::Exact`]: to the outline's segments.
+    ///
+    /// # Errors
+    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than 16384 columns, a raster with
+    /// the source `exact`, a shape that leaves no texel solid.
+    pub fn bake(profile: &Profile, options: &BakeOptions) -> Result<Self> {
+        let BakeOptions {
+            source,
+            rows,
+            reach,
+        } = *options;
+        let fault = |message: String| Error::new(Stage::Map, message);
+        if !(2..=MAX_SIDE).contains(&rows) {
+            return Err(fault(format!("{rows} rows; give 2 to {MAX_SIDE}")).at_key("map_rows"));
+        }
+        if !reach.is_finite() {
+            return Err(fault(format!(
+                "the map cannot reach to {reach}; give a finite radius"
+            )));
+        }
+        // A hair less, so that a radius of columns / rows is not rounded up to one column more.
+        let wanted = (reach.max(profile.radius) * f64::from(rows) - 1e-6)
+            .ceil()
+            .max(2.0);
+        if wanted > f64::from(MAX_SIDE) {
+            return Err(fault(format!(
+                "the map would have {wanted} columns, {MAX_SIDE} is the most; take fewer rows or a narrower shape"
+            ))
+            .at_key("map_rows"));
+        }
+        let columns = wanted as u32;
+        let (width, height) = (columns as usize, rows as usize);
+        let raster = || match &profile.shape {
+            Shape::Outline(outline) => Cow::Owned(outline.rasterize(columns, rows)),
+            Shape::Raster(r) if source == MapSource::Coverage => Cow::Borrowed(r),
+            Shape::Raster(r) if (r.columns, r.rows) == (columns, rows) => Cow::Borrowed(r),
+            Shape::Raster(r) => Cow::Owned(r.resample(columns, rows)),
+        };
+        let (distance, bounds) = match (source, &profile.shape) {
+            (MapSource::Exact, Shape::Outline(outline)) => {
+                (exact::distances(outline, width, height), outline.bounds())
+            }
+            (MapSource::Exact, Shape::Raster(_)) => {
+                return Err(fault(
+                    "an image has no exact outline; take the map source `coverage` or `binary`, or give a drawing or \
+                     polygon"
+                        .into(),
+                ));
+            }
+            (MapSource::Coverage, _) => {
+                let raster = raster();
+                (coverage::distances(&raster, width, height), raster.bounds())
+            }
+            (MapSource::Binary, _) => {
+                let raster = raster();
+                (binary::distances(&raster), raster.bounds())
+            }
+        };
+        let form: Vec<bool> = distance.iter().map(|&d| d <= 0.0).collect();
+        let solid = form.contains(&true);
+        let (Some(bounds), true) = (bounds, solid || source != MapSource::Binary) else {
+            return Err(fault(format!(
+                "at {rows} rows the shape covers no texel; take more rows or a thicker shape"
+            ))
+            .at_key("map_rows"));
+        };
+        Ok(Self {
+            columns,
+            rows,
+            radius: profile.radius,
+            source,
+            distance,
+            form,
+            bounds,
+        })
+    }
+
+    /// `h`: the side of a texel, object units.
+    #[must_use]
+    pub fn texel(&self) -> f64 {
+        1.0 / f64::from(self.rows)
+    }
+
+    /// How far the map covers the half-plane: `0 <= r <= reach`.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        f64::from(self.columns) / f64::from(self.rows)
+    }
+
+    /// The signed distance at `(r, z)`, object units: bilinear between texels, as the shaders read it.
+    ///
+    /// Outside the map, with `c` the nearest point of its rectangle and `l` the distance there: `sqrt(d(c)^2 + l^2)`, which never
+    /// exceeds the distance to a solid that stays within the rectangle; where `d(c)` is negative, `d(c) + l`. Negative `r` is
+    /// the mirrored half.
+    #[must_use]
+    pub fn distance_at(&self, r: f64, z: f64) -> f64 {
+        let p = DVec2::new(r.abs(), z);
+        let c = p.clamp(DVec2::ZERO, DVec2::new(self.reach(), 1.0));
+        let d = self.bilinear(c.x, c.y);
+        let beyond = (p - c).length();
+        if d > 0.0 { d.hypot(beyond) } else { d + beyond }
+    }
+
+    /// The derivative `(dD/dr, dD/dz)` of the bilinear cell that `(r, z)` lies in: not normalised; of length 1 where the
+    /// distances around are exact and the nearest point of the surface is the same.
+    #[must_use]
+    pub fn gradient_at(&self, r: f64, z: f64) -> [f64; 2] {
+        let (cell, x, y) = self.cell(r, z);
+        let [[a, b], [c, d]] = cell;
+        let side = f64::from(self.rows);
+        let across = (b - a) * (1.0 - y) + (d - c) * y;
+        let down = (c - a) * (1.0 - x) + (d - b) * x;
+        [across * side, -down * side]
+    }
+
+    fn bilinear(&self, r: f64, z: f64) -> f64 {
+        let ([[a, b], [c, d]], x, y) = self.cell(r, z);
+        let mix = |p: f64, q: f64, t: f64| p + (q - p) * t;
+        mix(mix(a, b, x), mix(c, d, x), y)
+    }
+
+    /// The four texels around a point (`[row][column]`) and its place between them; texels beyond the border repeat.
+    fn cell(&self, r: f64, z: f64) -> ([[f64; 2]; 2], f64, f64) {
+        let side = f64::from(self.rows);
+        let (u, v) = (r * side - 0.5, (1.0 - z) * side - 0.5);
+        let (x, y) = (u.floor(), v.floor());
+        let texel = |i: f64, j: f64| {
+            let i = i.clamp(0.0, f64::from(self.columns - 1)) as usize;
+            let j = j.clamp(0.0, f64::from(self.rows - 1)) as usize;
+            f64::from(self.distance[j * self.columns as usize + i])
+        };
+        let row = |j: f64| [texel(x, j), texel(x + 1.0, j)];
+        ([row(y), row(y + 1.0)], u - x, v - y)
+    }
+}
+
+impl Bounds {
+    /// The smallest rectangle that contains both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            r_min: self.r_min.min(other.r_min),
+            r_max: self.r_max.max(other.r_max),
+            z_min: self.z_min.min(other.z_min),
+            z_max: self.z_max.max(other.z_max),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

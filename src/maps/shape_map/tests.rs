@@ -1,0 +1,216 @@
+#![allow(clippy::unwrap_used, clippy::panic)]
+use super::*;
+use crate::profile::{Outline, Raster};
+use proptest::prelude::*;
+
+const SOURCES: [MapSource; 3] = [MapSource::Binary, MapSource::Coverage, MapSource::Exact];
+
+fn cylinder() -> Profile {
+    Profile::polygon(&[[0.0, 0.25], [0.25, 0.25], [0.25, 0.75], [0.0, 0.75]], 0.5).unwrap()
+}
+
+fn full_image() -> Profile {
+    let raster = Raster {
+        columns: 8,
+        rows: 16,
+        coverage: vec![1.0; 128],
+    };
+    Profile {
+        shape: Shape::Raster(raster),
+        radius: 0.5,
+    }
+}
+
+#[test]
+fn texels_stand_where_the_contract_says() {
+    let map = ShapeMap::bake(&cylinder(), &BakeOptions::new(MapSource::Exact, 16)).unwrap();
+    assert_eq!((map.columns, map.rows, map.texel()), (8, 16, 1.0 / 16.0));
+    // Texel (6, 1): r = 6.5 / 16, z = 14.5 / 16.
+    let expected = DVec2::new(6.5 / 16.0 - 0.25, 14.5 / 16.0 - 0.75).length();
+    assert!((f64::from(map.distance[8 + 6]) - expected).abs() < 1e-7);
+    assert!(!map.form[8 + 6] && map.form[8 * 8]);
+    assert!((map.distance_at(6.5 / 16.0, 14.5 / 16.0) - expected).abs() < 1e-7);
+    // On the axis, in the middle: the axis is no boundary.
+    assert!((map.distance_at(0.0, 0.5) + 0.25).abs() < 0.04);
+    let [gr, gz] = map.gradient_at(0.4, 0.5);
+    assert!((gr - 1.0).abs() < 1e-6 && gz.abs() < 1e-6);
+    let [gr, gz] = map.gradient_at(0.1, 0.9);
+    assert!(gr.abs() < 1e-6 && (gz - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn binary_distances_run_between_centres() {
+    let map = ShapeMap::bake(&cylinder(), &BakeOptions::new(MapSource::Binary, 16)).unwrap();
+    let row: Vec<f32> = map.distance[8 * 8..8 * 9]
+        .iter()
+        .map(|d| d * 16.0)
+        .collect();
+    assert_eq!(row, [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn the_borders_of_an_image_are_boundaries_and_the_axis_is_none() {
+    for source in [MapSource::Binary, MapSource::Coverage] {
+        let map = ShapeMap::bake(
+            &full_image(),
+            &BakeOptions {
+                reach: 0.7,
+                ..BakeOptions::new(source, 16)
+            },
+        )
+        .unwrap();
+        assert_eq!(map.columns, 12);
+        let shift = if source == MapSource::Binary {
+            0.0
+        } else {
+            -0.5
+        };
+        let row: Vec<f64> = map.distance[12 * 8..12 * 9]
+            .iter()
+            .map(|&d| f64::from(d) * 16.0 - shift)
+            .collect();
+        let expected = [
+            -7.0, -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0,
+        ];
+        for (got, wanted) in row.iter().zip(expected) {
+            assert!((got - wanted).abs() < 1e-5, "{source:?}: {row:?}");
+        }
+    }
+}
+
+#[test]
+fn wider_maps_agree_with_narrow_ones() {
+    for source in SOURCES {
+        let narrow = ShapeMap::bake(&cylinder(), &BakeOptions::new(source, 32)).unwrap();
+        let wide = ShapeMap::bake(
+            &cylinder(),
+            &BakeOptions {
+                reach: 0.9,
+                ..BakeOptions::new(source, 32)
+            },
+        )
+        .unwrap();
+        assert_eq!((wide.columns, wide.radius), (29, 0.5));
+        for row in 0..32 {
+            let (a, b) = (
+                &narrow.distance[row * 16..][..16],
+                &wide.distance[row * 29..][..16],
+            );
+            assert_eq!(a, b, "{source:?}");
+        }
+    }
+}
+
+#[test]
+fn faults_are_named() {
+    let bake = |p: &Profile, o: BakeOptions| ShapeMap::bake(p, &o).unwrap_err().to_string();
+    let new = BakeOptions::new;
+    assert!(bake(&full_image(), new(MapSource::Exact, 64)).contains("coverage"));
+    assert!(bake(&cylinder(), new(MapSource::Exact, 1)).contains("map_rows"));
+    assert!(bake(&cylinder(), new(MapSource::Exact, 1 << 20)).contains("map_rows"));
+    assert!(
+        bake(
+            &cylinder(),
+            BakeOptions {
+                reach: f64::NAN,
+                ..new(MapSource::Exact, 64)
+            }
+        )
+        .contains("finite")
+    );
+    assert!(
+        bake(
+            &cylinder(),
+            BakeOptions {
+                reach: 1e9,
+                ..new(MapSource::Exact, 64)
+            }
+        )
+        .contains("columns")
+    );
+    let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
+    assert!(bake(&thin, new(MapSource::Binary, 16)).contains("no texel"));
+    assert!(ShapeMap::bake(&thin, &new(MapSource::Exact, 16)).is_ok());
+}
+
+#[test]
+fn the_same_on_any_number_of_threads() {
+    for source in SOURCES {
+        let options = BakeOptions::new(source, 200);
+        let many = ShapeMap::bake(&cylinder(), &options).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(1)
+            .build()
+            .unwrap();
+        assert_eq!(
+            pool.install(|| ShapeMap::bake(&cylinder(), &options))
+                .unwrap(),
+            many
+        );
+    }
+}
+
+fn star() -> impl Strategy<Value = Profile> {
+    prop::collection::vec(0.08f64..0.34, 3..12).prop_map(|radii| {
+        let n = radii.len() as f64;
+        let points: Vec<[f64; 2]> = radii
+            .iter()
+            .zip(0..)
+            .map(|(r, k)| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / n) * *r)
+            .map(|p| [0.35 + p.x, 0.5 + p.y])
+            .collect();
+        Profile::polygon(&points, 0.7).unwrap()
+    })
+}
+
+fn outline(profile: &Profile) -> &Outline {
+    match &profile.shape {
+        Shape::Outline(o) => o,
+        Shape::Raster(_) => panic!("a polygon is an outline"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    // Exact: each texel holds the outline's own distance, never more, less by no more than 32 bits cost.
+    #[test]
+    fn exact_maps_hold_the_outlines_distances(profile in star()) {
+        let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();
+        for (k, &d) in map.distance.iter().enumerate() {
+            let p = DVec2::new(((k % 28) as f64 + 0.5) / 40.0, 1.0 - ((k / 28) as f64 + 0.5) / 40.0);
+            let exact = outline(&profile).signed_distance(p);
+            prop_assert!(f64::from(d) <= exact + 1e-12 && f64::from(d) > exact - 1e-7);
+            prop_assert_eq!(map.form[k], exact <= 0.0);
+        }
+    }
+
+    // Between texels bilinear values stay within h / sqrt(2) of the truth, and beyond the map they never exceed it by more.
+    #[test]
+    fn reconstruction_is_bounded(profile in star(), r in -1.5f64..1.5, z in -1.0f64..2.0) {
+        let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();
+        let exact = outline(&profile).signed_distance(DVec2::new(r.abs(), z));
+        let read = map.distance_at(r, z);
+        let slack = map.texel() * std::f64::consts::FRAC_1_SQRT_2 + 1e-6;
+        prop_assert!(read <= exact + slack, "{} for {}", read, exact);
+        if r.abs() <= 0.7 && (0.0..=1.0).contains(&z) {
+            prop_assert!(read >= exact - slack, "{} for {}", read, exact);
+        }
+    }
+
+    // Distances change no faster than the way between texels.
+    #[test]
+    fn every_source_is_lipschitz(profile in star()) {
+        for source in SOURCES {
+            let map = ShapeMap::bake(&profile, &BakeOptions::new(source, 40)).unwrap();
+            for row in map.distance.chunks(28) {
+                for pair in row.windows(2) {
+                    let step = f64::from(pair[1] - pair[0]).abs() * 40.0;
+                    // Coverage: the lines of neighbouring pixels do not quite meet at corners.
+                    let limit = if source == MapSource::Coverage { 1.5 } else { 1.0 + 1e-4 };
+                    prop_assert!(step <= limit, "{:?}: {}", source, step);
+                }
+            }
+        }
+    }
+}

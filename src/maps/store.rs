@@ -1,0 +1,232 @@
+//! Shape maps as texels of the formats that the GPU reads.
+
+use super::rounding::round_down_half;
+use super::{MapFormat, ShapeMap};
+use half::f16;
+
+/// A shape map's texels, row by row from the top, tightly packed, native byte order.
+///
+/// | format | texel | distance in object units |
+/// |---|---|---|
+/// | [`MapFormat::Rgba8`] | `R8G8B8A8_UNORM`: R, G = unit gradient `(g_r, g_z) * 0.5 + 0.5`; B = unsigned distance; A = form, 255 solid, 0 empty (papers) | `B * scale` |
+/// | [`MapFormat::R16`] | `R16_SFLOAT`, signed | as stored (`scale` = 1) |
+/// | [`MapFormat::R32`] | `R32_SFLOAT`, signed | as stored (`scale` = 1) |
+///
+/// A stored distance, read back as the table says, never exceeds the map's; of rgba8 that holds for distances that are not
+/// negative, the others are stored as 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EncodedMap {
+    /// Texels along `r`.
+    pub columns: u32,
+    /// Texels along `z`; row 0 is the top.
+    pub rows: u32,
+    /// How to read the bytes.
+    pub format: MapFormat,
+    /// Object units that a stored 1 means.
+    pub scale: f32,
+    /// The texels.
+    pub bytes: Vec<u8>,
+}
+
+impl MapFormat {
+    /// Bytes per texel.
+    #[must_use]
+    pub fn texel_bytes(self) -> usize {
+        match self {
+            Self::Rgba8 | Self::R32 => 4,
+            Self::R16 => 2,
+        }
+    }
+}
+
+impl EncodedMap {
+    /// The distances as a shader reads them, object units.
+    #[must_use]
+    pub fn distances(&self) -> Vec<f32> {
+        let half = |t: &[u8]| f16::from_ne_bytes([t[0], t[1]]).to_f32();
+        let single = |t: &[u8]| f32::from_ne_bytes([t[0], t[1], t[2], t[3]]);
+        let texels = self.bytes.chunks_exact(self.format.texel_bytes());
+        match self.format {
+            MapFormat::Rgba8 => texels.map(|t| unpack_distance(t[2], self.scale)).collect(),
+            MapFormat::R16 => texels.map(half).collect(),
+            MapFormat::R32 => texels.map(single).collect(),
+        }
+    }
+}
+
+impl ShapeMap {
+    /// The map's texels in one of the GPU's formats.
+    #[must_use]
+    pub fn encode(&self, format: MapFormat) -> EncodedMap {
+        let (scale, bytes) = match format {
+            MapFormat::Rgba8 => self.encode_rgba8(),
+            MapFormat::R16 => {
+                let texels = self.distance.iter();
+                let bytes = texels
+                    .flat_map(|&d| round_down_half(d).to_ne_bytes())
+                    .collect();
+                (1.0, bytes)
+            }
+            MapFormat::R32 => (1.0, bytemuck::cast_slice(&self.distance).to_vec()),
+        };
+        EncodedMap {
+            columns: self.columns,
+            rows: self.rows,
+            format,
+            scale,
+            bytes,
+        }
+    }
+
+    /// The largest distance in the map, object units: the papers' scale, in which their extension and bevel are given.
+    #[must_use]
+    pub fn largest_distance(&self) -> f32 {
+        self.distance
+            .iter()
+            .copied()
+            .filter(|d| d.is_finite())
+            .fold(0.0, f32::max)
+    }
+
+    fn encode_rgba8(&self) -> (f32, Vec<u8>) {
+        let largest = self.largest_distance();
+        // A map without any empty texel stores zeros, whatever the scale.
+        let scale = if largest > 0.0 { largest } else { 1.0 };
+        let gradients = self.gradients();
+        let bytes = self
+            .distance
+            .iter()
+            .zip(&self.form)
+            .zip(gradients)
+            .flat_map(|((&d, &solid), [gr, gz])| {
+                let pack = |g: f32| ((g * 0.5 + 0.5) * 255.0).round() as u8;
+                [
+                    pack(gr),
+                    pack(gz),
+                    pack_distance(d, scale),
+                    if solid { 255 } else { 0 },
+                ]
+            })
+            .collect();
+        (scale, bytes)
+    }
+
+    /// Unit gradient `(g_r, g_z)` at each texel's centre: central differences of the distances (one-sided at the border,
+    /// mirrored at the axis), 0 where they cancel.
+    #[must_use]
+    pub fn gradients(&self) -> Vec<[f32; 2]> {
+        let (columns, rows) = (self.columns as usize, self.rows as usize);
+        let at = |i: usize, j: usize| f64::from(self.distance[j * columns + i]);
+        let slope = |low: f64, high: f64, steps: usize| {
+            let difference = high - low;
+            if difference.is_finite() {
+                difference / steps.max(1) as f64
+            } else {
+                0.0
+            }
+        };
+        (0..columns * rows)
+            .map(|k| {
+                let (i, j) = (k % columns, k / columns);
+                let (i1, j0, j1) = (
+                    (i + 1).min(columns - 1),
+                    j.saturating_sub(1),
+                    (j + 1).min(rows - 1),
+                );
+                // Left of the first texel stands its own mirror image, one texel away.
+                let (i0, across) = if i == 0 { (0, 2) } else { (i - 1, i1 + 1 - i) };
+                let gr = slope(at(i0, j), at(i1, j), across);
+                let gz = slope(at(i, j1), at(i, j0), j1 - j0);
+                let length = gr.hypot(gz);
+                if length > 0.0 {
+                    [(gr / length) as f32, (gz / length) as f32]
+                } else {
+                    [0.0; 2]
+                }
+            })
+            .collect()
+    }
+}
+
+/// The largest byte whose distance, as a shader computes it, is not above `d`.
+fn pack_distance(d: f32, scale: f32) -> u8 {
+    let mut byte = (d.max(0.0) / scale * 255.0).min(255.0) as u8;
+    while byte > 0 && unpack_distance(byte, scale) > d {
+        byte -= 1;
+    }
+    byte
+}
+
+/// What a byte of the channel B means, as a shader computes it from the normalised value.
+pub(super) fn unpack_distance(byte: u8, scale: f32) -> f32 {
+    f32::from(byte) / 255.0 * scale
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::maps::{BakeOptions, MapSource};
+    use crate::profile::Profile;
+
+    fn maps() -> Vec<ShapeMap> {
+        let points: Vec<[f64; 2]> = (0..=64)
+            .map(|i| f64::from(i) * std::f64::consts::PI / 64.0)
+            .map(|a| [0.37 * a.sin(), 0.5 - 0.37 * a.cos()])
+            .collect();
+        let ball = Profile::polygon(&points, 0.5).unwrap();
+        [MapSource::Binary, MapSource::Coverage, MapSource::Exact]
+            .map(|s| ShapeMap::bake(&ball, &BakeOptions::new(s, 100)).unwrap())
+            .to_vec()
+    }
+
+    #[test]
+    fn a_stored_distance_never_exceeds_the_true_one() {
+        for map in maps() {
+            let half = map.encode(MapFormat::R16);
+            let single = map.encode(MapFormat::R32);
+            let byte = map.encode(MapFormat::Rgba8);
+            assert_eq!(half.bytes.len(), map.distance.len() * 2);
+            let [half, single, bytes] = [half, single, byte.clone()].map(|e| e.distances());
+            for (k, &d) in map.distance.iter().enumerate() {
+                let (h, s, b) = (half[k], single[k], bytes[k]);
+                assert!(h <= d && h > d - 1e-3, "half {h} for {d}");
+                assert_eq!(s, d);
+                assert!(
+                    b <= d.max(0.0) && b > d - byte.scale / 254.0,
+                    "byte {b} for {d}"
+                );
+                assert_eq!(byte.bytes[4 * k + 3] == 255, d <= 0.0);
+            }
+            assert!(
+                byte.bytes.chunks(4).any(|t| t[2] >= 254),
+                "the scale is used to its end"
+            );
+        }
+    }
+
+    #[test]
+    fn gradients_point_away_from_the_middle_of_a_ball() {
+        for map in maps() {
+            let g = map.gradients();
+            for (k, [gr, gz]) in g.into_iter().enumerate() {
+                let (i, j) = (k % map.columns as usize, k / map.columns as usize);
+                let r = (i as f64 + 0.5) * map.texel();
+                let z = 1.0 - (j as f64 + 0.5) * map.texel();
+                let along = glam::DVec2::new(r, z - 0.5);
+                if (along.length() - 0.37).abs() > 0.1 {
+                    continue;
+                }
+                let cos = along
+                    .normalize()
+                    .dot(glam::DVec2::new(f64::from(gr), f64::from(gz)));
+                let limit = if map.source == MapSource::Binary {
+                    0.7
+                } else {
+                    0.995
+                };
+                assert!(cos > limit, "{:?} at {along}: {cos}", map.source);
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! The exact Euclidean distance transform of a two-valued grid, in linear time.
+//!
+//! Each cell gets the squared distance between its centre and the nearest centre of the other value. Along rows that is
+//! counting; down columns it is the lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012; Meijster, Roerdink &
+//! Hesselink 2000), found in integers without a division. Both signs come out of one pass: within a run of equal cells of a
+//! column nothing beyond the run's two ends can be nearest, because there the other value begins at distance 0.
+
+use rayon::prelude::*;
+
+/// What lies beyond the grid's borders: cells of value `false`, or nothing that counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Surroundings {
+    /// Beyond the left border there is `false`.
+    pub left: bool,
+    /// Beyond the other three borders there is `false`.
+    pub others: bool,
+}
+
+/// The result where there is no cell of the other value at all.
+pub const NONE: u32 = u32::MAX;
+
+/// Columns handled together: one cache line of distances per row.
+const STRIP: usize = 16;
+
+/// For each cell of `form` (row by row, `columns` to the row) the squared distance, in cells, from its centre to the centre of
+/// the nearest cell of the other value; [`NONE`] where there is none.
+///
+/// Exact for grids up to 32768 cells on a side. The same for any number of threads. An incomplete last row is left out.
+#[must_use]
+pub fn squared_to_other(form: &[bool], columns: usize, around: Surroundings) -> Vec<u32> {
+    if columns == 0 {
+        return Vec::new();
+    }
+    let rows = form.len() / columns;
+    let mut along_rows = vec![NONE; rows * columns];
+    along_rows
+        .par_chunks_mut(columns)
+        .zip(form.par_chunks(columns))
+        .for_each(|(out, line)| count_along_row(line, around, out));
+    let strips: Vec<Vec<u32>> = (0..columns.div_ceil(STRIP))
+        .into_par_iter()
+        .map(|s| {
+            let from = s * STRIP;
+            let width = STRIP.min(columns - from);
+            let mut strip = Vec::with_capacity(rows * STRIP);
+            for line in along_rows.chunks_exact(columns) {
+                strip.extend_from_slice(&line[from..from + width]);
+            }
+            let mut envelope = Envelope::default();
+            for column in 0..width {
+                let solid = |row: usize| form[row * columns + from + column];
+                envelope.transform_column(&mut strip, column, width, rows, solid, around.others);
+            }
+            strip
+        })
+        .collect();
+    along_rows
+        .par_chunks_mut(columns)
+        .enumerate()
+        .for_each(|(row, out)| {
+            for (piece, strip) in out.chunks_mut(STRIP).zip(&strips) {
+                piece.copy_from_slice(&strip[row * piece.len()..][..piece.len()]);
+            }
+        });
+    along_rows
+}
+
+/// Distance along the row to the nearest cell of the other value, [`NONE`] where the row has none.
+fn count_along_row(line: &[bool], around: Surroundings, out: &mut [u32]) {
+    let mut start = 0;
+    while start < line.len() {
+        let value = line[start];
+        let length = line[start..].iter().take_while(|&&v| v == value).count();
+        let end = start + length;
+        let left = start > 0 || (value && around.left);
+        let right = end < line.len() || (value && around.others);
+        let run = &mut out[start..end];
+        match (left, right) {
+            (true, true) => {
+                for (k, d) in run.iter_mut().enumerate() {
+                    *d = (k + 1).min(length - k) as u32;
+                }
+            }
+            (true, false) => run.iter_mut().zip(1..).for_each(|(d, k)| *d = k),
+            (false, true) => run.iter_mut().rev().zip(1..).for_each(|(d, k)| *d = k),
+            (false, false) => {}
+        }
+        start = end;
+    }
+}
+
+/// A stack of parabolas `height + (y - at)^2`, each the lowest somewhere between its neighbours.
+#[derive(Default)]
+struct Envelope {
+    at: Vec<i64>,
+    height: Vec<i64>,
+}
+
+impl Envelope {
+    /// Turns one column of row distances into squared distances, run by run of equal cells.
+    fn transform_column(
+        &mut self,
+        strip: &mut [u32],
+        column: usize,
+        width: usize,
+        rows: usize,
+        solid: impl Fn(usize) -> bool,
+        beyond: bool,
+    ) {
+        let mut start = 0;
+        while start < rows {
+            let value = solid(start);
+            let mut end = start + 1;
+            while end < rows && solid(end) == value {
+                end += 1;
+            }
+            self.at.clear();
+            self.height.clear();
+            if start > 0 || (value && beyond) {
+                self.push(start as i64 - 1, 0);
+            }
+            for row in start..end {
+                let d = strip[row * width + column];
+                if d != NONE {
+                    self.push(row as i64, i64::from(d) * i64::from(d));
+                }
+            }
+            if end < rows || (value && beyond) {
+                self.push(end as i64, 0);
+            }
+            self.lowest(start, end, |row, lowest| {
+                strip[row * width + column] = lowest;
+            });
+            start = end;
+        }
+    }
+
+    /// Adds a parabola right of all others, and drops those that it leaves nowhere the lowest.
+    fn push(&mut self, at: i64, height: i64) {
+        while let [.., a0, a1] = self.at[..] {
+            let [.., h0, h1] = self.height[..] else { break };
+            // Twice where neighbours cross, as fractions: the middle one is nowhere the lowest if it meets the new one no later
+            // than it met the one before.
+            let (n0, d0) = (h1 + a1 * a1 - h0 - a0 * a0, a1 - a0);
+            let (n1, d1) = (height + at * at - h1 - a1 * a1, at - a1);
+            if n1 * d0 > n0 * d1 {
+                break;
+            }
+            self.at.pop();
+            self.height.pop();
+        }
+        self.at.push(at);
+        self.height.push(height);
+    }
+
+    /// The lowest value at each row of the run, in order.
+    fn lowest(&self, start: usize, end: usize, mut put: impl FnMut(usize, u32)) {
+        let mut parabolas = self.at.iter().zip(&self.height);
+        let Some((mut at, mut height)) = parabolas.next() else {
+            return;
+        };
+        let mut next = parabolas.next();
+        for row in start..end {
+            let y = row as i64;
+            let mut lowest = height + (y - at) * (y - at);
+            while let Some((a, h)) = next {
+                let other = h + (y - a) * (y - a);
+                if other > lowest {
+                    break;
+                }
+                (at, height, lowest) = (a, h, other);
+                next = parabolas.next();
+            }
+            put(row, u32::try_from(lowest).unwrap_or(NONE));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const OPEN: Surroundings = Surroundings {
+        left: false,
+        others: false,
+    };
+
+    fn brute_force(form: &[bool], columns: usize, around: Surroundings) -> Vec<u32> {
+        let rows = form.len() / columns;
+        let value = |x: i64, y: i64| {
+            let inside = (0..columns as i64).contains(&x) && (0..rows as i64).contains(&y);
+            if inside {
+                Some(form[y as usize * columns + x as usize])
+            } else if x < 0 {
+                // Corners beyond the left belong to the left.
+                around.left.then_some(false)
+            } else {
+                around.others.then_some(false)
+            }
+        };
+        (0..form.len())
+            .map(|k| {
+                let (x, y) = ((k % columns) as i64, (k / columns) as i64);
+                let mut best = u64::from(NONE);
+                for v in -1..=rows as i64 {
+                    for u in -1..=columns as i64 {
+                        if value(u, v).is_some_and(|o| o != form[k]) {
+                            best = best.min(((u - x).pow(2) + (v - y).pow(2)) as u64);
+                        }
+                    }
+                }
+                best as u32
+            })
+            .collect()
+    }
+
+    proptest! {
+        #[test]
+        fn equals_brute_force(
+            columns in 1usize..24,
+            density in 0.0f64..1.0,
+            noise in prop::collection::vec(0.0f64..1.0, 1..400),
+            left: bool,
+            others: bool,
+        ) {
+            let rows = noise.len().div_ceil(columns);
+            let form: Vec<bool> =
+                (0..rows * columns).map(|k| noise[k % noise.len()] < density * density).collect();
+            let around = Surroundings { left, others };
+            prop_assert_eq!(squared_to_other(&form, columns, around), brute_force(&form, columns, around));
+        }
+
+        #[test]
+        fn equals_imageproc(
+            columns in 2u32..60,
+            rows in 2u32..60,
+            spots in prop::collection::vec((0u32..60, 0u32..60), 1..20),
+        ) {
+            use imageproc::distance_transform::euclidean_squared_distance_transform;
+            let mut picture = image::GrayImage::new(columns, rows);
+            for (x, y) in spots {
+                picture.put_pixel(x % columns, y % rows, image::Luma([255]));
+            }
+            let theirs = euclidean_squared_distance_transform(&picture);
+            let form: Vec<bool> = picture.pixels().map(|p| p.0[0] > 0).collect();
+            let ours = squared_to_other(&form, columns as usize, OPEN);
+            for ((ours, theirs), solid) in ours.iter().zip(theirs.pixels()).zip(&form) {
+                if !solid {
+                    prop_assert_eq!(f64::from(*ours), theirs.0[0]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_value_alone_has_no_other() {
+        assert!(
+            squared_to_other(&[false; 12], 4, OPEN)
+                .iter()
+                .all(|&d| d == NONE)
+        );
+        assert!(
+            squared_to_other(&[true; 12], 4, OPEN)
+                .iter()
+                .all(|&d| d == NONE)
+        );
+        assert_eq!(squared_to_other(&[], 4, OPEN), []);
+        let all = Surroundings {
+            left: true,
+            others: true,
+        };
+        assert_eq!(
+            squared_to_other(&[true; 9], 3, all),
+            [1, 1, 1, 1, 4, 1, 1, 1, 1]
+        );
+        let mirror = Surroundings {
+            left: false,
+            others: true,
+        };
+        assert_eq!(
+            squared_to_other(&[true; 9], 3, mirror),
+            [1, 1, 1, 4, 4, 1, 1, 1, 1]
+        );
+    }
+
+    #[test]
+    fn long_distances_are_exact() {
+        let columns = 30_000;
+        let mut form = vec![false; columns * 3];
+        form[0] = true;
+        let d = squared_to_other(&form, columns, OPEN);
+        assert_eq!(d[columns * 3 - 1], 29_999 * 29_999 + 4);
+    }
+
+    #[test]
+    fn the_same_on_any_number_of_threads() {
+        let form: Vec<bool> = (0..200 * 150)
+            .map(|k: usize| k.wrapping_mul(2_654_435_761) % 97 < 3)
+            .collect();
+        let many = squared_to_other(&form, 200, OPEN);
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        assert!(one.is_ok_and(|pool| pool.install(|| squared_to_other(&form, 200, OPEN)) == many));
+    }
+}

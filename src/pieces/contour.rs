@@ -1,0 +1,254 @@
+//! The contour `F = d - w = 0` of an outline within the box, as chains that keep every corner.
+
+use super::chain::{Chain, Parts};
+use super::offset::{Corner, Layer, Trimmer};
+use super::tree::Tree;
+use crate::error::{Error, Result, Stage};
+use crate::profile::{Outline, Segment};
+use crate::scene::Offset;
+use glam::DVec2;
+
+/// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and where the box's floor and ceiling cut it.
+///
+/// The side faces of the box are not part of it (they are not turned): whoever draws clips the ray there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contour {
+    /// Curves that do not cross, solid on the left.
+    pub chains: Vec<Chain>,
+}
+
+/// What of an outline does not depend on the offset, prepared once.
+#[derive(Clone, Debug)]
+pub struct ContourSource {
+    /// The surface: all but what lies on the axis, each loop in its order.
+    segments: Vec<Segment>,
+    /// The corner before each segment, where a curve begins with it on the axis, and the one after it.
+    corners: Vec<[Option<Corner>; 2]>,
+    tree: Tree,
+}
+
+/// What is nearer to the box's floor or ceiling than this lies in it.
+const FACE: f64 = 1e-9;
+
+impl ContourSource {
+    /// Prepares an outline.
+    ///
+    /// # Errors
+    /// [`Stage::Profile`] when no part of it is off the axis, or a point is not finite.
+    pub fn new(outline: &Outline) -> Result<Self> {
+        let snap = |p: DVec2| {
+            let near = |v: f64| {
+                let face = v.round();
+                let on_face = (face == 0.0 || face == 1.0) && (v - face).abs() < FACE;
+                if on_face { face } else { v }
+            };
+            DVec2::new(if p.x < FACE { 0.0 } else { p.x }, near(p.y))
+        };
+        let mut segments = Vec::new();
+        let mut corners = Vec::new();
+        for points in &outline.loops {
+            let first = segments.len();
+            for (k, &a) in points.iter().enumerate() {
+                let (a, b) = (snap(a), snap(points[(k + 1) % points.len()]));
+                if a.x.max(b.x) > 0.0 && a != b {
+                    segments.push(Segment { a, b });
+                }
+            }
+            corners_of(&segments[first..], &mut corners);
+        }
+        if !segments.iter().all(|s| s.a.is_finite() && s.b.is_finite()) {
+            return Err(Error::new(
+                Stage::Profile,
+                "a point of the outline is not finite; give numbers",
+            ));
+        }
+        if segments.is_empty() {
+            return Err(Error::new(
+                Stage::Profile,
+                "the profile has no surface; give one with a solid part off the axis",
+            ));
+        }
+        let tree = Tree::new(&segments);
+        Ok(Self {
+            segments,
+            corners,
+            tree,
+        })
+    }
+
+    /// The contour of the profile under an offset. It has no chain where nothing is left of the solid within the box.
+    ///
+    /// # Errors
+    /// [`Stage::Profile`] when the contour cannot be closed: loops that cross, or numbers that are not finite.
+    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = *offset;
+        let plain = extend == 0.0 && (bevel == 0.0 || chamfer <= 0.0);
+        // Curves that touch without crossing have no use for an exact offset: one that is wrong by a few ten-thousandths of a texel will do.
+        let trials = [0.0, 1e-7, -1e-7, 3e-7, -3e-7, 1e-6, -1e-6];
+        let finite = extend.is_finite() && bevel.is_finite() && chamfer.is_finite();
+        let found = if plain {
+            close(self.plain())
+        } else {
+            trials.iter().filter(|_| finite).find_map(|shift| {
+                close(self.moved(&Offset {
+                    extend: extend + shift,
+                    ..*offset
+                }))
+            })
+        };
+        found.map(|chains| Contour { chains }).ok_or_else(|| {
+            Error::new(
+                Stage::Profile,
+                "the contour does not close; give loops that do not cross, and finite offsets",
+            )
+        })
+    }
+
+    /// The outline itself.
+    fn plain(&self) -> Parts {
+        let mut parts = Parts::default();
+        for s in &self.segments {
+            if let Some([a, b]) = clipped(s) {
+                parts.line(a, b);
+            }
+        }
+        parts
+    }
+
+    /// The outline moved by `w`.
+    fn moved(&self, offset: &Offset) -> Parts {
+        let mut parts = Parts::default();
+        let mut trimmer = Trimmer::default();
+        let mut layer = |alpha, beta, low, high| {
+            let layer = Layer {
+                alpha,
+                beta,
+                low,
+                high,
+            };
+            if high > low {
+                trimmer.layer(layer, &self.segments, &self.corners, &self.tree, &mut parts);
+            }
+        };
+        let (e, b) = (offset.extend, offset.bevel);
+        let c = if b == 0.0 {
+            0.0
+        } else {
+            offset.chamfer.clamp(0.0, 1.0)
+        };
+        layer(e + b * c, 0.0, 0.0, 1.0 - c);
+        layer(e + b, -b, 1.0 - c, 1.0);
+        parts
+    }
+}
+
+fn close(mut parts: Parts) -> Option<Vec<Chain>> {
+    faces(&mut parts)?;
+    parts.join()
+}
+
+/// Corners of one loop's surface.
+fn corners_of(segments: &[Segment], corners: &mut Vec<[Option<Corner>; 2]>) {
+    let n = segments.len();
+    let normal = |s: &Segment| -(s.b - s.a).perp().normalize_or_zero();
+    for (k, s) in segments.iter().enumerate() {
+        let (previous, next) = (&segments[(k + n - 1) % n], &segments[(k + 1) % n]);
+        let own = normal(s);
+        // On the axis the mirrored half goes on: between the two stands the axis itself.
+        let axis = DVec2::new(0.0, own.y.signum());
+        let before = (previous.b != s.a || s.a.x == 0.0).then(|| corner(s.a, axis, own));
+        let after = if next.a != s.b || s.b.x == 0.0 {
+            corner(s.b, own, axis)
+        } else {
+            corner(s.b, own, normal(next))
+        };
+        corners.push([before.flatten(), after]);
+    }
+}
+
+fn corner(point: DVec2, before: DVec2, after: DVec2) -> Option<Corner> {
+    let turn = before.perp_dot(after).atan2(before.dot(after));
+    (turn.abs() > 1e-12).then(|| Corner {
+        point,
+        angle: before.y.atan2(before.x),
+        turn,
+    })
+}
+
+/// The part of a segment between floor and ceiling; none where it lies in one of them: there the face is made anew.
+fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
+    let (low, high) = (s.a.y.min(s.b.y), s.a.y.max(s.b.y));
+    if high <= 0.0 || low >= 1.0 {
+        return None;
+    }
+    let at = |z: f64| {
+        let r = s.a.x + (s.b.x - s.a.x) * ((z - s.a.y) / (s.b.y - s.a.y));
+        DVec2::new(r, z)
+    };
+    let end = |p: DVec2| {
+        if p.y < 0.0 {
+            at(0.0)
+        } else if p.y > 1.0 {
+            at(1.0)
+        } else {
+            p
+        }
+    };
+    Some([end(s.a), end(s.b)])
+}
+
+/// Closes the solid by the box's floor and ceiling.
+///
+/// Where a part ends on the floor the solid begins, seen from the axis, and where one starts it ends; on the ceiling the other way round.
+/// Counting from the axis outwards tells where the face is solid. `None` when the count does not come out.
+fn faces(parts: &mut Parts) -> Option<()> {
+    for face in [0.0, 1.0] {
+        // Change of the count, seen from the axis.
+        let mut events: Vec<(f64, i32)> = Vec::new();
+        for k in 0..parts.len() {
+            let [start, end] = parts.ends(k);
+            let sign = if face == 0.0 { 1 } else { -1 };
+            if start.y == face {
+                events.push((start.x, -sign));
+            }
+            if end.y == face {
+                events.push((end.x, sign));
+            }
+        }
+        events.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+        let mut depth = -events.iter().map(|e| e.1).sum::<i32>();
+        let mut from = 0.0;
+        let mut k = 0;
+        while k < events.len() {
+            let r = events[k].0;
+            let before = depth;
+            while k < events.len() && events[k].0 - r < super::chain::JOINT {
+                depth += events[k].1;
+                k += 1;
+            }
+            match (before, depth) {
+                (0, 1) => from = r,
+                (1, 0) => {
+                    let (a, b) = (DVec2::new(from, face), DVec2::new(r, face));
+                    if r > from {
+                        if face == 0.0 {
+                            parts.line(a, b);
+                        } else {
+                            parts.line(b, a);
+                        }
+                    }
+                }
+                (0, 0) | (1, 1) => {}
+                _ => return None,
+            }
+        }
+        if depth != 0 {
+            return None;
+        }
+    }
+    Some(())
+}

@@ -1,0 +1,97 @@
+//! From a profile and an offset to a few quadrics of revolution, and to the tables that a shader walks.
+//!
+//! The surface `F(r, z) = d(r, z) - w(z) = 0` of a solid is a handful of closed curves of the half-plane. They are found
+//! exactly ([`ContourSource`]), cut into the longest pieces that a quadric
+//!
+//! ```text
+//! G(r, z) = a r^2 + k0 + k1 z + k2 z^2,   a in {-1, 0, 1},   G < 0 in the solid
+//! ```
+//!
+//! follows within a tolerance ([`cut`]), and dealt out to rows of equal height ([`Tables`]). In `(z, r^2)` a ray is a parabola and
+//! a piece a parabola or a horizontal line: their meeting is one quadratic in `t`, the same for cylinders, cones, spheres,
+//! paraboloids, hyperboloids and planes.
+//!
+//! For the rasteriser the pieces are wrapped in shells ([`hull`]); pictures become outlines first ([`outline_of`]).
+//!
+//! Data flows one way: outline → contour → pieces → rows and hull. All of it is cheap enough to be made anew whenever the
+//! offset moves; what depends on the outline alone is prepared once, in the [`ContourSource`].
+
+mod bitmap;
+mod chain;
+mod contour;
+mod fit;
+pub mod hull;
+mod offset;
+pub mod rows;
+mod smooth;
+mod tree;
+pub mod walk;
+
+pub use bitmap::{Traced, outline_of};
+pub use chain::Chain;
+pub use contour::{Contour, ContourSource};
+pub use fit::{CutOptions, cut};
+pub use hull::{Band, Hull, HullOptions};
+pub use rows::{ROWS, Record, Tables};
+pub use walk::{PieceHit, Walk, entering_root, trace_pieces};
+
+#[cfg(test)]
+mod tests;
+
+use glam::DVec2;
+
+/// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its left.
+///
+/// All lengths are object units. Neighbours share their end points to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`: negative in the solid, `grad G = (2 a r, k1 + 2 k2 z)`
+    /// outward. `a` is 1 where the solid lies towards the axis, -1 where it lies away from it, 0 for planes `z = const`.
+    pub quadric: [f64; 4],
+    /// Where the chain enters it, `(r, z)`.
+    pub start: DVec2,
+    /// Where the chain leaves it.
+    pub end: DVec2,
+    /// Least and largest `z`.
+    pub z: [f64; 2],
+    /// Least and largest `r`.
+    pub r: [f64; 2],
+    /// `[cz, cr, low, high]`: a point of the quadric belongs to the piece where `low <= cz z + cr r^2 <= high`.
+    ///
+    /// A range of `z` alone would not do: on a flat piece a rounding of `z` moves `r` far. The left side grows along
+    /// the piece about as its length does, whichever way it runs; the ends are moved outwards by what the rounding of 32-bit
+    /// floats can amount to, so that neighbours overlap and no ray passes between them.
+    pub guard: [f64; 4],
+    /// Number of its chain in the [`Contour`].
+    pub chain: u32,
+    /// The piece before it in its chain; none where the chain begins on the axis.
+    pub previous: Option<u32>,
+    /// The piece after it; none where the chain ends on the axis.
+    pub next: Option<u32>,
+}
+
+impl Piece {
+    /// `r^2` on the quadric at height `z`; of a plane (which has none), NaN.
+    #[must_use]
+    pub fn square_at(&self, z: f64) -> f64 {
+        let [a, k0, k1, k2] = self.quadric;
+        if a == 0.0 {
+            f64::NAN
+        } else {
+            -a * (k0 + z * (k1 + z * k2))
+        }
+    }
+
+    /// Whether it is a plane `z = const`.
+    #[must_use]
+    pub fn is_plane(&self) -> bool {
+        self.quadric[0] == 0.0
+    }
+
+    /// `grad G` at `(r, z)`: outward, not of unit length.
+    #[must_use]
+    pub fn gradient(&self, p: DVec2) -> DVec2 {
+        let [a, _, k1, k2] = self.quadric;
+        DVec2::new(2.0 * a * p.x, k1 + 2.0 * k2 * p.y)
+    }
+}

@@ -1,0 +1,473 @@
+//! The offset contour `d = w(z)`: all curves it can be made of, cut where they meet, those parts kept that nothing is nearer to.
+//!
+//! `w` is linear in `z`, `w = alpha + beta z`, in one or two layers of height. Let `n` be a unit vector away from the solid and `f` a point of the
+//! surface. The point `q = f + omega n` whose own offset is `omega` solves `omega = alpha + beta (f.z + omega n.z)`:
+//!
+//! ```text
+//! omega = (alpha + beta f.z) / (1 - beta n.z).
+//! ```
+//!
+//! * Over a segment `n` is fixed and `f` runs: `q` runs along a straight line.
+//! * About a corner `f` is fixed and `n` turns between the normals of its segments: `q` runs along a conic with a focus in the corner
+//!   (a circle where `beta = 0`), its eccentricity `|beta|`. It is outside (`omega > 0`) at a convex corner, inside at a reflex one.
+//!
+//! Where `1 - beta n.z` is negative (bevels steeper than 1 below the solid) `F` falls away from the surface: the curve runs backwards.
+//!
+//! Every point of the contour lies on such a curve, and a point of a curve lies on the contour if no other part of the surface is nearer than
+//! `|omega|`. This can change only where two curves meet: two lines, a line and a conic, or two conics, whose meetings lie on
+//! the line midway between their foci. All three are solved in closed form; both curves take the very same point, so that their
+//! parts join exactly. A feature's line and the conics of its own ends never meet but at their joints.
+
+use super::chain::{JOINT, Parts};
+use super::tree::Tree;
+use crate::profile::Segment;
+use glam::DVec2;
+use std::f64::consts::{PI, TAU};
+
+/// `w = alpha + beta z` for `low <= z <= high`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer {
+    pub alpha: f64,
+    pub beta: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// A corner of the surface, with the normals before and after it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub point: DVec2,
+    /// Angle of the normal before it.
+    pub angle: f64,
+    /// How far the normal turns: positive at convex corners.
+    pub turn: f64,
+}
+
+/// Conics are divided into parts that turn less than this, so that each has its chord's size.
+const SWEEP: f64 = 0.5;
+/// How far a conic may lie from the chords that stand for it, object units.
+const SAGITTA: f64 = 1e-6;
+/// What is nearer by less than this is not nearer: some roundings of coordinates of size 1.
+const NEARER: f64 = 2e-14;
+/// Parts shorter than this are left out; the joint bridges them.
+const SHORT: f64 = 0.2 * JOINT;
+
+/// A curve on which the contour may run.
+#[derive(Clone, Copy, Debug)]
+enum Curve {
+    /// From `a` to `b`; the parameter runs from 0 to 1.
+    Line { a: DVec2, b: DVec2 },
+    /// `focus + size / (1 - beta sin x) (cos x, sin x)`, `x` the parameter.
+    Conic {
+        focus: DVec2,
+        size: f64,
+        from: f64,
+        to: f64,
+    },
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    curve: Curve,
+    low: DVec2,
+    high: DVec2,
+    /// Neighbours in the surface's order share a feature.
+    feature: u32,
+}
+
+/// The working memory of one layer after the other.
+#[derive(Debug, Default)]
+pub(super) struct Trimmer {
+    candidates: Vec<Candidate>,
+    /// `(candidate, parameter, point)` of each cut.
+    cuts: Vec<(u32, f64, DVec2)>,
+    order: Vec<u32>,
+    active: Vec<u32>,
+}
+
+impl Trimmer {
+    /// Appends the contour's parts within a layer.
+    pub fn layer(
+        &mut self,
+        layer: Layer,
+        segments: &[Segment],
+        corners: &[[Option<Corner>; 2]],
+        tree: &Tree,
+        parts: &mut Parts,
+    ) {
+        self.candidates.clear();
+        for (k, (s, [before, after])) in segments.iter().zip(corners).enumerate() {
+            let feature = 2 * k as u32 + 1;
+            // The corner before a segment that has none after its predecessor: where a curve begins on the axis.
+            if let Some(corner) = before {
+                self.conic(&layer, corner, feature - 1);
+            }
+            self.line(&layer, s, feature);
+            if let Some(corner) = after {
+                self.conic(&layer, corner, feature + 1);
+            }
+        }
+        self.cuts.clear();
+        self.sweep(&layer);
+        self.cuts
+            .sort_unstable_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
+        self.keep(&layer, tree, parts);
+    }
+
+    fn line(&mut self, layer: &Layer, s: &Segment, feature: u32) {
+        let normal = -(s.b - s.a).perp().normalize_or_zero();
+        let divisor = 1.0 - layer.beta * normal.y;
+        if divisor.abs() < 1e-9 {
+            return;
+        }
+        let at = |f: DVec2| f + normal * ((layer.alpha + layer.beta * f.y) / divisor);
+        let (a, b) = if divisor > 0.0 {
+            (at(s.a), at(s.b))
+        } else {
+            (at(s.b), at(s.a))
+        };
+        let Some((a, b)) = clip_line(a, b, layer) else {
+            return;
+        };
+        self.candidates.push(Candidate {
+            curve: Curve::Line { a, b },
+            low: a.min(b) - SHORT,
+            high: a.max(b) + SHORT,
+            feature,
+        });
+    }
+
+    fn conic(&mut self, layer: &Layer, corner: &Corner, feature: u32) {
+        let focus = corner.point;
+        let size = layer.alpha + layer.beta * focus.y;
+        let (from, to) = (corner.angle, corner.angle + corner.turn);
+        // Where it can begin or end: borders of layer and half-plane, and where the divisor changes its sign.
+        let mut ends = vec![from, to];
+        let mut cut = |x: f64| ends.extend(within(x, from, to));
+        for z in [layer.low, layer.high] {
+            let omega = layer.alpha + layer.beta * z;
+            let sine = (z - focus.y) / omega;
+            if sine.abs() <= 1.0 {
+                cut(sine.asin());
+                cut(PI - sine.asin());
+            }
+        }
+        let axis = Curve::Conic {
+            focus,
+            size,
+            from,
+            to,
+        };
+        for x in axis.meets_line(layer.beta, DVec2::X, 0.0) {
+            cut(x);
+        }
+        if layer.beta.abs() >= 1.0 {
+            let x = (1.0 / layer.beta).asin();
+            cut(x);
+            cut(PI - x);
+        }
+        let turn = to - from;
+        let sweeps = (turn.abs() / SWEEP).ceil();
+        ends.extend((1..sweeps as u32).map(|k| from + turn * f64::from(k) / sweeps));
+        ends.sort_unstable_by(|p, q| ((p - q) * turn.signum()).total_cmp(&0.0));
+        for pair in ends.windows(2) {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            let divisor = 1.0 - layer.beta * middle.sin();
+            // Convex corners have their conic outside, reflex ones inside.
+            if divisor.abs() < 1e-6 || (size / divisor > 0.0) != (turn > 0.0) {
+                continue;
+            }
+            let [mut from, mut to] = [pair[0], pair[1]];
+            if divisor < 0.0 {
+                (from, to) = (to, from);
+            }
+            let curve = Curve::Conic {
+                focus,
+                size,
+                from,
+                to,
+            };
+            let inside = curve.point(layer.beta, middle);
+            if inside.x < 0.0 || inside.y < layer.low || inside.y > layer.high {
+                continue;
+            }
+            let [a, b] = curve.ends(layer);
+            let chord = a.distance(b);
+            if chord < SHORT {
+                continue;
+            }
+            self.candidates.push(Candidate {
+                curve,
+                low: a.min(b) - chord,
+                high: a.max(b) + chord,
+                feature,
+            });
+        }
+    }
+
+    /// Cuts all curves where they meet: a plane sweep upwards.
+    fn sweep(&mut self, layer: &Layer) {
+        let Self {
+            candidates,
+            cuts,
+            order,
+            active,
+        } = self;
+        order.clear();
+        order.extend(0..candidates.len() as u32);
+        order.sort_unstable_by(|&j, &k| {
+            let z = |k: u32| candidates[k as usize].low.y;
+            z(j).total_cmp(&z(k)).then(j.cmp(&k))
+        });
+        active.clear();
+        for &k in order.iter() {
+            let own = &candidates[k as usize];
+            active.retain(|&j| candidates[j as usize].high.y >= own.low.y);
+            for &j in active.iter() {
+                let other = &candidates[j as usize];
+                if other.low.x <= own.high.x && own.low.x <= other.high.x {
+                    let (first, second) = (j.min(k), j.max(k));
+                    meet(
+                        layer.beta,
+                        &candidates[first as usize],
+                        &candidates[second as usize],
+                        |x, y, p| {
+                            cuts.push((first, x, p));
+                            cuts.push((second, y, p));
+                        },
+                    );
+                }
+            }
+            active.push(k);
+        }
+    }
+
+    /// Keeps the parts of each curve that lie on the contour.
+    fn keep(&self, layer: &Layer, tree: &Tree, parts: &mut Parts) {
+        let mut cuts = &self.cuts[..];
+        for (k, candidate) in self.candidates.iter().enumerate() {
+            let own = cuts.partition_point(|c| c.0 as usize <= k);
+            let (these, rest) = cuts.split_at(own);
+            cuts = rest;
+            let curve = &candidate.curve;
+            let [begin, end] = curve.ends(layer);
+            let [from, to] = curve.range();
+            let place = |j: usize| match j {
+                0 => (from, begin),
+                j if j > these.len() => (to, end),
+                // A conic that is walked backwards meets its cuts in reverse.
+                j if to < from => (these[these.len() - j].1, these[these.len() - j].2),
+                j => (these[j - 1].1, these[j - 1].2),
+            };
+            for j in 0..=these.len() {
+                let ((x0, a), (x1, b)) = (place(j), place(j + 1));
+                if a.distance_squared(b) < SHORT * SHORT {
+                    continue;
+                }
+                let middle = curve.point(layer.beta, 0.5 * (x0 + x1));
+                let omega = (layer.alpha + layer.beta * middle.y).abs();
+                if tree.any_nearer(middle, omega - NEARER) {
+                    continue;
+                }
+                parts.begin();
+                parts.point(a);
+                if let Curve::Conic { .. } = curve {
+                    let step = (8.0 * SAGITTA / omega.max(1e-12)).sqrt();
+                    let n = ((x1 - x0).abs() / step).ceil().clamp(1.0, 4096.0);
+                    for i in 1..n as u32 {
+                        parts.point(curve.point(layer.beta, x0 + (x1 - x0) * f64::from(i) / n));
+                    }
+                }
+                parts.point(b);
+            }
+        }
+    }
+}
+
+impl Curve {
+    fn range(&self) -> [f64; 2] {
+        match *self {
+            Self::Line { .. } => [0.0, 1.0],
+            Self::Conic { from, to, .. } => [from, to],
+        }
+    }
+
+    fn point(&self, beta: f64, x: f64) -> DVec2 {
+        match *self {
+            Self::Line { a, b } => a.lerp(b, x),
+            Self::Conic { focus, size, .. } => {
+                let (sin, cos) = x.sin_cos();
+                focus + DVec2::new(cos, sin) * (size / (1.0 - beta * sin))
+            }
+        }
+    }
+
+    /// Its ends, exactly on the borders of layer and half-plane where they lie there.
+    fn ends(&self, layer: &Layer) -> [DVec2; 2] {
+        match *self {
+            Self::Line { a, b } => [a, b],
+            Self::Conic { from, to, .. } => [from, to].map(|x| {
+                let mut p = self.point(layer.beta, x);
+                for z in [layer.low, layer.high] {
+                    if (p.y - z).abs() < SHORT {
+                        p.y = z;
+                    }
+                }
+                if p.x < SHORT {
+                    p.x = 0.0;
+                }
+                p
+            }),
+        }
+    }
+
+    /// Parameters at which a conic meets the line `normal . q = offset`, each once, not yet brought into its range:
+    /// `A cos x + B sin x = C`.
+    fn meets_line(
+        &self,
+        beta: f64,
+        normal: DVec2,
+        offset: f64,
+    ) -> impl Iterator<Item = f64> + use<> {
+        let mut found = [None, None];
+        if let Self::Conic { focus, size, .. } = *self {
+            let c = offset - normal.dot(focus);
+            let (a, b) = (size * normal.x, size * normal.y + beta * c);
+            let cosine = c / a.hypot(b);
+            if cosine.abs() <= 1.0 {
+                let (middle, half) = (b.atan2(a), cosine.acos());
+                found = [Some(middle - half), Some(middle + half)];
+            }
+        }
+        found.into_iter().flatten()
+    }
+}
+
+/// An angle brought between two others, if one of its turns lies there (to within rounding).
+fn within(x: f64, from: f64, to: f64) -> Option<f64> {
+    let (low, high) = (from.min(to), from.max(to));
+    let turned = x + ((low - 1e-9 - x) / TAU).ceil() * TAU;
+    (turned <= high + 1e-9).then(|| turned.clamp(low, high))
+}
+
+/// The part of a line within a layer and the half-plane; none where it lies in the box's floor or ceiling, or in the upper border of a
+/// lower layer's neighbour (there the lower one has it).
+fn clip_line(a: DVec2, b: DVec2, layer: &Layer) -> Option<(DVec2, DVec2)> {
+    let level = |z: f64| (a.y - z).abs() < SHORT && (b.y - z).abs() < SHORT;
+    if level(layer.low) || (level(layer.high) && layer.high >= 1.0) {
+        return None;
+    }
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    let mut ends = [a, b];
+    // value >= 0 is within.
+    let mut cut = |va: f64, vb: f64, fix: &dyn Fn(&mut DVec2)| {
+        if va < 0.0 && vb < 0.0 {
+            from = 2.0;
+        } else if va < 0.0 || vb < 0.0 {
+            let x = va / (va - vb);
+            let mut p = a.lerp(b, x);
+            fix(&mut p);
+            if va < 0.0 && x > from {
+                (from, ends[0]) = (x, p);
+            } else if vb < 0.0 && x < to {
+                (to, ends[1]) = (x, p);
+            }
+        }
+    };
+    cut(a.x, b.x, &|p| p.x = 0.0);
+    cut(a.y - layer.low, b.y - layer.low, &|p| p.y = layer.low);
+    cut(layer.high - a.y, layer.high - b.y, &|p| p.y = layer.high);
+    if from >= to {
+        return None;
+    }
+    for p in &mut ends {
+        for z in [layer.low, layer.high] {
+            if (p.y - z).abs() < SHORT {
+                p.y = z;
+            }
+        }
+        if p.x < SHORT {
+            p.x = 0.0;
+        }
+    }
+    (ends[0].distance_squared(ends[1]) >= SHORT * SHORT).then_some((ends[0], ends[1]))
+}
+
+/// Finds where two curves meet: parameter on the first, on the second, point.
+fn meet(beta: f64, first: &Candidate, second: &Candidate, mut found: impl FnMut(f64, f64, DVec2)) {
+    const END: f64 = 1e-9;
+    match (first.curve, second.curve) {
+        (Curve::Line { a, b }, Curve::Line { a: c, b: d }) => {
+            let (u, v) = (b - a, d - c);
+            let cross = u.perp_dot(v);
+            // Parallel ones do not meet, or all along.
+            if cross.abs() <= 1e-14 * u.length() * v.length() {
+                return;
+            }
+            let x = (c - a).perp_dot(v) / cross;
+            let y = (c - a).perp_dot(u) / cross;
+            let (ex, ey) = (END / u.length(), END / v.length());
+            if x > -ex && x < 1.0 + ex && y > -ey && y < 1.0 + ey {
+                found(x.clamp(0.0, 1.0), y.clamp(0.0, 1.0), a + u * x);
+            }
+        }
+        (Curve::Line { a, b }, conic) => {
+            if first.feature.abs_diff(second.feature) > 1 {
+                line_and_conic(beta, a, b, &conic, found);
+            }
+        }
+        (conic, Curve::Line { a, b }) => {
+            if first.feature.abs_diff(second.feature) > 1 {
+                line_and_conic(beta, a, b, &conic, |x, y, p| found(y, x, p));
+            }
+        }
+        (
+            Curve::Conic { focus: f, size, .. },
+            Curve::Conic {
+                focus: g, from, to, ..
+            },
+        ) => {
+            if first.feature == second.feature || f == g {
+                return;
+            }
+            let [low, high] = first.curve.range();
+            let normal = g - f;
+            let offset = 0.5 * normal.dot(f + g);
+            for x in first.curve.meets_line(beta, normal, offset) {
+                let Some(x) = within(x, low, high) else {
+                    continue;
+                };
+                let p = first.curve.point(beta, x);
+                // The offset there is one: on both the point lies on the same side of the surface.
+                let away = (p - g) * (size / (1.0 - beta * x.sin())).signum();
+                let y = away.y.atan2(away.x);
+                if let Some(y) = within(y, from, to) {
+                    found(x, y, p);
+                }
+            }
+        }
+    }
+}
+
+fn line_and_conic(
+    beta: f64,
+    a: DVec2,
+    b: DVec2,
+    conic: &Curve,
+    mut found: impl FnMut(f64, f64, DVec2),
+) {
+    let along = b - a;
+    let normal = along.perp();
+    let [from, to] = conic.range();
+    let slack = 1e-9 / along.length();
+    for x in conic.meets_line(beta, normal, normal.dot(a)) {
+        let Some(x) = within(x, from, to) else {
+            continue;
+        };
+        let p = conic.point(beta, x);
+        let y = (p - a).dot(along) / along.length_squared();
+        if y > -slack && y < 1.0 + slack {
+            found(y.clamp(0.0, 1.0), x, p);
+        }
+    }
+}

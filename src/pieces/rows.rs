@@ -1,0 +1,173 @@
+//! The tables of the search: pieces dealt out to rows of equal height, and a tree of the rows' extents.
+//!
+//! # Layout
+//!
+//! `N` rows: row `i` is `i / N <= z <= (i + 1) / N`.
+//!
+//! * `records`: the pieces, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, piece, 0]`: the quadric, the guard, and
+//!   what only questions off the main path need: the piece's range of `z`, and its number. They stand row by row (a
+//!   piece that touches several rows stands there several times, unless these rows hold the same pieces: then they share), so
+//!   that a row's pieces are one run.
+//! * `rows[i] = first << 12 | count`: that run.
+//! * `nodes`: `[min r^2, max r^2]` of the boundary, first of each row (level 0), then of each 4 rows (level 1), of each 16, and so on;
+//!   `levels[l]` is where level `l` begins. An empty node is `[+inf, -inf]`. The topmost level has at most 4 nodes.
+//!
+//! All extents are a little too large rather than too small (by a millionth). [`trace_pieces`](super::trace_pieces) says how to walk it.
+
+use super::Piece;
+use bytemuck::{Pod, Zeroable};
+
+/// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's order): roundings of 32 bits.
+pub(super) const MARGIN: f64 = 1e-6;
+
+/// A piece, as shaders read it: three vectors of four 32-bit floats.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Record {
+    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`.
+    pub quadric: [f32; 4],
+    /// `[cz, cr, low, high]`: a point counts where `low <= cz z + cr r^2 <= high`.
+    pub guard: [f32; 4],
+    /// `[z0, z1, piece, 0]`: the range of `z`, and the piece's number (exact up to 2^24).
+    pub range: [f32; 4],
+}
+
+impl Record {
+    /// The record of piece number `index`.
+    #[must_use]
+    pub fn new(piece: &Piece, index: usize) -> Self {
+        let [cz, cr, low, high] = piece.guard;
+        Self {
+            quadric: piece.quadric.map(|v| v as f32),
+            guard: [cz as f32, cr as f32, low as f32, high as f32],
+            range: [piece.z[0] as f32, piece.z[1] as f32, index as f32, 0.0],
+        }
+    }
+}
+
+/// The tables of one solid; the [module](self) tells their layout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tables {
+    /// Runs of records: `first << 12 | count` for each row.
+    pub rows: Vec<u32>,
+    /// `[min r^2, max r^2]`, level by level.
+    pub nodes: Vec<[f32; 2]>,
+    /// Where each level of `nodes` begins; its length is the number of levels.
+    pub levels: Vec<u32>,
+    /// Pieces, row by row.
+    pub records: Vec<Record>,
+    /// Largest `r` of the boundary: where it exceeds the reach of the box's sides the box cuts the solid.
+    pub reach: f32,
+}
+
+/// Rows where nothing else is asked for.
+pub const ROWS: u32 = 64;
+
+impl Tables {
+    /// Deals pieces out to `rows` rows (at least 1, at most 4096).
+    #[must_use]
+    pub fn new(pieces: &[Piece], rows: u32) -> Self {
+        let rows = rows.clamp(1, 4096) as usize;
+        let n = rows as f64;
+        let mut members: Vec<Vec<u32>> = vec![Vec::new(); rows];
+        let mut nodes = vec![EMPTY; rows];
+        for (index, piece) in pieces.iter().enumerate() {
+            let row = |z: f64| ((z * n).floor().max(0.0) as usize).min(rows - 1);
+            for i in row(piece.z[0] - MARGIN)..=row(piece.z[1] + MARGIN) {
+                if members[i].len() == MOST {
+                    continue;
+                }
+                members[i].push(index as u32);
+                let [low, high] = squares(piece, i as f64 / n, (i + 1) as f64 / n);
+                let node: &mut [f32; 2] = &mut nodes[i];
+                node[0] = node[0].min(low);
+                node[1] = node[1].max(high);
+            }
+        }
+        let (starts, records) = runs(pieces, &members);
+        let mut levels = vec![0];
+        let mut from = 0;
+        while nodes.len() - from > 4 {
+            let to = nodes.len();
+            let parents: Vec<[f32; 2]> = nodes[from..to]
+                .chunks(4)
+                .map(|four| {
+                    four.iter()
+                        .fold(EMPTY, |m, node| [m[0].min(node[0]), m[1].max(node[1])])
+                })
+                .collect();
+            nodes.extend(parents);
+            levels.push(to as u32);
+            from = to;
+        }
+        Self {
+            rows: starts,
+            nodes,
+            levels,
+            records,
+            reach: pieces.iter().fold(0.0f64, |m, p| m.max(p.r[1])) as f32,
+        }
+    }
+
+    /// Bytes that a shader reads: rows, nodes and records.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        4 * self.rows.len() + 8 * self.nodes.len() + size_of::<Record>() * self.records.len()
+    }
+}
+
+/// Most pieces that a row can hold.
+const MOST: usize = (1 << 12) - 1;
+const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// Runs of each row and the records they run over.
+fn runs(pieces: &[Piece], members: &[Vec<u32>]) -> (Vec<u32>, Vec<Record>) {
+    let mut starts: Vec<u32> = Vec::with_capacity(members.len());
+    let mut records: Vec<Record> = Vec::new();
+    for (i, list) in members.iter().enumerate() {
+        if i > 0 && *list == members[i - 1] {
+            starts.push(starts[i - 1]);
+            continue;
+        }
+        // The end of what stands there may be the beginning of what is wanted.
+        let shared = (0..=list.len().min(records.len()))
+            .rev()
+            .find(|&k| {
+                let tail = &records[records.len() - k..];
+                tail.iter().zip(list).all(|(r, &m)| r.range[2] == m as f32)
+            })
+            .unwrap_or(0);
+        let first = records.len() - shared;
+        starts.push((first as u32) << 12 | list.len() as u32);
+        records.extend(
+            list[shared..]
+                .iter()
+                .map(|&m| Record::new(&pieces[m as usize], m as usize)),
+        );
+    }
+    (starts, records)
+}
+
+/// Least and largest `r^2` of a piece between two heights, widened.
+fn squares(piece: &Piece, from: f64, to: f64) -> [f32; 2] {
+    let [mut low, mut high] = piece.r.map(|r| r * r);
+    if !piece.is_plane() {
+        let ends = [
+            (from - MARGIN).clamp(piece.z[0], piece.z[1]),
+            (to + MARGIN).clamp(piece.z[0], piece.z[1]),
+        ];
+        let squares = ends.map(|z| piece.square_at(z));
+        let [_, _, k1, k2] = piece.quadric;
+        let turn = -0.5 * k1 / k2;
+        let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
+        if ends[0] < turn && turn < ends[1] {
+            let p = piece.square_at(turn);
+            (least, most) = (least.min(p), most.max(p));
+        }
+        // The ends themselves are known better than the quadric gives them.
+        (low, high) = (low.max(least), high.min(most));
+    }
+    // Radii may be off by the margin: (r + m)^2 - r^2.
+    let slack = MARGIN * (1.0 + 2.0 * high.max(0.0).sqrt());
+    [(low - slack) as f32, (high + slack) as f32]
+}

@@ -1,0 +1,184 @@
+//! The contour against its definition: it parts the points with `F < 0` from the others.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use super::*;
+use crate::profile::Outline;
+use crate::reference::samples;
+use crate::scene::Offset;
+use proptest::prelude::*;
+
+/// Twice the number of turns of the boundary round a point, the axis counted as boundary: 2 inside.
+fn turns(contour: &Contour, q: DVec2) -> f64 {
+    let mut sum = 0.0;
+    for chain in &contour.chains {
+        let n = chain.points.len();
+        for k in 0..n {
+            // From the last point of an open chain straight down the axis to its first: that is its mirror's side.
+            let (a, b) = (chain.points[k] - q, chain.points[(k + 1) % n] - q);
+            sum += a.perp_dot(b).atan2(a.dot(b));
+        }
+    }
+    sum / std::f64::consts::PI
+}
+
+fn value(outline: &Outline, offset: &Offset, q: DVec2) -> f64 {
+    let w = offset.extend + offset.bevel * (1.0 - q.y).min(offset.chamfer);
+    outline.signed_distance(q) - w
+}
+
+fn sound(outline: &Outline, offset: Offset) -> Result<(), TestCaseError> {
+    let contour = ContourSource::new(outline).unwrap().contour(&offset);
+    let Ok(contour) = contour else {
+        return Err(TestCaseError::fail(format!("does not close: {offset:?}")));
+    };
+    for i in 0..40 {
+        for j in 0..60 {
+            let q = DVec2::new(
+                f64::from(i) * 0.0203 + 0.0031,
+                f64::from(j) * 0.01637 + 0.0127,
+            );
+            let f = value(outline, &offset, q);
+            if f.abs() < 3e-6 {
+                continue;
+            }
+            let expected = if f < 0.0 { 2.0 } else { 0.0 };
+            let found = turns(&contour, q);
+            prop_assert!(
+                (found - expected).abs() < 1e-6,
+                "{q}: {found} turns, F = {f}, {offset:?}"
+            );
+        }
+    }
+    for chain in &contour.chains {
+        let n = chain.points.len();
+        for k in 0..n {
+            let p = chain.points[k];
+            prop_assert!((0.0..=1.0).contains(&p.y) && p.x >= 0.0);
+            let on_face = p.y == 0.0 || p.y == 1.0;
+            let f = value(outline, &offset, p);
+            prop_assert!(
+                on_face || f.abs() < 2e-8 + 2e-7 * f64::from(u8::from(offset.extend != 0.0)),
+                "{p}: F = {f:e}"
+            );
+        }
+        if !chain.closed {
+            prop_assert!(chain.points[0].x == 0.0 && chain.points[n - 1].x == 0.0);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn contours_part_solid_from_empty(
+        seed in 0u64..100_000,
+        extend in -0.12..0.12f64,
+        bevel in -0.6..0.6f64,
+        chamfer in 0.0..1.2f64,
+        which in 0..4,
+    ) {
+        let outline = samples::random(seed);
+        let (extend, bevel) = match which {
+            0 => (0.0, 0.0),
+            1 => (extend, 0.0),
+            2 => (0.0, bevel),
+            _ => (extend, bevel),
+        };
+        sound(&outline, Offset { extend, bevel, chamfer })?;
+    }
+
+    #[test]
+    fn steep_bevels_too(seed in 0u64..100_000, extend in -0.5..0.1f64, bevel in 0.9..3.0f64, sign in any::<bool>(), chamfer in 0.0..1.2f64) {
+        let outline = samples::random(seed);
+        let bevel = if sign { bevel } else { -bevel };
+        sound(&outline, Offset { extend, bevel, chamfer })?;
+    }
+}
+
+/// Pieces hang together, look outwards, and stay as near to the contour as they promise.
+#[test]
+fn pieces_follow_their_chain() {
+    let options = CutOptions::default();
+    for seed in 0..60 {
+        let outline = samples::random(seed);
+        let offset = Offset {
+            extend: 0.01 * (seed % 4) as f64,
+            ..Offset::default()
+        };
+        let contour = ContourSource::new(&outline)
+            .unwrap()
+            .contour(&offset)
+            .unwrap();
+        let pieces = cut(&contour, &options);
+        assert!(!pieces.is_empty());
+        for (k, piece) in pieces.iter().enumerate() {
+            assert!(piece.z[0] >= 0.0 && piece.z[1] <= 1.0 && piece.z[0] <= piece.z[1]);
+            match piece.next {
+                Some(next) => {
+                    assert_eq!(pieces[next as usize].start, piece.end);
+                    assert_eq!(pieces[next as usize].previous, Some(k as u32));
+                }
+                None => assert_eq!(piece.end.x, 0.0),
+            }
+            let ([a, k0, k1, k2], middle) = (piece.quadric, 0.5 * (piece.z[0] + piece.z[1]));
+            let value = |p: DVec2| a * p.x * p.x + k0 + p.y * (k1 + p.y * k2);
+            for p in [piece.start, piece.end] {
+                assert!(value(p).abs() < 1e-9 * (1.0 + k2.abs()), "{piece:?}");
+                assert!(piece.guards(p.x * p.x, p.y));
+            }
+            let p = if piece.is_plane() {
+                (piece.start + piece.end) * 0.5
+            } else {
+                DVec2::new(piece.square_at(middle).max(0.0).sqrt(), middle)
+            };
+            let f = self::value(&outline, &offset, p);
+            let on_face = p.y == 0.0 || p.y == 1.0;
+            // The chords of the contour's arcs lie a millionth inside.
+            assert!(
+                on_face || f.abs() < options.tolerance + 1.5e-6,
+                "{f} {piece:?}"
+            );
+            if p.x > 1e-6 && !on_face {
+                let outward = piece.gradient(p).normalize() * 1e-4;
+                let (out, inside) = (p + outward, p - outward);
+                let w = |q| self::value(&outline, &offset, q);
+                assert!(w(out) > w(inside), "{piece:?}");
+            }
+        }
+    }
+}
+
+/// What rows and nodes claim contains what is there.
+#[test]
+fn rows_and_nodes_contain_their_pieces() {
+    let contour = ContourSource::new(&samples::glass())
+        .unwrap()
+        .contour(&Offset::default())
+        .unwrap();
+    let pieces = cut(&contour, &CutOptions::default());
+    for rows in [1, 7, 64, 100] {
+        let tables = Tables::new(&pieces, rows);
+        let top = tables.levels.len() - 1;
+        assert!(tables.nodes.len() - tables.levels[top] as usize <= 4);
+        for piece in &pieces {
+            for k in 0..=200 {
+                let p = if piece.is_plane() {
+                    piece.start.lerp(piece.end, f64::from(k) / 200.0)
+                } else {
+                    let z = piece.z[0] + (piece.z[1] - piece.z[0]) * f64::from(k) / 200.0;
+                    DVec2::new(piece.square_at(z).max(0.0).sqrt(), z)
+                };
+                let row = ((p.y * f64::from(rows)) as usize).min(rows as usize - 1);
+                let square = (p.x * p.x) as f32;
+                for (level, &start) in tables.levels.iter().enumerate() {
+                    let [low, high] = tables.nodes[start as usize + (row >> (2 * level))];
+                    assert!(low <= square && square <= high, "{p} level {level}");
+                }
+                let run = tables.rows[row];
+                let records = &tables.records[(run >> 12) as usize..][..(run & 0xfff) as usize];
+                let number = pieces.iter().position(|q| q == piece).unwrap() as f32;
+                assert!(records.iter().any(|r| r.range[2] == number));
+            }
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! Profiles from pictures: what is dark is solid.
+
+use super::interface::Interface;
+use super::{Profile, ProfileAxis, Raster, Shape};
+use crate::error::{Error, Result, Stage};
+use crate::maps::header::Header;
+use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use rayon::prelude::*;
+use std::io::Cursor;
+
+/// Largest width and height of a picture.
+pub(crate) const MAX_SIDE: u32 = 16_384;
+
+/// A profile from the bytes of a PNG or JPEG.
+///
+/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then is, and what is darker
+/// than one half is solid. Width and height are read and checked before anything is decoded.
+///
+/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the form, its axis the left edge.
+pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
+    if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
+        return baked(bytes, &header);
+    }
+    let dark = read_darkness(bytes)?;
+    let raster = half_plane(dark, axis);
+    let solid = raster.coverage.par_iter().filter(|&&c| c > 0.5).count();
+    if solid == 0 {
+        return Err(empty_fault("image"));
+    }
+    if solid == raster.coverage.len() {
+        return Err(full_fault("image"));
+    }
+    Ok(Profile {
+        radius: f64::from(raster.columns) / f64::from(raster.rows),
+        shape: Shape::Raster(raster),
+    })
+}
+
+/// The form of a shape map in its file.
+fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
+    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?.into_rgba8();
+    let raster = Raster {
+        columns: picture.width(),
+        rows: picture.height(),
+        coverage: picture
+            .pixels()
+            .map(|p| f32::from(p.0[3]) / 255.0)
+            .collect(),
+    };
+    Ok(Profile {
+        radius: header.number("radius")?,
+        shape: Shape::Raster(raster),
+    })
+}
+
+/// The failure of a picture without anything dark.
+pub(super) fn empty_fault(what: &str) -> Error {
+    Error::new(
+        Stage::Profile,
+        format!(
+            "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
+             white, or choose the other profile_axis"
+        ),
+    )
+}
+
+/// The failure of a picture that is dark all over.
+pub(super) fn full_fault(what: &str) -> Error {
+    Error::new(
+        Stage::Profile,
+        format!(
+            "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
+             (a plain cylinder: use a polygon)"
+        ),
+    )
+}
+
+/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture.
+fn read_darkness(bytes: &[u8]) -> Result<Raster> {
+    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
+    let (width, height) = (picture.width(), picture.height());
+    if width < 2 || height < 2 {
+        return Err(Error::new(
+            Stage::Profile,
+            format!(
+                "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
+            ),
+        ));
+    }
+    Ok(Raster {
+        columns: width,
+        rows: height,
+        coverage: darkness(&picture),
+    })
+}
+
+/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks for.
+pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<DynamicImage> {
+    let fault = |message: String| Error::new(stage, message);
+    let open = || -> Result<_> {
+        let reader = ImageReader::new(Cursor::new(bytes))
+            .with_guessed_format()
+            .map_err(|e| fault(format!("cannot be read ({e}); give a {kinds} file")))?;
+        match reader.format() {
+            Some(ImageFormat::Png | ImageFormat::Jpeg) => Ok(reader),
+            _ => Err(fault(format!(
+                "is no picture that can be read; give a {kinds} file"
+            ))),
+        }
+    };
+    let broken =
+        |e: image::ImageError| fault(format!("the image is damaged ({e}); save or copy it again"));
+    let (width, height) = open()?.into_dimensions().map_err(broken)?;
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(fault(format!(
+            "the image has {width} x {height} pixels; {MAX_SIDE} x {MAX_SIDE} is the most, scale it down"
+        )));
+    }
+    let mut reader = open()?;
+    // The size is checked already; the decoder's own guess at a limit would refuse large pictures of 16 bits.
+    reader.limits(Limits::no_limits());
+    reader.decode().map_err(broken)
+}
+
+/// Darkness over white from the pixels of any kind of picture.
+fn darkness(picture: &DynamicImage) -> Vec<f32> {
+    const BYTE: f32 = 255.0;
+    const WORD: f32 = 65_535.0;
+    match picture {
+        DynamicImage::ImageLuma8(p) => grey(p.as_raw(), 1, BYTE),
+        DynamicImage::ImageLumaA8(p) => grey(p.as_raw(), 2, BYTE),
+        DynamicImage::ImageRgb8(p) => color(p.as_raw(), 3, BYTE),
+        DynamicImage::ImageRgba8(p) => color(p.as_raw(), 4, BYTE),
+        DynamicImage::ImageLuma16(p) => grey(p.as_raw(), 1, WORD),
+        DynamicImage::ImageLumaA16(p) => grey(p.as_raw(), 2, WORD),
+        DynamicImage::ImageRgb16(p) => color(p.as_raw(), 3, WORD),
+        DynamicImage::ImageRgba16(p) => color(p.as_raw(), 4, WORD),
+        other => color(other.to_rgba16().as_raw(), 4, WORD),
+    }
+}
+
+fn grey<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -> Vec<f32> {
+    values
+        .par_chunks_exact(channels)
+        .map(|p| {
+            let dark = 1.0 - p[0].into() / full;
+            p.get(1).map_or(dark, |&a| dark * (a.into() / full))
+        })
+        .collect()
+}
+
+fn color<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -> Vec<f32> {
+    values
+        .par_chunks_exact(channels)
+        .map(|p| {
+            let dark = 1.0 - luminance([p[0], p[1], p[2]].map(|v| v.into() / full));
+            p.get(3).map_or(dark, |&a| dark * (a.into() / full))
+        })
+        .collect()
+}
+
+/// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
+pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    // Grey comes out exactly as it went in.
+    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+}
+
+/// The part of the picture right of the axis.
+///
+/// With the axis in the middle of an odd width, half a pixel stands on it. Each pixel is then split into 2 x 2, anti-aliased
+/// ones along the edge that runs through them, so that texels stay square and nothing moves.
+fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
+    match axis {
+        ProfileAxis::Left => dark,
+        ProfileAxis::Center if dark.columns.is_multiple_of(2) => {
+            let columns = dark.columns / 2;
+            let coverage = dark
+                .coverage
+                .par_chunks_exact(dark.columns as usize)
+                .flat_map_iter(|row| row[columns as usize..].iter().copied())
+                .collect();
+            Raster {
+                columns,
+                rows: dark.rows,
+                coverage,
+            }
+        }
+        ProfileAxis::Center => Interface::of_picture(&dark).split_right_half(&dark),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use image::{GrayImage, Luma, Rgba, RgbaImage};
+
+    fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
+        let mut out = Cursor::new(Vec::new());
+        picture.into().write_to(&mut out, ImageFormat::Png).unwrap();
+        out.into_inner()
+    }
+
+    fn raster(bytes: &[u8], axis: ProfileAxis) -> Raster {
+        match profile(bytes, axis).unwrap().shape {
+            Shape::Raster(r) => r,
+            Shape::Outline(_) => panic!("an image is a raster"),
+        }
+    }
+
+    /// A picture with a known darkness per pixel, in every kind of pixel that PNG knows.
+    #[test]
+    fn kinds_of_pixels_agree() {
+        let dark = |x: u32, y: u32| if x < 2 && y > 0 { 1.0f32 } else { 0.2 };
+        let grey8 = GrayImage::from_fn(4, 4, |x, y| Luma([(255.0 * (1.0 - dark(x, y))) as u8]));
+        let expected = raster(&png(grey8.clone()), ProfileAxis::Left);
+        assert_eq!((expected.columns, expected.rows), (4, 4));
+        assert!((expected.coverage[0] - 0.2).abs() < 1e-6);
+        assert_eq!(expected.coverage[4], 1.0);
+        let picture = DynamicImage::ImageLuma8(grey8);
+        let kinds = [
+            DynamicImage::from(picture.to_luma_alpha8()),
+            picture.to_rgb8().into(),
+            picture.to_rgba8().into(),
+            picture.to_luma16().into(),
+            DynamicImage::from(picture.to_luma_alpha16()),
+            picture.to_rgb16().into(),
+            picture.to_rgba16().into(),
+        ];
+        for kind in kinds {
+            let got = raster(&png(kind), ProfileAxis::Left);
+            for (a, b) in got.coverage.iter().zip(&expected.coverage) {
+                assert!((a - b).abs() < 1e-6);
+            }
+        }
+        // Black, opaque as the coverage: the same picture once it lies on white.
+        let alpha = RgbaImage::from_fn(4, 4, |x, y| {
+            Rgba([0, 0, 0, (255.0 * dark(x, y)).round() as u8])
+        });
+        let got = raster(&png(alpha), ProfileAxis::Left);
+        for (a, b) in got.coverage.iter().zip(&expected.coverage) {
+            assert!((a - b).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn one_bit_and_palette() {
+        // Written by hand, since the image crate writes neither.
+        let write = |depth, color, palette: Option<Vec<u8>>, data: &[u8]| {
+            let mut out = Vec::new();
+            let mut e = png::Encoder::new(&mut out, 8, 2);
+            e.set_depth(depth);
+            e.set_color(color);
+            if let Some(p) = palette {
+                e.set_palette(p);
+            }
+            e.write_header().unwrap().write_image_data(data).unwrap();
+            out
+        };
+        let bits = write(
+            png::BitDepth::One,
+            png::ColorType::Grayscale,
+            None,
+            &[0x0f, 0xff],
+        );
+        let indexed = write(
+            png::BitDepth::One,
+            png::ColorType::Indexed,
+            Some(vec![10, 20, 10, 250, 255, 255]),
+            &[0x0f, 0xff],
+        );
+        for bytes in [bits, indexed] {
+            let r = raster(&bytes, ProfileAxis::Left);
+            let solid: Vec<bool> = r.coverage.iter().map(|&c| c > 0.5).collect();
+            assert_eq!(
+                solid[..8],
+                [true, true, true, true, false, false, false, false]
+            );
+            assert!(solid[8..].iter().all(|&s| !s));
+        }
+    }
+
+    #[test]
+    fn the_right_half_of_even_and_odd_widths() {
+        let even = GrayImage::from_fn(6, 3, |x, _| Luma([(x * 40) as u8]));
+        let r = raster(&png(even), ProfileAxis::Center);
+        assert_eq!((r.columns, r.rows), (3, 3));
+        assert!((r.coverage[0] - (1.0 - 120.0 / 255.0)).abs() < 1e-6);
+        // Odd: 5 x 3, the middle column and its neighbours solid in the lower rows.
+        let odd = GrayImage::from_fn(5, 3, |x, y| {
+            Luma([if y > 0 && (1..4).contains(&x) { 0 } else { 255 }])
+        });
+        let p = profile(&png(odd), ProfileAxis::Center).unwrap();
+        assert!((p.radius - 5.0 / 6.0).abs() < 1e-15);
+        let Shape::Raster(r) = p.shape else { panic!() };
+        assert_eq!((r.columns, r.rows), (5, 6));
+        for (k, &c) in r.coverage.iter().enumerate() {
+            let solid = k / 5 >= 2 && k % 5 < 3;
+            assert_eq!(c, if solid { 1.0 } else { 0.0 }, "pixel {k}");
+        }
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let text = |bytes: &[u8]| profile(bytes, ProfileAxis::Left).unwrap_err().to_string();
+        let filled = |v| png(GrayImage::from_pixel(8, 8, Luma([v])));
+        assert!(text(&filled(255)).contains("empty"));
+        assert!(text(&filled(0)).contains("full"));
+        assert!(text(&png(GrayImage::from_pixel(1, 1, Luma([0])))).contains("1 x 1"));
+        let whole = png(GrayImage::from_fn(64, 64, |x, y| Luma([(x ^ y) as u8 * 4])));
+        assert!(text(&whole[..whole.len() / 2]).contains("damaged"));
+        assert!(text(&whole[..20]).contains("damaged"));
+        assert!(text(b"BM not a picture").contains("PNG, JPEG or SVG"));
+        // The header alone of 20000 x 20000: refused without decoding anything.
+        let mut huge = whole[..33].to_vec();
+        huge[16..20].copy_from_slice(&20_000u32.to_be_bytes());
+        huge[20..24].copy_from_slice(&20_000u32.to_be_bytes());
+        let crc = crc32(&huge[12..29]).to_be_bytes();
+        huge[29..33].copy_from_slice(&crc);
+        huge.extend_from_slice(&whole[33..]);
+        assert!(text(&huge).contains("20000 x 20000"), "{}", text(&huge));
+    }
+
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0u32, |crc, &b| {
+            (0..8).fold(crc ^ u32::from(b), |c, _| {
+                (c >> 1) ^ (0xedb8_8320 & (c & 1).wrapping_neg())
+            })
+        })
+    }
+}

@@ -1,0 +1,170 @@
+//! A **profile**: the solid region of the meridian half-plane that is turned about the axis.
+//!
+//! Coordinates are `(r, z)` in object units: the axis is `r = 0`, the shape box reaches from `z = 0` to `z = 1`
+//! and to the radius `R`. A profile comes from an image, a drawing or a polygon, and is kept in one of two forms:
+//! an exact [`Outline`], or a [`Raster`] of coverages.
+
+mod area;
+mod contour;
+#[cfg(feature = "drawing")]
+mod drawing;
+pub(crate) mod image;
+pub(crate) mod interface;
+mod outline;
+#[cfg(feature = "drawing")]
+mod paint;
+mod polygon;
+mod raster;
+mod region;
+#[cfg(feature = "drawing")]
+mod svg;
+
+pub use outline::Segment;
+
+use crate::error::{Error, Result, Stage};
+use crate::maps::Bounds;
+use glam::DVec2;
+use std::path::Path;
+
+/// Which part of the picture is the half-plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProfileAxis {
+    /// The axis is the left edge: the picture is a half profile.
+    Left,
+    /// The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+    #[default]
+    Center,
+}
+
+/// The solid's boundary as closed chains of straight segments.
+///
+/// The loops do not cross; the solid lies to the **left** of every segment (outer loops run counter-clockwise in
+/// `(r, z)`, holes clockwise). All points have `r >= 0`. Segments along `r = 0` close a loop on the axis; they lie
+/// inside the turned solid and are no part of its surface (see [`Outline::surface_segments`]).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outline {
+    /// Closed loops; the last point joins the first.
+    pub loops: Vec<Vec<DVec2>>,
+}
+
+/// How much of each pixel is solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster {
+    /// Pixels along `r`; the axis is the left edge of column 0.
+    pub columns: u32,
+    /// Pixels along `z`; row 0 is the top.
+    pub rows: u32,
+    /// Solid fraction in `[0, 1]`, row by row from the top; `columns * rows` values.
+    pub coverage: Vec<f32>,
+}
+
+/// The form in which a profile is known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Exactly, from a polygon or a drawing with its curves flattened.
+    Outline(Outline),
+    /// By pixels, from an image.
+    Raster(Raster),
+}
+
+/// A solid region of the half-plane and the radius of its shape box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// The region.
+    pub shape: Shape,
+    /// `R`: the shape box is `[-R, R]^2 x [0, 1]`.
+    pub radius: f64,
+}
+
+impl Profile {
+    /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (feature `drawing`; also gzip-compressed).
+    ///
+    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over white. Pictures become a
+    /// [`Raster`] of how dark each pixel is, drawings an [`Outline`] whose curves are flattened within 1e-5 of the
+    /// height. `R` is width / height with the axis at the left, half of that with it in the middle.
+    ///
+    /// # Errors
+    /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor
+    /// drawing, more than 16384 or less than 2 pixels on a side, all light or all dark, or a drawing with what has no
+    /// outline (text, pictures, patterns, masks, filters).
+    pub fn load(path: impl AsRef<Path>, axis: ProfileAxis) -> Result<Self> {
+        let path = path.as_ref();
+        let read = || Self::from_bytes(&read_file(path)?, axis);
+        read().map_err(|e| e.in_file(path))
+    }
+
+    /// As [`Profile::load`], of a file's content: what a program carries within itself.
+    ///
+    /// # Errors
+    /// As `load`, naming no file.
+    pub fn from_bytes(bytes: &[u8], axis: ProfileAxis) -> Result<Self> {
+        if is_drawing(bytes) {
+            drawing_profile(bytes, axis)
+        } else {
+            image::profile(bytes, axis)
+        }
+    }
+
+    /// A profile from a closed polygon of `[r, z]` points, object units, `radius` being the `R` of its box.
+    ///
+    /// The last point joins the first; either way round will do. Where the polygon crosses or covers itself, the solid is all
+    /// that it winds round (non-zero rule). It may reach past its box; drawing cuts it there.
+    ///
+    /// ```
+    /// let cone = revmap::profile::Profile::polygon(&[[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]], 0.5)?;
+    /// assert_eq!(cone.radius, 0.5);
+    /// # Ok::<(), revmap::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Stage::Profile`], with the key `polygon` or `radius`: fewer than 3 points, a
+    /// coordinate that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that is not positive.
+    pub fn polygon(points: &[[f64; 2]], radius: f64) -> Result<Self> {
+        polygon::profile(points, radius)
+    }
+
+    /// The rectangle that the solid occupies; of a raster, its edge pixels included.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        match &self.shape {
+            Shape::Outline(outline) => outline.bounds(),
+            Shape::Raster(raster) => raster.bounds(),
+        }
+    }
+}
+
+/// A file's bytes, or what is wrong with it.
+fn read_file(path: &Path) -> Result<Vec<u8>> {
+    let fault = |message: String| Error::new(Stage::Profile, message);
+    if path.is_dir() {
+        return Err(fault("is a folder; give a PNG, JPEG or SVG file".into()));
+    }
+    std::fs::read(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            fault("does not exist; give a PNG, JPEG or SVG file".into())
+        }
+        _ => fault(format!(
+            "cannot be read ({e}); check the file's permissions"
+        )),
+    })
+}
+
+/// Whether the bytes are XML, after blanks and a byte order mark, or gzip.
+fn is_drawing(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let first = text.iter().find(|b| !b.is_ascii_whitespace());
+    first == Some(&b'<') || bytes.starts_with(&[0x1f, 0x8b])
+}
+
+#[cfg(feature = "drawing")]
+fn drawing_profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
+    drawing::profile(bytes, axis)
+}
+
+#[cfg(not(feature = "drawing"))]
+fn drawing_profile(_: &[u8], _: ProfileAxis) -> Result<Profile> {
+    Err(Error::new(
+        Stage::Profile,
+        "is an SVG drawing, and this build lacks the feature `drawing`; build with it, or give a PNG",
+    ))
+}

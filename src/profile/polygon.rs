@@ -1,0 +1,163 @@
+//! Profiles from a list of `[r, z]` points.
+
+use super::region::{Grid, Region, Rule};
+use super::{Outline, Profile, Shape};
+use crate::error::{Error, Result, Stage};
+use glam::DVec2;
+use i_overlay::i_float::int::point::IntPoint;
+use std::collections::HashMap;
+
+/// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite 0, and a sliver along
+/// the axis would count as surface.
+const AXIS_SLACK: f64 = 1e-9;
+
+/// Largest coordinate: far beyond any box, and small enough to keep nine digits.
+const EXTENT: f64 = 1e4;
+
+/// A profile from a closed polygon of `(r, z)` points in object units; the last point joins the first, either way round.
+///
+/// Where the polygon crosses or covers itself, the solid is what it winds round at all (non-zero rule). It may reach
+/// past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
+///
+/// # Errors
+/// [`Stage::Profile`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a point with `r < 0`, no
+/// area, or a radius that is not positive and finite.
+pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
+    let fault = |message: String| Err(Error::new(Stage::Profile, message).at_key("polygon"));
+    if !(radius.is_finite() && radius > 0.0) {
+        return Err(Error::new(
+            Stage::Profile,
+            format!("{radius} is no radius; give a positive number"),
+        )
+        .at_key("radius"));
+    }
+    if points.len() < 3 {
+        return fault(format!(
+            "{} points enclose nothing; give at least 3 points [r, z]",
+            points.len()
+        ));
+    }
+    let mut clean = Vec::with_capacity(points.len());
+    for (i, &[r, z]) in points.iter().enumerate() {
+        if !(r.is_finite() && z.is_finite()) {
+            return fault(format!(
+                "point {i} [{r}, {z}] is not finite; give two numbers"
+            ));
+        }
+        if r < -AXIS_SLACK {
+            return fault(format!(
+                "point {i} [{r}, {z}] crosses the axis; keep r >= 0 and give one half of the silhouette"
+            ));
+        }
+        if r > EXTENT || z.abs() > EXTENT {
+            return fault(format!(
+                "point {i} [{r}, {z}] is too far out; one object unit is the height of the box"
+            ));
+        }
+        clean.push(DVec2::new(if r < AXIS_SLACK { 0.0 } else { r }, z));
+    }
+    let extent = clean
+        .iter()
+        .fold(0.0f64, |m, p| m.max(p.abs().max_element()));
+    let grid = Grid::for_extent(extent);
+    let contour: Vec<_> = clean.iter().map(|&p| grid.snap(p)).collect();
+    // Corners that were given come back exactly; only crossings stand on the grid.
+    let given: HashMap<IntPoint<i32>, DVec2> =
+        contour.iter().copied().zip(clean.iter().copied()).collect();
+    let outline: Outline = Region::enclosed(&[contour], Rule::NonZero)
+        .outline(|p| given.get(&p).copied().unwrap_or_else(|| grid.place(p)));
+    if outline.area() < 1e-12 {
+        return fault("the polygon has no area; give corners that enclose some".into());
+    }
+    Ok(Profile {
+        shape: Shape::Outline(outline),
+        radius,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+
+    fn outline(points: &[[f64; 2]]) -> Outline {
+        match profile(points, 0.5).unwrap().shape {
+            Shape::Outline(o) => o,
+            Shape::Raster(_) => panic!("a polygon is an outline"),
+        }
+    }
+
+    fn message(points: &[[f64; 2]]) -> String {
+        profile(points, 0.5).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn corners_survive_exactly_and_run_counter_clockwise() {
+        let odd = [
+            [0.0, 0.1],
+            [0.0, 0.9],
+            [1.0 / 3.0, 0.7],
+            [0.123_456_789_012_3, 0.3],
+        ];
+        let o = outline(&odd);
+        assert_eq!(o.loops.len(), 1);
+        for p in odd {
+            assert!(o.loops[0].contains(&DVec2::from(p)), "{p:?} lost");
+        }
+        assert!(o.area() > 0.0);
+    }
+
+    #[test]
+    fn overlap_with_itself_is_solid() {
+        // A pentagram: its middle is wound round twice.
+        let star: Vec<[f64; 2]> = (0..5)
+            .map(|i| {
+                let a = f64::from(i) * 4.0 * std::f64::consts::PI / 5.0;
+                [0.5 + 0.4 * a.cos(), 0.5 + 0.4 * a.sin()]
+            })
+            .collect();
+        let o = outline(&star);
+        assert!(o.contains(DVec2::new(0.5, 0.5)));
+        assert_eq!(o.loops.len(), 1);
+        assert_eq!(o.loops[0].len(), 10);
+    }
+
+    #[test]
+    fn a_bow_tie_becomes_two_triangles() {
+        let o = outline(&[[0.1, 0.1], [0.5, 0.5], [0.5, 0.1], [0.1, 0.5]]);
+        assert!((o.area() - 2.0 * 0.5 * 0.4 * 0.2).abs() < 1e-8);
+    }
+
+    #[test]
+    fn rounding_on_the_axis_is_no_surface() {
+        let o = outline(&[
+            [0.0, 0.0],
+            [0.4, 0.5],
+            [0.4 * std::f64::consts::PI.sin(), 1.0],
+        ]);
+        assert_eq!(o.surface_segments().count(), 2);
+        assert!(o.signed_distance(DVec2::new(1e-6, 0.5)) < -0.2);
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let ok = [[0.1, 0.1], [0.3, 0.1], [0.3, 0.5]];
+        assert!(message(&ok[..2]).contains("2 points"));
+        assert!(message(&[ok[0], ok[1], [f64::NAN, 0.0]]).contains("point 2"));
+        assert!(message(&[ok[0], ok[1], [f64::INFINITY, 0.0]]).contains("not finite"));
+        assert!(message(&[ok[0], ok[1], [-0.1, 0.4]]).contains("crosses the axis"));
+        assert!(message(&[ok[0], ok[1], ok[0]]).contains("no area"));
+        assert!(message(&[[0.0, 0.0], [0.1, 0.1], [0.2, 0.2]]).contains("no area"));
+        assert!(message(&[ok[0], ok[1], [1e9, 0.4]]).contains("too far"));
+        assert!(
+            profile(&ok, 0.0)
+                .unwrap_err()
+                .to_string()
+                .contains("radius")
+        );
+        assert!(profile(&ok, f64::NAN).is_err());
+        for text in [message(&ok[..2]), message(&[ok[0], ok[1], ok[0]])] {
+            assert!(text.starts_with("polygon: ") && !text.contains('\n'));
+        }
+    }
+}

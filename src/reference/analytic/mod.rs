@@ -1,0 +1,333 @@
+//! The second method: every place where a ray can change from out to in, by formula.
+//!
+//! `F = d - w` vanishes only where the nearest part of the outline, a segment's line or a corner, is at distance `|w|`. With `w`
+//! linear in `z` (in two pieces under a chamfer) a segment gives `alpha r + beta z = gamma`, a frustum of a cone: a quadratic in
+//! `t`. A corner gives `(r - pr)^2 + (z - pz)^2 = w^2`, a conic turned about the axis: a quartic. All roots of all of
+//! them, put in order, cut the ray into pieces on each of which `F` keeps its sign; the sign in the middle of each piece tells in
+//! from out. Roots that belong to no surface do no harm. Nothing here is shared with the bracketing method but the types of
+//! question and answer.
+//!
+//! The time grows with the square of the number of segments, and replicas are not known here: it is there to check the other.
+
+mod path;
+mod roots;
+
+use super::{Hit, Ray, Surface, Trace};
+use crate::error::{Error, Result, Stage};
+use crate::profile::{Outline, Shape};
+use crate::scene::{Object, Offset, Scene};
+use glam::{DAffine3, DVec2, DVec3};
+use path::{Curve, Path};
+
+/// Pieces of a ray shorter than this, in object units, mark it as grazing.
+const SLIVER: f64 = 1e-7;
+
+/// A scene for the analytic method.
+#[derive(Debug)]
+pub struct Analytic {
+    parts: Vec<Part>,
+}
+
+#[derive(Debug)]
+struct Part {
+    object: usize,
+    instance: usize,
+    world: DAffine3,
+    solid: Solid,
+}
+
+#[derive(Clone, Debug)]
+struct Solid {
+    outline: Outline,
+    radius: f64,
+    axis: DVec2,
+    /// `w = start + slope z` of each piece.
+    pieces: Vec<(f64, f64)>,
+    offset: Offset,
+}
+
+impl Analytic {
+    /// Prepares a scene.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] for what this method does not know: replicas, and profiles that are images.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let mut parts = Vec::new();
+        for (index, object) in scene.objects.iter().enumerate() {
+            let solid = Solid::new(object).map_err(|e| e.at_key(format!("object.{index}")))?;
+            let own = [object.placement];
+            let placements = if object.instances.is_empty() {
+                &own[..]
+            } else {
+                &object.instances
+            };
+            for (instance, p) in placements.iter().enumerate() {
+                let world =
+                    DAffine3::from_scale_rotation_translation(p.scale, p.rotation, p.position);
+                parts.push(Part {
+                    object: index,
+                    instance,
+                    world,
+                    solid: solid.clone(),
+                });
+            }
+        }
+        Ok(Self { parts })
+    }
+
+    /// The first hit along a ray.
+    #[must_use]
+    pub fn trace(&self, ray: Ray) -> Trace {
+        let mut best = Trace::default();
+        for part in &self.parts {
+            let inverse = part.world.inverse();
+            let local = Ray {
+                origin: inverse.transform_point3(ray.origin),
+                direction: inverse.transform_vector3(ray.direction),
+            };
+            let mut found = part.solid.trace(local);
+            best.grazes |= found.grazes;
+            best.evaluations += found.evaluations;
+            if let Some(hit) = &mut found.hit
+                && best.hit.is_none_or(|b| hit.t < b.t)
+            {
+                hit.normal = (inverse.matrix3.transpose() * hit.normal).normalize_or_zero();
+                (hit.object, hit.instance) = (part.object, part.instance);
+                best.hit = found.hit;
+            }
+        }
+        best
+    }
+}
+
+impl Solid {
+    fn new(object: &Object) -> Result<Self> {
+        let refuse = |what: &str| Err(Error::new(Stage::Scene, what));
+        let Shape::Outline(outline) = &object.profile.shape else {
+            return refuse("the analytic reference takes outlines only; use the bracketing one");
+        };
+        if object.repeat != [1; 3] {
+            return refuse("the analytic reference knows no replicas; use the bracketing one");
+        }
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = object.offset;
+        let mut pieces = vec![(extend + bevel, -bevel)];
+        if bevel != 0.0 {
+            pieces.push((extend + bevel * chamfer, 0.0));
+        }
+        let radius = object.profile.radius;
+        let axis =
+            DVec2::new(object.axis[0], object.axis[1]) * (2.0 * radius) - DVec2::splat(radius);
+        Ok(Self {
+            outline: outline.clone(),
+            radius,
+            axis,
+            pieces,
+            offset: object.offset,
+        })
+    }
+
+    fn trace(&self, ray: Ray) -> Trace {
+        let mut trace = Trace::default();
+        let Some(inside) = Inside::new(self.radius, ray) else {
+            return trace;
+        };
+        let start = ray.origin + ray.direction * inside.enter.max(0.0) - self.axis.extend(0.0);
+        let length = inside.leave - inside.enter.max(0.0);
+        let path = Path::new(start, ray.direction, length);
+        let mut stops: Vec<(f64, Option<Curve>)> = Vec::new();
+        for curve in self.curves() {
+            let found = path.meet(curve);
+            stops.extend(
+                found
+                    .filter(|s| *s > 0.0 && *s < length)
+                    .map(|s| (s, Some(curve))),
+            );
+        }
+        stops.push((length, None));
+        stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+
+        let speed = ray.direction.length();
+        let mut was_solid = if inside.enter > 0.0 {
+            Some(false)
+        } else {
+            None
+        };
+        let (mut from, mut by) = (0.0, None);
+        for (to, next) in stops {
+            // Doubles of one root are one stop.
+            if (to - from) * speed < 1e-13 && next.is_some() && from > 0.0 {
+                continue;
+            }
+            let solid = self.value(path.at(0.5 * (from + to))) <= 0.0;
+            trace.evaluations += 1;
+            if was_solid.is_some_and(|was| was != solid) {
+                trace.grazes |= (to - from) * speed < SLIVER;
+                return trace.with(self.hit(&inside, &path, from, by, solid, ray));
+            }
+            was_solid = Some(solid);
+            (from, by) = (to, next);
+        }
+        if was_solid == Some(true) {
+            return trace.with(self.hit(&inside, &path, length, None, false, ray));
+        }
+        trace
+    }
+
+    /// The hit at `s` after the start; `entering`: the ray is in the solid beyond it.
+    fn hit(
+        &self,
+        inside: &Inside,
+        path: &Path,
+        s: f64,
+        by: Option<Curve>,
+        entering: bool,
+        ray: Ray,
+    ) -> Hit {
+        let place = path.point(s);
+        let (gradient, surface) = match by {
+            Some(curve) => (curve.gradient(place), Surface::Turned),
+            None => {
+                let face = if entering {
+                    inside.enter_axis
+                } else {
+                    inside.leave_axis
+                };
+                (DVec3::AXES[face], Surface::Cut(face))
+            }
+        };
+        // The outward normal looks against a ray that enters, along one that leaves.
+        let along = gradient.dot(ray.direction) > 0.0;
+        let normal = if along == entering {
+            -gradient
+        } else {
+            gradient
+        };
+        Hit {
+            t: inside.enter.max(0.0) + s,
+            object: 0,
+            instance: 0,
+            normal,
+            surface,
+            place,
+            cell: DVec3::ONE, // replicas are not its business
+        }
+    }
+
+    /// Every curve on which `F` may vanish.
+    fn curves(&self) -> impl Iterator<Item = Curve> {
+        let sides = self
+            .outline
+            .loops
+            .iter()
+            .flat_map(|l| l.iter().zip(l.iter().cycle().skip(1)));
+        sides.flat_map(|(&a, &b)| {
+            let along = (b - a).normalize_or_zero();
+            let (nr, nz) = (along.y, -along.x);
+            let reach = nr * a.x + nz * a.y;
+            self.pieces.iter().flat_map(move |&(start, slope)| {
+                let line = |side: f64| Curve::Line {
+                    alpha: nr,
+                    beta: nz - side * slope,
+                    gamma: reach + side * start,
+                };
+                [
+                    line(1.0),
+                    line(-1.0),
+                    Curve::Conic {
+                        corner: a,
+                        start,
+                        slope,
+                    },
+                ]
+            })
+        })
+    }
+
+    /// `F`, plainly: all segments for the distance, the winding number for the sign.
+    fn value(&self, q: DVec2) -> f64 {
+        let mut nearest = f64::INFINITY;
+        let mut winding = 0;
+        for points in &self.outline.loops {
+            for (k, &b) in points.iter().enumerate() {
+                let a = points[(k + points.len() - 1) % points.len()];
+                let (ab, aq) = (b - a, q - a);
+                // Left of an upward segment counts up, right of a downward one down.
+                if a.y <= q.y {
+                    if b.y > q.y && ab.perp_dot(aq) > 0.0 {
+                        winding += 1;
+                    }
+                } else if b.y <= q.y && ab.perp_dot(aq) < 0.0 {
+                    winding -= 1;
+                }
+                if a.x > super::field::ON_AXIS || b.x > super::field::ON_AXIS {
+                    let foot = a + ab * (aq.dot(ab) / ab.dot(ab)).clamp(0.0, 1.0);
+                    nearest = nearest.min((q - foot).length());
+                }
+            }
+        }
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = self.offset;
+        let depth = if 1.0 - q.y < chamfer {
+            1.0 - q.y
+        } else {
+            chamfer
+        };
+        (if winding != 0 { -nearest } else { nearest }) - (extend + bevel * depth)
+    }
+}
+
+/// Where a ray is within the box.
+struct Inside {
+    enter: f64,
+    enter_axis: usize,
+    leave: f64,
+    leave_axis: usize,
+}
+
+impl Inside {
+    /// `None` when the ray misses the box, or has left it.
+    fn new(radius: f64, ray: Ray) -> Option<Self> {
+        let mut inside = Self {
+            enter: f64::NEG_INFINITY,
+            enter_axis: 0,
+            leave: f64::INFINITY,
+            leave_axis: 0,
+        };
+        let walls = [(-radius, radius), (-radius, radius), (0.0, 1.0)];
+        for (axis, (low, high)) in walls.into_iter().enumerate() {
+            for (limit, outward) in [(low, -1.0), (high, 1.0)] {
+                let (v, gap) = (
+                    ray.direction[axis] * outward,
+                    (limit - ray.origin[axis]) * outward,
+                );
+                if v == 0.0 && gap < 0.0 {
+                    return None;
+                }
+                if v < 0.0 && gap / v > inside.enter {
+                    (inside.enter, inside.enter_axis) = (gap / v, axis);
+                }
+                if v > 0.0 && gap / v < inside.leave {
+                    (inside.leave, inside.leave_axis) = (gap / v, axis);
+                }
+            }
+        }
+        (inside.leave > inside.enter.max(0.0)).then_some(inside)
+    }
+}
+
+impl Trace {
+    fn with(mut self, hit: Hit) -> Self {
+        self.hit = Some(hit);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,82 @@
+//! A whole picture by the reference, rows in parallel; the same bits whatever the number of threads.
+
+use super::shade::shade;
+use super::texture::Lengths;
+use super::{Ray, Reference};
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::scene::{CameraFrame, Scene};
+use crate::settings::Settings;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Draws a scene in double precision on the CPU. Of the settings only the size counts.
+///
+/// `progress` is told, from any thread, how many rows are done and how many there are.
+///
+/// # Errors
+/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and [`ArcLength::new`](crate::maps::ArcLength::new).
+pub fn draw(
+    scene: &Scene,
+    settings: &Settings,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Frame> {
+    let (width, height) = (settings.width, settings.height);
+    let mut frame = Frame::new(width, height, scene.background)?;
+    let camera = CameraFrame::new(&scene.camera, width, height)?;
+    let reference = Reference::new(scene)?;
+    let lengths = Lengths::new(scene)?;
+    let done = AtomicUsize::new(0);
+    let rows: Vec<Vec<(u32, [f32; 17])>> = (0..height)
+        .into_par_iter()
+        .map(|j| {
+            let row = (0..width)
+                .filter_map(|i| Some((i, pixel(scene, &reference, &lengths, &camera, i, j)?)))
+                .collect();
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, height as usize);
+            row
+        })
+        .collect();
+    for (j, row) in rows.into_iter().enumerate() {
+        for (i, value) in row {
+            let index = j * width as usize + i as usize;
+            frame.set_pixel(index, value);
+        }
+    }
+    Ok(frame)
+}
+
+/// All channels of a pixel, in the order of [`crate::frame::CHANNELS`]; `None` where no box was entered.
+fn pixel(
+    scene: &Scene,
+    reference: &Reference,
+    lengths: &Lengths,
+    camera: &CameraFrame,
+    i: u32,
+    j: u32,
+) -> Option<[f32; 17]> {
+    let direction = camera.pixel(i, j);
+    let ray = Ray {
+        origin: camera.eye,
+        direction,
+    };
+    let trace = reference.trace(ray);
+    let steps = trace.evaluations as f32;
+    let Some(hit) = trace.hit else {
+        let [r, g, b, a] = scene.background;
+        let mut value = [0.0; 17];
+        value[..5].copy_from_slice(&[r, g, b, a, f32::INFINITY]);
+        value[16] = steps;
+        return (trace.evaluations > 0).then_some(value);
+    };
+    let shaded = shade(scene, reference, lengths, &hit, ray)?;
+    let [r, g, b, a] = shaded.color;
+    let [nx, ny, nz] = hit.normal.as_vec3().to_array();
+    let [sx, sy, sz] = shaded.shading_normal.as_vec3().to_array();
+    let [ar, ag, ab] = shaded.albedo;
+    let z = (hit.t * direction.length()) as f32;
+    let [u, v] = shaded.uv.map(|x| x as f32);
+    Some([
+        r, g, b, a, z, nx, ny, nz, sx, sy, sz, ar, ag, ab, u, v, steps,
+    ])
+}

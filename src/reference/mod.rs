@@ -1,0 +1,267 @@
+//! Ground truth: the first hit of each pixel's ray in double precision, by methods that share nothing with the shaders.
+//!
+//! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is the exact distance to the
+//! profile's outline; along a ray `F` changes at most by a known factor, so steps can be proven not to pass a surface.
+//! A profile that is an image stands for the [`contour`] of its coverage at one half.
+//!
+//! | | [`Reference`] | [`Analytic`] |
+//! |---|---|---|
+//! | finds the first hit by | proven steps, then a narrowed bracket | roots of quadratics and quartics |
+//! | knows | everything a scene can say | outlines, no replicas |
+//! | time of a ray | microseconds, hardly growing with the outline | grows with the square of the outline |
+//! | is for | pictures and measurements | checking the first |
+//!
+//! On random solids, offsets and rays the two differ by less than 1e-9 in position, but for rays that either calls grazing.
+//!
+//! ```
+//! use glam::{DVec2, DVec3};
+//! use revmap::profile::{Outline, Profile, Shape};
+//! use revmap::reference::{Ray, trace};
+//! use revmap::scene::{Camera, Object, Scene};
+//! use std::sync::Arc;
+//! // A cylinder of radius 1/4, from the floor of its box to the ceiling.
+//! let points = [(0.0, 0.0), (0.25, 0.0), (0.25, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
+//! let profile = Profile { shape: Shape::Outline(Outline { loops: vec![points] }), radius: 0.5 };
+//! let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
+//! scene.objects.push(Object::new("cylinder", Arc::new(profile)));
+//! let hit = trace(&scene, Ray { origin: DVec3::new(2.0, 0.0, 0.5), direction: DVec3::NEG_X })?.hit;
+//! assert!(hit.is_some_and(|hit| (hit.t - 1.75).abs() < 1e-12 && hit.normal == DVec3::X));
+//! # Ok::<(), revmap::Error>(())
+//! ```
+
+mod analytic;
+mod bracket;
+mod contour;
+mod draw;
+mod field;
+mod parts;
+#[cfg(test)]
+pub(crate) mod samples;
+mod shade;
+mod solid;
+mod texture;
+
+pub use analytic::Analytic;
+pub use contour::contour;
+pub use draw::draw;
+pub use solid::Surface;
+
+use crate::error::{Error, Result, Stage};
+use crate::profile::{Profile, Shape};
+use crate::scene::{Placement, Scene};
+use field::Field;
+use glam::DVec3;
+use parts::{Part, Parts};
+use solid::{LocalHit, Solid};
+use std::sync::Arc;
+
+/// A ray in the world; the direction may have any length, and `t` counts in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes.
+    pub direction: DVec3,
+}
+
+/// The first boundary point along a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The point is `origin + t direction`.
+    pub t: f64,
+    /// Index of the object in the scene.
+    pub object: usize,
+    /// Index of its copy; 0 without copies.
+    pub instance: usize,
+    /// Unit outward normal, world space.
+    pub normal: DVec3,
+    /// Which part of the boundary.
+    pub surface: Surface,
+    /// The point in its replica's cell: x, y from the axis of revolution, z from the floor, object units of the profile.
+    pub place: DVec3,
+    /// Units of that cell for one object unit, along each axis; negative: the replica is reflected.
+    pub cell: DVec3,
+}
+
+/// What became of a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// The first hit at `t >= 0`.
+    pub hit: Option<Hit>,
+    /// Whether the ray touches a surface or an edge so closely that a change in the last digits could give another answer.
+    pub grazes: bool,
+    /// Evaluations of the distance.
+    pub evaluations: u32,
+}
+
+/// A scene made ready for rays.
+#[derive(Debug)]
+pub struct Reference {
+    parts: Parts,
+}
+
+impl Reference {
+    /// Prepares all objects of a scene.
+    ///
+    /// # Errors
+    /// [`Stage::Profile`] when a profile has no surface; [`Stage::Scene`] when a placement is no placement (a scale that is
+    /// not positive, a rotation that is zero, a number that is not finite).
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let mut fields: Vec<(*const Profile, Arc<Field>)> = Vec::new();
+        let mut parts = Vec::new();
+        for (index, object) in scene.objects.iter().enumerate() {
+            let key = format!("object.{index}");
+            // Objects that share a profile share its preparation.
+            let pointer = Arc::as_ptr(&object.profile);
+            let field = match fields.iter().find(|(p, _)| *p == pointer) {
+                Some((_, field)) => field.clone(),
+                None => {
+                    let field = Arc::new(
+                        prepare(&object.profile).map_err(|e| e.at_key(format!("{key}.profile")))?,
+                    );
+                    fields.push((pointer, field.clone()));
+                    field
+                }
+            };
+            let solid = Arc::new(Solid::new(object, field));
+            let own = [object.placement];
+            let placements = if object.instances.is_empty() {
+                &own[..]
+            } else {
+                &object.instances
+            };
+            for (instance, placement) in placements.iter().enumerate() {
+                let placement = checked(placement).map_err(|e| e.at_key(&key))?;
+                parts.push(Part {
+                    object: index,
+                    instance,
+                    solid: solid.clone(),
+                    placement,
+                });
+            }
+        }
+        Ok(Self {
+            parts: Parts::new(parts),
+        })
+    }
+
+    /// The first hit along a ray. A ray that is none (no direction, a number that is not finite) hits nothing.
+    #[must_use]
+    pub fn trace(&self, ray: Ray) -> Trace {
+        let mut all = Trace::default();
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) || ray.direction == DVec3::ZERO {
+            return all;
+        }
+        self.parts.along(ray.origin, ray.direction, |part| {
+            let (origin, direction) = part.local(ray.origin, ray.direction);
+            let found = part.solid.trace(origin, direction);
+            all.evaluations += found.evaluations;
+            all.grazes |= found.grazes;
+            let Some(LocalHit {
+                t,
+                normal,
+                surface,
+                place,
+                cell,
+            }) = found.hit
+            else {
+                return f64::INFINITY;
+            };
+            let (object, instance) = (part.object, part.instance);
+            // Where two are met at once the first in the scene is taken, in whichever order the tree shows them.
+            let first = all.hit.is_none_or(|best| {
+                t < best.t || (t == best.t && (object, instance) < (best.object, best.instance))
+            });
+            if first {
+                let Placement {
+                    rotation, scale, ..
+                } = part.placement;
+                let normal = (rotation * (normal / scale)).normalize_or_zero();
+                all.hit = Some(Hit {
+                    t,
+                    object,
+                    instance,
+                    normal,
+                    surface,
+                    place,
+                    cell,
+                });
+            }
+            t
+        });
+        all
+    }
+
+    /// How deep a ray reaches into the solids (negative), or by how much it misses all of them (positive), in object units
+    /// and to within `tolerance`: the least value along the ray of `max(F, g)`, `g` the distance to the box's faces, negative
+    /// inside.
+    ///
+    /// It tells a pixel that is wrong for a reason from one that a rounding decides: at a silhouette both signs are right
+    /// as long as this is small.
+    #[must_use]
+    pub fn clearance(&self, ray: Ray, tolerance: f64) -> f64 {
+        self.clearance_within(ray, [0.0, f64::INFINITY], tolerance)
+    }
+
+    /// The same for a part of the ray, between two values of `t`: at one point where they are equal, which tells how far from the
+    /// surface a drawn hit lies; up to a drawn hit, whether the drawing has passed something on its way.
+    #[must_use]
+    pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
+        let [from, to] = [part[0].max(0.0), part[1].max(part[0].max(0.0))];
+        self.parts.list().iter().fold(f64::INFINITY, |least, one| {
+            let (origin, direction) = one.local(ray.origin, ray.direction);
+            let start = origin + direction * from;
+            least.min(
+                one.solid
+                    .clearance(start, direction, to - from, tolerance.max(1e-9)),
+            )
+        })
+    }
+}
+
+/// The first hit along one ray. For many rays make a [`Reference`] once.
+///
+/// # Errors
+/// Those of [`Reference::new`].
+pub fn trace(scene: &Scene, ray: Ray) -> Result<Trace> {
+    Ok(Reference::new(scene)?.trace(ray))
+}
+
+fn prepare(profile: &Profile) -> Result<Field> {
+    let field = match &profile.shape {
+        Shape::Outline(outline) => Field::new(outline),
+        Shape::Raster(raster) => Field::new(&contour(raster)),
+    };
+    field.ok_or_else(|| {
+        Error::new(
+            Stage::Profile,
+            "the profile has no surface; give one with a solid part off the axis",
+        )
+    })
+}
+
+fn checked(placement: &Placement) -> Result<Placement> {
+    let Placement {
+        position,
+        rotation,
+        scale,
+    } = *placement;
+    let wrong = |what: &str| Err(Error::new(Stage::Scene, what));
+    if !(position.is_finite() && rotation.is_finite() && scale.is_finite()) {
+        return wrong("its placement is not finite; give numbers");
+    }
+    if scale.min_element() <= 0.0 {
+        return wrong("its scale is not positive; give three positive numbers");
+    }
+    if rotation.length_squared() == 0.0 {
+        return wrong("its rotation is zero; give a unit quaternion");
+    }
+    Ok(Placement {
+        position,
+        rotation: rotation.normalize(),
+        scale,
+    })
+}
+
+#[cfg(test)]
+mod tests;

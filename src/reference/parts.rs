@@ -1,0 +1,152 @@
+//! The copies of a scene in a tree of boxes, so that thousands of them cost a ray little.
+
+use super::solid::Solid;
+use crate::scene::Placement;
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// One copy of one object.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    pub object: usize,
+    pub instance: usize,
+    pub solid: Arc<Solid>,
+    pub placement: Placement,
+}
+
+#[derive(Debug)]
+pub(super) struct Parts {
+    list: Vec<Part>,
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug)]
+struct Node {
+    min: DVec3,
+    max: DVec3,
+    /// Leaf: the part. Else: the right child (the left one follows its parent).
+    next: usize,
+    leaf: bool,
+}
+
+impl Part {
+    /// A ray in the object's own space; `t` keeps its meaning.
+    pub fn local(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
+        let Placement {
+            position,
+            rotation,
+            scale,
+        } = self.placement;
+        let back = rotation.conjugate();
+        (back * (origin - position) / scale, back * direction / scale)
+    }
+
+    /// The shape box's bounds in the world, a little wider than they are.
+    fn bounds(&self) -> (DVec3, DVec3) {
+        let Placement {
+            position,
+            rotation,
+            scale,
+        } = self.placement;
+        let turn = DMat3::from_quat(rotation);
+        let middle = position + turn.z_axis * (0.5 * scale.z);
+        let half = turn.x_axis.abs() * (self.solid.radius * scale.x)
+            + turn.y_axis.abs() * (self.solid.radius * scale.y)
+            + turn.z_axis.abs() * (0.5 * scale.z);
+        let half = half * (1.0 + 1e-6) + middle.abs() * 1e-12;
+        (middle - half, middle + half)
+    }
+}
+
+impl Parts {
+    pub fn new(list: Vec<Part>) -> Self {
+        let bounds: Vec<_> = list.iter().map(Part::bounds).collect();
+        let mut order: Vec<usize> = (0..list.len()).collect();
+        let mut nodes = Vec::with_capacity(2 * list.len());
+        if !order.is_empty() {
+            build(&mut order, &bounds, &mut nodes);
+        }
+        Self { list, nodes }
+    }
+
+    /// Shows `visit` every part whose box the ray may enter before `nearest`; it returns the new nearest `t`.
+    pub fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(&Part) -> f64) {
+        if self.nodes.is_empty() {
+            return;
+        }
+        let inverse = direction.recip();
+        let mut nearest = f64::INFINITY;
+        let mut stack = vec![0];
+        while let Some(index) = stack.pop() {
+            let node = &self.nodes[index];
+            if node.enter(origin, inverse).is_none_or(|t| t > nearest) {
+                continue;
+            }
+            if node.leaf {
+                nearest = nearest.min(visit(&self.list[node.next]));
+                continue;
+            }
+            let near = |i: usize| {
+                self.nodes[i]
+                    .enter(origin, inverse)
+                    .unwrap_or(f64::INFINITY)
+            };
+            let (left, right) = (index + 1, node.next);
+            // The nearer child on top.
+            stack.extend(if near(left) <= near(right) {
+                [right, left]
+            } else {
+                [left, right]
+            });
+        }
+    }
+
+    /// All parts, in the scene's order.
+    pub fn list(&self) -> &[Part] {
+        &self.list
+    }
+}
+
+impl Node {
+    /// Where a ray enters the box; 0 from within.
+    fn enter(&self, origin: DVec3, inverse: DVec3) -> Option<f64> {
+        let (a, b) = ((self.min - origin) * inverse, (self.max - origin) * inverse);
+        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        for axis in 0..3 {
+            // 0 times infinity, a ray within the wall's own plane, sets no bound: `max` and `min` pass over a NaN.
+            enter = enter.max(a[axis].min(b[axis]));
+            leave = leave.min(a[axis].max(b[axis]));
+        }
+        (enter <= leave).then_some(enter)
+    }
+}
+
+fn build(order: &mut [usize], bounds: &[(DVec3, DVec3)], nodes: &mut Vec<Node>) {
+    let min = order
+        .iter()
+        .fold(DVec3::INFINITY, |m, &k| m.min(bounds[k].0));
+    let max = order
+        .iter()
+        .fold(DVec3::NEG_INFINITY, |m, &k| m.max(bounds[k].1));
+    let place = nodes.len();
+    nodes.push(Node {
+        min,
+        max,
+        next: order[0],
+        leaf: order.len() == 1,
+    });
+    if order.len() == 1 {
+        return;
+    }
+    let axis = (max - min).max_position();
+    let half = order.len() / 2;
+    // The index settles ties: one scene, one tree.
+    order.sort_by(|&p, &q| {
+        let middle = |k: usize| bounds[k].0[axis] + bounds[k].1[axis];
+        middle(p).total_cmp(&middle(q)).then(p.cmp(&q))
+    });
+    let (left, right) = order.split_at_mut(half);
+    build(left, bounds, nodes);
+    nodes[place].next = nodes.len();
+    build(right, bounds, nodes);
+}

@@ -1,0 +1,125 @@
+//! Outlines for tests: plain shapes, and random ones that never cross themselves.
+
+use crate::profile::Outline;
+use glam::DVec2;
+
+fn outline(points: impl IntoIterator<Item = (f64, f64)>) -> Outline {
+    Outline {
+        loops: vec![points.into_iter().map(DVec2::from).collect()],
+    }
+}
+
+/// A cylinder of radius `r` between two heights.
+pub(crate) fn cylinder(r: f64, low: f64, high: f64) -> Outline {
+    outline([(0.0, low), (r, low), (r, high), (0.0, high)])
+}
+
+/// A cone: base radius `r` at `low`, tip at `high`.
+pub(crate) fn cone(r: f64, low: f64, high: f64) -> Outline {
+    outline([(0.0, low), (r, low), (0.0, high)])
+}
+
+/// A ball of `n` segments from pole to pole.
+pub(crate) fn ball(radius: f64, n: usize) -> Outline {
+    outline((0..=n).map(|k| {
+        let angle = std::f64::consts::PI * (k as f64 / n as f64 - 0.5);
+        (
+            if k == 0 || k == n {
+                0.0
+            } else {
+                radius * angle.cos()
+            },
+            0.5 + radius * angle.sin(),
+        )
+    }))
+}
+
+/// A torus: ring radius 0.3, tube radius 0.12, 40 segments.
+pub(crate) fn torus() -> Outline {
+    outline((0..40).map(|k| {
+        let angle = f64::from(k) * std::f64::consts::TAU / 40.0;
+        (0.3 + 0.12 * angle.cos(), 0.5 + 0.12 * angle.sin())
+    }))
+}
+
+/// A thin-walled glass with foot and stem.
+pub(crate) fn glass() -> Outline {
+    outline([
+        (0.0, 0.02),
+        (0.28, 0.02),
+        (0.28, 0.05),
+        (0.05, 0.09),
+        (0.04, 0.4),
+        (0.2, 0.5),
+        (0.32, 0.7),
+        (0.3, 0.97),
+        (0.28, 0.97),
+        (0.3, 0.7),
+        (0.19, 0.52),
+        (0.0, 0.44),
+    ])
+}
+
+/// A solid with a closed cavity and a ring apart from it.
+pub(crate) fn hollow() -> Outline {
+    let mut hollow = outline([(0.0, 0.1), (0.3, 0.1), (0.35, 0.5), (0.2, 0.8), (0.0, 0.8)]);
+    hollow.loops.push(
+        [(0.0, 0.7), (0.15, 0.7), (0.25, 0.5), (0.2, 0.2), (0.0, 0.2)]
+            .map(DVec2::from)
+            .to_vec(),
+    );
+    hollow.loops.push(
+        [(0.4, 0.4), (0.46, 0.4), (0.46, 0.6), (0.4, 0.6)]
+            .map(DVec2::from)
+            .to_vec(),
+    );
+    hollow
+}
+
+/// A random solid: star-shaped about a point on or off the axis, or a stack of discs, by `seed`.
+pub(crate) fn random(seed: u64) -> Outline {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1;
+    let mut next = move || {
+        // SplitMix64.
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = state;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let n = 3 + (next() * 9.0) as usize;
+    match seed % 3 {
+        // Half a star: both ends on the axis.
+        0 => outline((0..=n).map(|k| {
+            let angle = std::f64::consts::PI * (k as f64 / n as f64 - 0.5);
+            let radius = 0.15 + 0.33 * next();
+            (
+                if k == 0 || k == n {
+                    0.0
+                } else {
+                    radius * angle.cos()
+                },
+                0.5 + radius * angle.sin(),
+            )
+        })),
+        // A whole star off the axis: a ring.
+        1 => outline((0..n).map(|k| {
+            let angle = std::f64::consts::TAU * k as f64 / n as f64;
+            let radius = 0.05 + 0.17 * next();
+            (0.26 + radius * angle.cos(), 0.5 + radius * angle.sin())
+        })),
+        // Discs, cones and cylinders on top of each other: horizontal and vertical edges.
+        _ => {
+            let mut points = vec![(0.0, 0.04)];
+            let (mut z, step) = (0.04, 0.9 / n as f64);
+            for _ in 0..n {
+                let (low, high) = (0.08 + 0.38 * next(), 0.08 + 0.38 * next());
+                points.push((low, z));
+                z += step;
+                points.push((if next() < 0.5 { low } else { high }, z));
+            }
+            points.push((0.0, z));
+            outline(points)
+        }
+    }
+}

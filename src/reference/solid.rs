@@ -1,0 +1,362 @@
+//! One solid in its own box: extension, bevel, chamfer, the axis anywhere, replicas, closed by the box.
+
+use super::bracket::{Search, first_zero};
+use super::field::{Field, Nearest};
+use crate::scene::{Object, Offset};
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// Which part of a solid's boundary was met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// The turned surface, `F = 0`.
+    Turned,
+    /// The cut at a face of the shape box, or at the border of a replica's cell, square to this axis (0 x, 1 y, 2 z).
+    Cut(usize),
+}
+
+/// A meeting of ray and solid in the object's own space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LocalHit {
+    pub t: f64,
+    /// Outward, not of unit length.
+    pub normal: DVec3,
+    pub surface: Surface,
+    /// In the replica's cell, about its axis: x, y from the axis, z from the cell's floor.
+    pub place: DVec3,
+    /// Cell units for one object unit; negative: mirrored.
+    pub cell: DVec3,
+}
+
+/// A ray's whole story with one solid.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LocalTrace {
+    pub hit: Option<LocalHit>,
+    pub grazes: bool,
+    pub evaluations: u32,
+}
+
+/// A solid of revolution, ready for rays.
+#[derive(Clone, Debug)]
+pub(super) struct Solid {
+    pub field: Arc<Field>,
+    pub radius: f64,
+    pub offset: Offset,
+    /// Where the axis stands in a cell, object units.
+    pub axis: DVec2,
+    pub repeat: [u32; 3],
+    pub mirror: [bool; 3],
+}
+
+/// Crossings this near to a face of the box (in units of the cell) are the face itself.
+const SKIN: f64 = 1e-10;
+/// Rays that leave a box after a shorter way than this, or miss it by less, graze it.
+const EDGE: f64 = 1e-7;
+/// Sine of the angle between ray and surface below which a hit is called grazing.
+const FLAT: f64 = 1e-4;
+
+impl Solid {
+    pub fn new(object: &Object, field: Arc<Field>) -> Self {
+        let radius = object.profile.radius;
+        Self {
+            field,
+            radius,
+            offset: object.offset,
+            axis: DVec2::new(
+                (2.0 * object.axis[0] - 1.0) * radius,
+                (2.0 * object.axis[1] - 1.0) * radius,
+            ),
+            repeat: object.repeat.map(|n| n.max(1)),
+            mirror: object.mirror,
+        }
+    }
+
+    /// The first meeting at `t >= 0` of the ray `origin + t direction`, object space.
+    ///
+    /// The boundary of the solid is where the ray's state (in or out) changes: within a cell by a zero of `F`, at a cell's
+    /// border by the states of the two sides. Outside the box is out.
+    pub fn trace(&self, origin: DVec3, direction: DVec3) -> LocalTrace {
+        let mut trace = LocalTrace::default();
+        let Some(clip) = Clip::new(self.radius, origin, direction, &mut trace.grazes) else {
+            return trace;
+        };
+        let start = origin + direction * clip.t[0];
+        let mut solid_before = if clip.from_within { None } else { Some(false) };
+        let cuts = self.cuts(start, direction, clip);
+        for pair in cuts.windows(2) {
+            let ((low, axis), (high, _)) = (pair[0], pair[1]);
+            let cell = Cell::new(self, start, direction, 0.5 * (low + high));
+            let skin = SKIN / cell.direction.length();
+            let (a, b) = (low + skin, high - skin);
+            if a >= b {
+                continue;
+            }
+            let mut hint = 0;
+            let mut count = 0;
+            let mut f = |t: f64| {
+                count += 1;
+                cell.value(cell.at(t), &mut hint)
+            };
+            let fa = f(a);
+            let solid = fa <= 0.0;
+            if solid_before.is_some_and(|before| before != solid) {
+                trace.evaluations += count;
+                let side = if solid { -1.0 } else { 1.0 };
+                return trace.with(self.cut(start, direction, (low, clip.t[0]), axis, side));
+            }
+            let Search { zero, grazes } = first_zero(&mut f, a, b, fa, cell.lipschitz());
+            trace.evaluations += count;
+            trace.grazes |= grazes;
+            if let Some(t) = zero {
+                let place = cell.at(t);
+                let normal = cell.normal(place);
+                trace.grazes |= normal.dot(cell.direction).abs()
+                    < FLAT * normal.length() * cell.direction.length();
+                return trace.with(LocalHit {
+                    t: clip.t[0] + t,
+                    normal: normal * cell.factor,
+                    surface: Surface::Turned,
+                    place,
+                    cell: cell.factor,
+                });
+            }
+            solid_before = Some(solid);
+        }
+        if solid_before == Some(true) {
+            let (t, axis) = cuts[cuts.len() - 1];
+            return trace.with(self.cut(start, direction, (t, clip.t[0]), axis, 1.0));
+        }
+        trace
+    }
+
+    /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of box and cell, to within
+    /// `tolerance`.
+    pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
+        let speed = direction.length();
+        let middle = DVec3::new(0.0, 0.0, 0.5);
+        let half = DVec3::new(self.radius, self.radius, 0.5);
+        let faces = |p: DVec3| ((p - middle).abs() - half).max_element();
+        // Farther than this the box only recedes.
+        let end = ((origin.distance(middle) + half.length()) / speed).min(last);
+        let clip = Clip::new(self.radius, origin, direction, &mut false);
+        let Some(mut clip) = clip.filter(|clip| clip.t[0] <= last) else {
+            return least(
+                |t| faces(origin + direction * t),
+                (0.0, end),
+                speed,
+                tolerance,
+                f64::INFINITY,
+            );
+        };
+        clip.t[1] = clip.t[1].min(last);
+        let start = origin + direction * clip.t[0];
+        let mut lowest = f64::INFINITY;
+        for pair in self.cuts(start, direction, clip).windows(2) {
+            let (low, high) = (pair[0].0, pair[1].0);
+            let cell = Cell::new(self, start, direction, 0.5 * (low + high));
+            let mut hint = 0;
+            let value = |t: f64| {
+                let p = cell.at(t);
+                cell.value(p, &mut hint)
+                    .max(faces(p + self.axis.extend(0.0)))
+            };
+            lowest = least(value, (low, high), cell.lipschitz(), tolerance, lowest);
+        }
+        lowest
+    }
+
+    /// The hit at the border of a cell; the outward normal looks along the ray (`side` 1) or against it (-1).
+    fn cut(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        (t, base): (f64, f64),
+        axis: usize,
+        side: f64,
+    ) -> LocalHit {
+        let mut normal = DVec3::ZERO;
+        normal[axis] = side * direction[axis].signum();
+        // The cell in which the solid lies.
+        let cell = Cell::new(self, start, direction, t - side * 1e-9 / direction.length());
+        LocalHit {
+            t: base + t,
+            normal,
+            surface: Surface::Cut(axis),
+            place: cell.at(t),
+            cell: cell.factor,
+        }
+    }
+
+    /// Where the ray passes from cell to cell, ends of the box included: `(t from the start, axis of the plane)`, in order.
+    fn cuts(&self, start: DVec3, direction: DVec3, clip: Clip) -> Vec<(f64, usize)> {
+        let length = clip.t[1] - clip.t[0];
+        let mut cuts = vec![(0.0, clip.axis[0])];
+        for axis in 0..3 {
+            let n = self.repeat[axis];
+            let (low, size) = if axis < 2 {
+                (-self.radius, 2.0 * self.radius)
+            } else {
+                (0.0, 1.0)
+            };
+            cuts.extend((1..n).filter_map(|k| {
+                let t = (low + size * f64::from(k) / f64::from(n) - start[axis]) / direction[axis];
+                (t > 0.0 && t < length).then_some((t, axis))
+            }));
+        }
+        cuts[1..].sort_by(|p, q| p.0.total_cmp(&q.0));
+        cuts.push((length, clip.axis[1]));
+        cuts
+    }
+}
+
+impl LocalTrace {
+    fn with(mut self, hit: LocalHit) -> Self {
+        self.hit = Some(hit);
+        self
+    }
+}
+
+/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high allows pass none lower.
+fn least(
+    mut f: impl FnMut(f64) -> f64,
+    (mut t, end): (f64, f64),
+    lipschitz: f64,
+    tolerance: f64,
+    lowest: f64,
+) -> f64 {
+    let mut lowest = lowest;
+    loop {
+        let value = f(t);
+        lowest = lowest.min(value);
+        if t >= end {
+            return lowest;
+        }
+        t = (t + (value - lowest + tolerance) / lipschitz).min(end);
+    }
+}
+
+/// The part of a ray within the shape box.
+#[derive(Clone, Copy, Debug)]
+struct Clip {
+    t: [f64; 2],
+    /// Axes of the faces of entry and exit.
+    axis: [usize; 2],
+    from_within: bool,
+}
+
+impl Clip {
+    fn new(radius: f64, origin: DVec3, direction: DVec3, grazes: &mut bool) -> Option<Self> {
+        let (low, high) = (
+            DVec3::new(-radius, -radius, 0.0),
+            DVec3::new(radius, radius, 1.0),
+        );
+        let mut clip = Self {
+            t: [f64::NEG_INFINITY, f64::INFINITY],
+            axis: [0, 0],
+            from_within: false,
+        };
+        let edge = EDGE / direction.length();
+        for axis in 0..3 {
+            if direction[axis] == 0.0 {
+                let depth = (origin[axis] - low[axis]).min(high[axis] - origin[axis]);
+                *grazes |= depth.abs() < EDGE;
+                if depth < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let mut t = [
+                (low[axis] - origin[axis]) / direction[axis],
+                (high[axis] - origin[axis]) / direction[axis],
+            ];
+            if t[0] > t[1] {
+                t.swap(0, 1);
+            }
+            if t[0] > clip.t[0] {
+                (clip.t[0], clip.axis[0]) = (t[0], axis);
+            }
+            if t[1] < clip.t[1] {
+                (clip.t[1], clip.axis[1]) = (t[1], axis);
+            }
+        }
+        if clip.t[0] < 0.0 {
+            clip.from_within = true;
+            clip.t[0] = 0.0;
+        }
+        *grazes |= (clip.t[1] - clip.t[0]).abs() < edge;
+        (clip.t[1] > clip.t[0]).then_some(clip)
+    }
+}
+
+/// A replica's own space: the shape box again, moved so that the axis of revolution is x = y = 0.
+struct Cell<'a> {
+    solid: &'a Solid,
+    /// Where the ray starts, and where it goes.
+    origin: DVec3,
+    direction: DVec3,
+    /// Cell units for one object unit, along each axis; negative: mirrored.
+    factor: DVec3,
+}
+
+impl<'a> Cell<'a> {
+    /// The cell that the ray from `start` (object space) is in at `t`.
+    fn new(solid: &'a Solid, start: DVec3, direction: DVec3, t: f64) -> Self {
+        let mut factor = DVec3::ZERO;
+        let mut origin = DVec3::ZERO;
+        for axis in 0..3 {
+            let n = f64::from(solid.repeat[axis]);
+            let size = if axis < 2 { 2.0 * solid.radius } else { 1.0 };
+            let low = if axis < 2 { -solid.radius } else { 0.0 };
+            let place = |x: f64| (x - low) / size * n;
+            let index = place(start[axis] + direction[axis] * t)
+                .floor()
+                .clamp(0.0, n - 1.0);
+            let mirrored = solid.mirror[axis] && index % 2.0 == 1.0;
+            let fraction = place(start[axis]) - index;
+            factor[axis] = if mirrored { -n } else { n };
+            origin[axis] = low + size * if mirrored { 1.0 - fraction } else { fraction };
+        }
+        origin -= solid.axis.extend(0.0);
+        Self {
+            solid,
+            origin,
+            direction: direction * factor,
+            factor,
+        }
+    }
+
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    /// `F = d - w` (method: section 3).
+    fn value(&self, p: DVec3, hint: &mut u32) -> f64 {
+        let offset = &self.solid.offset;
+        let w = offset.extend + offset.bevel * (1.0 - p.z).min(offset.chamfer);
+        self.solid
+            .field
+            .distance(DVec2::new(p.x.hypot(p.y), p.z), hint)
+            - w
+    }
+
+    /// How fast `F` can change along the ray: `d` by the length of the way, `w` by its slope times the climb.
+    fn lipschitz(&self) -> f64 {
+        self.direction.length() + (self.solid.offset.bevel * self.direction.z).abs()
+    }
+
+    /// Gradient of `F`: outward.
+    fn normal(&self, p: DVec3) -> DVec3 {
+        let r = p.x.hypot(p.y);
+        let q = DVec2::new(r, p.z);
+        let nearest: Nearest = self.solid.field.nearest(q, 0);
+        let g = self.solid.field.gradient(q, nearest);
+        let offset = &self.solid.offset;
+        let slope = if 1.0 - p.z < offset.chamfer {
+            -offset.bevel
+        } else {
+            0.0
+        };
+        let radial = if r > 1e-12 { g.x / r } else { 0.0 };
+        DVec3::new(p.x * radial, p.y * radial, g.y - slope)
+    }
+}

@@ -1,0 +1,140 @@
+//! What covers a surface, by the formulas as they are written (method: sections 5 and 6): texture coordinates of each projection,
+//! colour and slope at them. Gradients of the coordinates are taken by differences of the formulas, so that nothing here repeats
+//! the derivations that shaders rest on.
+
+use crate::error::Result;
+use crate::maps::{ArcLength, Level, Projection};
+use crate::profile::Profile;
+use crate::scene::{BumpForm, Object, Scene};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Lengths along the profiles of those objects that are textured by them.
+pub(super) struct Lengths(Vec<Option<Arc<ArcLength>>>);
+
+impl Lengths {
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let mut known: Vec<(*const Profile, Arc<ArcLength>)> = Vec::new();
+        let mut lengths = Vec::new();
+        for object in &scene.objects {
+            if object.texturing.projection != Projection::Arc {
+                lengths.push(None);
+                continue;
+            }
+            let pointer = Arc::as_ptr(&object.profile);
+            let found = match known.iter().find(|(p, _)| *p == pointer) {
+                Some((_, found)) => found.clone(),
+                None => {
+                    let new = Arc::new(ArcLength::new(&object.profile)?);
+                    known.push((pointer, new.clone()));
+                    new
+                }
+            };
+            lengths.push(Some(found));
+        }
+        Ok(Self(lengths))
+    }
+
+    pub fn of(&self, object: usize) -> Option<&ArcLength> {
+        self.0.get(object)?.as_deref()
+    }
+}
+
+/// `(xi, eta)` at a point of a replica's cell, about its axis, before the texture's repetition.
+pub(super) fn coordinates(object: &Object, arc: Option<&ArcLength>, p: DVec3) -> [f64; 2] {
+    let radius = object.profile.radius;
+    let r = p.x.hypot(p.y);
+    let xi = 0.5 + p.y.atan2(p.x) / TAU;
+    match object.texturing.projection {
+        Projection::Planar => [
+            object.axis[0] + p.x / (2.0 * radius),
+            object.axis[1] + p.y / (2.0 * radius),
+        ],
+        Projection::Cylindrical => [xi, p.z],
+        Projection::Spherical => [xi, 1.0 - r.atan2(p.z - 0.5) / PI],
+        Projection::Arc => [xi, arc.map_or(p.z, |a| a.eta(r, p.z))],
+    }
+}
+
+/// The colour map's light at texture coordinates, from the full size alone: bilinear between texels, no smaller levels.
+pub(super) fn color(object: &Object, uv: [f64; 2]) -> Option<[f64; 3]> {
+    let level = object.texturing.color_map.as_ref()?.levels.first()?;
+    Some(bilinear(object, level, uv, |t| {
+        [t[0], t[1], t[2]].map(to_linear)
+    }))
+}
+
+/// The height's change along the surface at `p`, where the outward unit normal is `n`; all in the cell's own units.
+pub(super) fn slope(object: &Object, arc: Option<&ArcLength>, p: DVec3, n: DVec3) -> Option<DVec3> {
+    let look = &object.texturing;
+    let level = look.displacement_map.as_ref()?.levels.first()?;
+    let uv = coordinates(object, arc, p);
+    let [du, dv] = bilinear(object, level, uv, |t| t.map(f64::from));
+    let [du, dv] = [du * look.repeat[0], dv * look.repeat[1]];
+    let gradient = match look.bump_form {
+        BumpForm::SurfaceGradient => {
+            let mut gradient = DVec3::ZERO;
+            for (axis, unit) in DVec3::AXES.into_iter().enumerate() {
+                let step = 1e-6;
+                let after = coordinates(object, arc, p + step * unit);
+                let before = coordinates(object, arc, p - step * unit);
+                // The azimuth, and the length along a closed contour, jump by 1.
+                let change = [0, 1].map(|k| {
+                    let d: f64 = after[k] - before[k];
+                    (d - d.round()) / (2.0 * step)
+                });
+                gradient[axis] = du * change[0] + dv * change[1];
+            }
+            gradient
+        }
+        BumpForm::Papers => {
+            let around = DVec3::new(-p.y, p.x, 0.0).normalize_or(DVec3::Y);
+            du * around + dv * n.cross(around)
+        }
+    };
+    Some(gradient - n * n.dot(gradient))
+}
+
+/// The mean of the four texels around a place, weighted by nearness. Across, textures repeat; along, they do where the object
+/// repeats them or looks from above.
+fn bilinear<T: Copy, const N: usize>(
+    object: &Object,
+    level: &Level<T>,
+    uv: [f64; 2],
+    value: impl Fn(T) -> [f64; N],
+) -> [f64; N] {
+    let look = &object.texturing;
+    let (w, h) = (f64::from(level.width), f64::from(level.height));
+    let x = uv[0] * look.repeat[0] * w - 0.5;
+    let y = (1.0 - uv[1]) * look.repeat[1] * h - 0.5;
+    let clamped = look.repeat[1] == 1.0 && look.projection != Projection::Planar;
+    let mut sum = [0.0; N];
+    for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        let (column, row) = (x.floor() + i, y.floor() + j);
+        let weight = (1.0 - (x - column).abs()) * (1.0 - (y - row).abs());
+        let column = column.rem_euclid(w);
+        let row = if clamped {
+            row.clamp(0.0, h - 1.0)
+        } else {
+            row.rem_euclid(h)
+        };
+        let index = row as usize * level.width as usize + column as usize;
+        if let Some(&texel) = level.texels.get(index) {
+            for (s, v) in sum.iter_mut().zip(value(texel)) {
+                *s += weight * v;
+            }
+        }
+    }
+    sum
+}
+
+/// Linear light of an sRGB value (IEC 61966-2-1).
+fn to_linear(v: u8) -> f64 {
+    let v = f64::from(v) / 255.0;
+    if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
+}

@@ -1,0 +1,533 @@
+//! Charts of points over two axes: series joined by lines, fronts, fitted laws.
+
+use super::axis::{Axis, Scale};
+use super::letters::{width, wrap};
+use super::style::{GRID, INK, PALE, PAPER, Style};
+use super::{Anchor, Bounds, Figure, Mark, overlap};
+
+/// A point of a series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Across.
+    pub x: f64,
+    /// Up.
+    pub y: f64,
+    /// A word beside it, where there is room.
+    pub label: Option<String>,
+}
+
+/// Points of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; empty: not listed.
+    pub name: String,
+    /// How it looks.
+    pub style: Style,
+    /// Its points, in the order in which a line joins them.
+    pub points: Vec<Point>,
+    /// Whether a line joins them.
+    pub joined: bool,
+}
+
+/// A line without markers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guide {
+    /// Its name in the legend; empty: not listed.
+    pub name: String,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+    /// Colour.
+    pub color: &'static str,
+    /// Whether it is dashed.
+    pub dashed: bool,
+}
+
+/// A chart of points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct XyChart {
+    /// What it shows.
+    pub title: String,
+    /// Across.
+    pub x: Axis,
+    /// Up.
+    pub y: Axis,
+    /// The points.
+    pub series: Vec<Series>,
+    /// Lines below them.
+    pub guides: Vec<Guide>,
+}
+
+/// Width of every chart, pixels: read well on a phone, where it is shown at two thirds of that.
+pub const WIDTH: f64 = 540.0;
+const PLOT: f64 = 330.0;
+const EDGE: f64 = 14.0;
+/// Sizes of words.
+pub const TITLE: f64 = 16.0;
+/// Of axes and legends.
+pub const TEXT: f64 = 14.0;
+/// Beside points.
+const SMALL: f64 = 12.0;
+const MARKER: f64 = 9.5;
+
+/// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
+#[must_use]
+pub fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut all = Vec::new();
+    for (i, p) in points.iter().enumerate() {
+        if i > 0 {
+            all.push((p.0, points[i - 1].1));
+        }
+        all.push(*p);
+    }
+    all
+}
+
+impl XyChart {
+    /// Lays the chart out.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        let x = Scale::new(&self.x, points().map(|p| p.x));
+        let y = Scale::new(&self.y, points().map(|p| p.y));
+        let mut marks = Vec::new();
+        let top = title(&mut marks, &self.title) + 8.0;
+        let widest = y
+            .ticks
+            .iter()
+            .map(|(_, w)| width(w, TEXT))
+            .fold(0.0, f64::max);
+        let left = EDGE + TEXT + 10.0 + widest + 8.0;
+        let plot = [left, top, WIDTH - EDGE, top + PLOT];
+        let at = |px: f64, py: f64| -> Option<(f64, f64)> {
+            Some((
+                plot[0] + x.place(px)? * (plot[2] - plot[0]),
+                plot[3] - y.place(py)? * (plot[3] - plot[1]),
+            ))
+        };
+        axes(&mut marks, plot, (&self.x.label, &x), (&self.y.label, &y));
+
+        for guide in &self.guides {
+            let points: Vec<_> = guide.points.iter().filter_map(|p| at(p.0, p.1)).collect();
+            for points in clip(&points, plot) {
+                marks.push(Mark::Line {
+                    points,
+                    color: guide.color,
+                    width: 1.8,
+                    dashed: guide.dashed,
+                });
+            }
+        }
+        // Words keep off markers, each other, and level or upright lines.
+        let mut taken: Vec<Bounds> = Vec::new();
+        for guide in &self.guides {
+            let points: Vec<_> = guide.points.iter().filter_map(|p| at(p.0, p.1)).collect();
+            taken.extend(
+                points
+                    .windows(2)
+                    .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1)
+                    .map(|w| {
+                        [
+                            w[0].0.min(w[1].0) - 1.0,
+                            w[0].1.min(w[1].1) - 1.0,
+                            w[0].0.max(w[1].0) + 1.0,
+                            w[0].1.max(w[1].1) + 1.0,
+                        ]
+                    }),
+            );
+        }
+        let mut labels = Vec::new();
+        let mut dots = Vec::new();
+        for series in &self.series {
+            let places: Vec<_> = series
+                .points
+                .iter()
+                .filter_map(|p| Some((at(p.x, p.y)?, p)))
+                .collect();
+            if series.joined && places.len() > 1 {
+                let points = places.iter().map(|(place, _)| *place).collect();
+                marks.push(Mark::Line {
+                    points,
+                    color: series.style.color(),
+                    width: 1.4,
+                    dashed: false,
+                });
+            }
+            for (place, point) in places {
+                let dot = dot(series.style, place);
+                taken.push(dot.bounds());
+                dots.push(dot);
+                if let Some(label) = &point.label {
+                    labels.push((place, label));
+                }
+            }
+        }
+        marks.extend(dots);
+        for (place, label) in labels {
+            if let Some(word) = beside(place, label, plot, &taken) {
+                taken.push(word.bounds());
+                marks.push(word);
+            }
+        }
+        let entries = self.legend();
+        let bottom = legend(&mut marks, plot[3] + 2.0 * TEXT + 32.0, &entries);
+        Figure {
+            width: WIDTH,
+            height: bottom + EDGE,
+            title: self.title.clone(),
+            marks,
+        }
+    }
+
+    fn legend(&self) -> Vec<(String, Key)> {
+        let series = self
+            .series
+            .iter()
+            .map(|s| (s.name.clone(), Key::Dot(s.style, s.joined)));
+        let guides = self
+            .guides
+            .iter()
+            .map(|g| (g.name.clone(), Key::Line(g.color, g.dashed)));
+        let mut all: Vec<(String, Key)> = Vec::new();
+        for entry in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
+            if !all.contains(&entry) {
+                all.push(entry);
+            }
+        }
+        all
+    }
+}
+
+/// What stands before a name in a legend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Key {
+    /// A marker, with or without its line.
+    Dot(Style, bool),
+    /// A line.
+    Line(&'static str, bool),
+}
+
+/// The title, wrapped; gives the place below it.
+pub(super) fn title(marks: &mut Vec<Mark>, text: &str) -> f64 {
+    let mut bottom = EDGE;
+    for line in wrap(text, TITLE, WIDTH - 2.0 * EDGE) {
+        bottom += TITLE;
+        marks.push(word((EDGE, bottom), &line, TITLE, Anchor::Start, INK));
+        bottom += 5.0;
+    }
+    bottom
+}
+
+pub(super) fn word(
+    at: (f64, f64),
+    text: &str,
+    size: f64,
+    anchor: Anchor,
+    color: &'static str,
+) -> Mark {
+    Mark::Word {
+        at,
+        text: text.to_owned(),
+        size,
+        anchor,
+        color,
+        upwards: false,
+    }
+}
+
+/// Grid, frame, ticks and names of both axes.
+fn axes(
+    marks: &mut Vec<Mark>,
+    plot: Bounds,
+    (x_label, x): (&str, &Scale),
+    (y_label, y): (&str, &Scale),
+) {
+    let line = |points, color| Mark::Line {
+        points,
+        color,
+        width: 1.0,
+        dashed: false,
+    };
+    let mut end = f64::NEG_INFINITY;
+    for (value, text) in &x.ticks {
+        let Some(place) = x.place(*value) else {
+            continue;
+        };
+        let px = plot[0] + place * (plot[2] - plot[0]);
+        marks.push(line(vec![(px, plot[1]), (px, plot[3])], GRID));
+        // A word that would touch the last one, or leave the figure, is left out; its line stays.
+        let half = width(text, TEXT) / 2.0;
+        if px - half > end + 6.0 && px + half < WIDTH {
+            marks.push(word(
+                (px, plot[3] + TEXT + 5.0),
+                text,
+                TEXT,
+                Anchor::Middle,
+                INK,
+            ));
+            end = px + half;
+        }
+    }
+    let mut end = f64::INFINITY;
+    for (value, text) in &y.ticks {
+        let Some(place) = y.place(*value) else {
+            continue;
+        };
+        let py = plot[3] - place * (plot[3] - plot[1]);
+        marks.push(line(vec![(plot[0], py), (plot[2], py)], GRID));
+        if py + TEXT * 0.6 < end {
+            marks.push(word(
+                (plot[0] - 7.0, py + TEXT * 0.35),
+                text,
+                TEXT,
+                Anchor::End,
+                INK,
+            ));
+            end = py - TEXT * 0.6;
+        }
+    }
+    marks.push(line(
+        vec![(plot[0], plot[1]), (plot[0], plot[3]), (plot[2], plot[3])],
+        INK,
+    ));
+    let middle = (plot[0] + plot[2]) / 2.0;
+    // A long name is moved so that it stays within the figure.
+    let half = width(x_label, TEXT) / 2.0;
+    let at = middle.min(WIDTH - EDGE - half).max(EDGE + half);
+    marks.push(word(
+        (at, plot[3] + 2.0 * TEXT + 12.0),
+        x_label,
+        TEXT,
+        Anchor::Middle,
+        INK,
+    ));
+    marks.push(Mark::Word {
+        at: (EDGE + TEXT * 0.8, (plot[1] + plot[3]) / 2.0),
+        text: y_label.to_owned(),
+        size: TEXT,
+        anchor: Anchor::Middle,
+        color: INK,
+        upwards: true,
+    });
+}
+
+pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
+    let (fill, stroke) = if style.filled {
+        (style.color(), (PAPER, 0.8))
+    } else {
+        (PAPER, (style.color(), 1.8))
+    };
+    Mark::Shape {
+        points: style.marker(x, y, MARKER),
+        fill,
+        stroke: Some(stroke),
+    }
+}
+
+/// A word beside a point, in the first of eight places that is free; none where all are taken.
+fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Option<Mark> {
+    let (near, up, down) = (8.0, -8.0, 8.0 + 0.76 * SMALL);
+    let level = 0.35 * SMALL;
+    let places = [
+        (near, level, Anchor::Start),
+        (0.0, up, Anchor::Middle),
+        (0.0, down, Anchor::Middle),
+        (-near, level, Anchor::End),
+        (6.0, up, Anchor::Start),
+        (6.0, down, Anchor::Start),
+        (-6.0, up, Anchor::End),
+        (-6.0, down, Anchor::End),
+    ];
+    places
+        .into_iter()
+        .map(|(dx, dy, anchor)| word((x + dx, y + dy), text, SMALL, anchor, PALE))
+        .find(|mark| {
+            let b = mark.bounds();
+            b[0] > plot[0]
+                && b[1] > plot[1]
+                && b[2] < plot[2]
+                && b[3] < plot[3]
+                && !taken.iter().any(|t| overlap(*t, b))
+        })
+}
+
+/// Names in lines as wide as the figure; gives the place below.
+pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Key)]) -> f64 {
+    let (mut x, mut y) = (EDGE, top);
+    for (i, (name, key)) in entries.iter().enumerate() {
+        let sign = 26.0;
+        let needed = sign + 6.0 + width(name, TEXT) + 16.0;
+        if i > 0 && x + needed > WIDTH {
+            x = EDGE;
+            y += TEXT + 8.0;
+        }
+        let level = y + TEXT * 0.1;
+        let line = |color, dashed| Mark::Line {
+            points: vec![(x, level), (x + sign, level)],
+            color,
+            width: 1.6,
+            dashed,
+        };
+        match key {
+            Key::Dot(style, joined) => {
+                if *joined {
+                    marks.push(line(style.color(), false));
+                }
+                marks.push(dot(*style, (x + sign / 2.0, level)));
+            }
+            Key::Line(color, dashed) => marks.push(line(color, *dashed)),
+        }
+        marks.push(word(
+            (x + sign + 6.0, y + TEXT * 0.45),
+            name,
+            TEXT,
+            Anchor::Start,
+            INK,
+        ));
+        x += needed;
+    }
+    if entries.is_empty() {
+        top - TEXT
+    } else {
+        y + TEXT * 0.7
+    }
+}
+
+/// The parts of a line within a rectangle (Liang and Barsky, segment by segment).
+fn clip(points: &[(f64, f64)], plot: Bounds) -> Vec<Vec<(f64, f64)>> {
+    let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
+    for pair in points.windows(2) {
+        let (p, q) = (pair[0], pair[1]);
+        let (dx, dy) = (q.0 - p.0, q.1 - p.1);
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        let mut inside = true;
+        for (step, room) in [
+            (-dx, p.0 - plot[0]),
+            (dx, plot[2] - p.0),
+            (-dy, p.1 - plot[1]),
+            (dy, plot[3] - p.1),
+        ] {
+            if step == 0.0 {
+                inside &= room >= 0.0;
+            } else if step < 0.0 {
+                from = from.max(room / step);
+            } else {
+                to = to.min(room / step);
+            }
+        }
+        if !inside || from > to {
+            continue;
+        }
+        let at = |t: f64| (p.0 + t * dx, p.1 + t * dy);
+        match parts.last_mut() {
+            Some(part) if from == 0.0 && part.last() == Some(&p) => part.push(at(to)),
+            _ => parts.push(vec![at(from), at(to)]),
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crowded() -> XyChart {
+        let series = |index: usize| Series {
+            name: format!("a search of some length, number {index}"),
+            style: Style {
+                index,
+                filled: index.is_multiple_of(2),
+            },
+            points: (0..7)
+                .map(|k| Point {
+                    x: 10.0 * 1.05f64.powi(k + index as i32),
+                    y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
+                    label: Some(format!("{k} steps")),
+                })
+                .collect(),
+            joined: true,
+        };
+        XyChart {
+            title: "A title that is long enough to need more than one line, since it says a great deal about what is shown below".into(),
+            x: Axis::log("time of a frame (ms)"),
+            y: Axis::log("depth error, 99th percentile (texels)").from(1e-3),
+            series: (0..9).map(series).collect(),
+            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dashed: true }],
+        }
+    }
+
+    #[test]
+    fn no_words_cover_each_other_however_crowded() {
+        assert_eq!(crowded().figure().faults(), Vec::<String>::new());
+        for (low, high) in [(1e-9, 1e9), (0.999, 1.001), (21.0, 26.0), (3.0, 3.0)] {
+            let mut chart = crowded();
+            chart.series.truncate(1);
+            chart.series[0].points = [low, high]
+                .map(|v| Point {
+                    x: v,
+                    y: v,
+                    label: None,
+                })
+                .to_vec();
+            assert_eq!(
+                chart.figure().faults(),
+                Vec::<String>::new(),
+                "{low} to {high}"
+            );
+        }
+        // The check itself finds what is planted.
+        let mut figure = crowded().figure();
+        figure
+            .marks
+            .push(word((20.0, 30.0), "planted", 14.0, Anchor::Start, INK));
+        figure
+            .marks
+            .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
+        assert!(figure.faults().len() >= 2);
+    }
+
+    #[test]
+    fn points_stand_where_their_values_are() {
+        let mut chart = crowded();
+        chart.series = vec![Series {
+            name: String::new(),
+            style: Style {
+                index: 0,
+                filled: true,
+            },
+            joined: false,
+            points: vec![],
+        }];
+        chart.series[0].points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
+            .map(|(x, y)| Point { x, y, label: None })
+            .to_vec();
+        chart.guides.clear();
+        let centers: Vec<_> = chart
+            .figure()
+            .marks
+            .iter()
+            .filter_map(|m| match m {
+                Mark::Shape { .. } => Some(m.bounds()),
+                _ => None,
+            })
+            .map(|b| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0))
+            .collect();
+        assert_eq!(centers.len(), 3);
+        // Equal ratios, equal ways; less error is further down.
+        assert!((centers[1].0 * 2.0 - centers[0].0 - centers[2].0).abs() < 1e-6);
+        assert!(centers[0].0 < centers[1].0 && centers[0].1 < centers[1].1);
+    }
+
+    #[test]
+    fn lines_are_cut_at_the_plot() {
+        let plot = [0.0, 0.0, 10.0, 10.0];
+        assert_eq!(
+            clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (20.0, 20.0)], plot),
+            [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]
+        );
+        assert!(clip(&[(-5.0, -5.0), (-1.0, 20.0)], plot).is_empty());
+        assert_eq!(
+            stairs(&[(1.0, 3.0), (2.0, 1.0)]),
+            [(1.0, 3.0), (2.0, 3.0), (2.0, 1.0)]
+        );
+    }
+}

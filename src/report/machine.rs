@@ -1,0 +1,173 @@
+//! The note on the machine that stands beside every result.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Where and when something was measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Machine {
+    /// The Vulkan device's name.
+    pub device: String,
+    /// Its kind: discrete, integrated, virtual, cpu.
+    pub kind: String,
+    /// Driver and version.
+    pub driver: String,
+    /// The processor's name.
+    pub processor: String,
+    /// Threads that the program may use.
+    pub threads: usize,
+    /// Memory, GB; empty where the system does not tell.
+    pub memory: String,
+    /// The operating system.
+    pub system: String,
+    /// Date and time of the start, UTC.
+    pub date: String,
+    /// This program and its version.
+    pub program: String,
+    /// The command that makes the results again.
+    pub command: String,
+}
+
+impl Machine {
+    /// This machine, now.
+    #[must_use]
+    pub fn here(device: &str, kind: &str, driver: &str, command: &str) -> Self {
+        let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let memory = field(&read("/proc/meminfo"), "MemTotal", ':')
+            .and_then(|v| v.trim_end_matches(" kB").parse::<f64>().ok())
+            .map(|kb| format!("{:.0} GB", kb / 1_048_576.0))
+            .unwrap_or_default();
+        let system = field(&read("/etc/os-release"), "PRETTY_NAME", '=')
+            .unwrap_or_else(|| std::env::consts::OS.to_owned());
+        let processor = field(&read("/proc/cpuinfo"), "model name", ':')
+            .unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+        let now = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map_or(0, |d| d.as_secs());
+        Self {
+            device: device.to_owned(),
+            kind: kind.to_owned(),
+            driver: driver.to_owned(),
+            processor,
+            threads,
+            memory,
+            system,
+            date: date(now),
+            program: format!("revmap {}", env!("CARGO_PKG_VERSION")),
+            command: command.to_owned(),
+        }
+    }
+
+    /// The note as `(what, which)`.
+    #[must_use]
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut lines = vec![
+            ("device", format!("{} ({})", self.device, self.kind)),
+            ("driver", self.driver.clone()),
+            (
+                "processor",
+                format!("{}, {} threads", self.processor, self.threads),
+            ),
+            ("memory", self.memory.clone()),
+            ("system", self.system.clone()),
+            ("date", self.date.clone()),
+            ("program", self.program.clone()),
+            ("command", self.command.clone()),
+        ];
+        lines.retain(|(_, which)| !which.is_empty());
+        lines
+    }
+
+    /// A name for a folder of results: `2026-01-31-llvmpipe`.
+    #[must_use]
+    pub fn folder(&self) -> String {
+        let words: String = self
+            .device
+            .to_lowercase()
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' })
+            .collect();
+        let name: Vec<&str> = words.split_whitespace().take(3).collect();
+        let name = if words.starts_with("llvmpipe") {
+            "lavapipe".to_owned()
+        } else {
+            name.join("-")
+        };
+        format!(
+            "{}-{name}",
+            self.date.split(' ').next().unwrap_or("undated")
+        )
+    }
+}
+
+/// The value of the first line that starts with `key`.
+fn field(text: &str, key: &str, sign: char) -> Option<String> {
+    text.lines()
+        .filter_map(|line| line.split_once(sign))
+        .find(|(name, _)| name.trim() == key)
+        .map(|(_, value)| value.trim().trim_matches('"').to_owned())
+}
+
+/// Seconds since 1970 as `2026-01-31 23:59 UTC`.
+fn date(seconds: u64) -> String {
+    // Days counted from 1 March of the year 0, so that the leap day ends a year (H. Hinnant's civil_from_days).
+    let days = seconds / 86_400 + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (month, year) = if month < 10 {
+        (month + 3, era * 400 + year)
+    } else {
+        (month - 9, era * 400 + year + 1)
+    };
+    let (hour, minute) = (seconds / 3600 % 24, seconds / 60 % 60);
+    format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_of_known_seconds() {
+        for (seconds, wanted) in [
+            (0, "1970-01-01 00:00 UTC"),
+            (951_782_399, "2000-02-28 23:59 UTC"),
+            (951_782_400, "2000-02-29 00:00 UTC"),
+            (4_107_542_400, "2100-03-01 00:00 UTC"),
+            (1_767_225_599, "2025-12-31 23:59 UTC"),
+        ] {
+            assert_eq!(date(seconds), wanted);
+        }
+    }
+
+    #[test]
+    fn a_folder_is_named_after_day_and_device() {
+        let mut here = Machine::here(
+            "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "cpu",
+            "Mesa",
+            "revmap bench",
+        );
+        here.date = "2026-01-31 10:00 UTC".into();
+        assert_eq!(here.folder(), "2026-01-31-lavapipe");
+        here.device = "NVIDIA GeForce RTX 4090".into();
+        assert_eq!(here.folder(), "2026-01-31-nvidia-geforce-rtx");
+        assert!(here.lines().iter().all(|(_, which)| !which.is_empty()) && here.threads > 0);
+    }
+
+    #[test]
+    fn fields_of_the_systems_files() {
+        assert_eq!(
+            field("a : b\nmodel name\t: X 3\n", "model name", ':').as_deref(),
+            Some("X 3")
+        );
+        assert_eq!(
+            field("NAME=\"u\"\nPRETTY_NAME=\"Deb 12\"", "PRETTY_NAME", '=').as_deref(),
+            Some("Deb 12")
+        );
+        assert_eq!(field("", "x", '='), None);
+    }
+}

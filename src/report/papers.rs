@@ -1,0 +1,471 @@
+//! The papers' tables of frame rates (article of 2022, tables 1 to 3), measured again here, each search beside the print.
+
+use super::chart::axis::Axis;
+use super::chart::xy::{Point, Series, XyChart};
+use super::folder::write_text;
+use super::machine::Machine;
+use super::measure::Measured;
+use super::names::{number, stage};
+use super::overview::{self, Looks, keep_figure};
+use super::page::Page;
+use super::pictures::Album;
+use super::plan::{Plan, variant};
+use super::ratios::between;
+use super::row::Row;
+use super::stats::Interval;
+use super::suite::{self, Extent};
+use super::text;
+use super::view::View;
+use crate::error::{Error, Result, Stage};
+use crate::maps::{BakeOptions, MapSource, ShapeMap};
+use crate::scene::Offset;
+use crate::settings::Settings;
+use std::path::Path;
+
+/// Sizes of the papers' pictures.
+pub const SIZES: [(u32, u32); 2] = [(800, 600), (1366, 706)];
+
+/// One of the papers' tables.
+pub struct Printed {
+    /// Its number in the article.
+    pub number: usize,
+    /// What it varies.
+    pub title: &'static str,
+    /// The letter of the parameter.
+    pub letter: char,
+    /// The parameter's values: `e` and `b` as fractions of the largest distance in the map.
+    pub values: [f64; 3],
+    /// Frames per second as printed, of each of [`SIZES`].
+    pub rates: [[f64; 3]; 2],
+    /// What the article says of speed as the parameter grows.
+    pub claim: Trend,
+}
+
+/// How speed goes as a parameter grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trend {
+    /// It falls.
+    Falls,
+    /// It rises.
+    Rises,
+    /// Neither, within the interval.
+    Unclear,
+}
+
+impl Trend {
+    /// A word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Falls => "falls",
+            Self::Rises => "rises",
+            Self::Unclear => "no clear change",
+        }
+    }
+}
+
+/// The tables as printed. Measured by the authors on an Intel Core i7-3612QM with a GeForce GT 630M.
+pub const TABLES: [Printed; 3] = [
+    Printed {
+        number: 1,
+        title: "extended, e growing",
+        letter: 'e',
+        values: [0.25, 0.5, 0.8],
+        rates: [[180.0, 170.0, 160.0], [150.0, 145.0, 130.0]],
+        claim: Trend::Falls,
+    },
+    Printed {
+        number: 2,
+        title: "beveled, b growing",
+        letter: 'b',
+        values: [0.25, 0.5, 0.8],
+        rates: [[200.0, 210.0, 230.0], [190.0, 195.0, 200.0]],
+        claim: Trend::Rises,
+    },
+    Printed {
+        number: 3,
+        title: "chamfered, c growing, b = 0.8",
+        letter: 'c',
+        values: [0.25, 0.5, 0.7],
+        rates: [[195.0, 209.0, 216.0], [174.0, 176.0, 182.0]],
+        claim: Trend::Rises,
+    },
+];
+
+/// The slope of the bevel in table 3.
+const CHAMFERED_BEVEL: f64 = 0.8;
+
+/// The nine views of the tables: table by table, value by value.
+///
+/// # Errors
+/// Of the solid that the program carries.
+pub fn views() -> Result<Vec<View>> {
+    let base = suite::views(Extent::One, &[25.0])?
+        .into_iter()
+        .next()
+        .ok_or_else(|| {
+            Error::new(
+                Stage::Report,
+                "the program carries no solid; build it with the feature `scene-file`",
+            )
+        })?;
+    let largest = largest_distance(&base)?;
+    let mut views = Vec::new();
+    for table in &TABLES {
+        for value in table.values {
+            let mut view = base.clone();
+            view.name = format!("{}-{}{}", base.name, table.letter, number(value, 3));
+            let offset = match table.letter {
+                'e' => Offset {
+                    extend: value * largest,
+                    ..Offset::default()
+                },
+                'b' => Offset {
+                    bevel: value * largest,
+                    ..Offset::default()
+                },
+                _ => Offset {
+                    bevel: CHAMFERED_BEVEL * largest,
+                    chamfer: value,
+                    ..Offset::default()
+                },
+            };
+            view.scene
+                .objects
+                .iter_mut()
+                .for_each(|o| o.offset = offset);
+            views.push(view);
+        }
+    }
+    Ok(views)
+}
+
+/// The largest distance that the papers' map of a view's solid holds, object units.
+fn largest_distance(view: &View) -> Result<f64> {
+    let mut largest = 0.0f64;
+    for object in &view.scene.objects {
+        let map = ShapeMap::bake(
+            &object.profile,
+            &BakeOptions::new(MapSource::Binary, object.map_rows),
+        )?;
+        largest = largest.max(f64::from(map.largest_distance()));
+    }
+    Ok(largest)
+}
+
+/// Speed from a table's first value to its last, with the ratio of the rates.
+#[must_use]
+pub fn trend(first: &Row, last: &Row) -> Option<(Trend, Interval)> {
+    // Rates are one over times.
+    let ratio = between(first, last)?;
+    let trend = if ratio.low > 1.0 {
+        Trend::Rises
+    } else if ratio.high < 1.0 {
+        Trend::Falls
+    } else {
+        Trend::Unclear
+    };
+    Some((trend, ratio))
+}
+
+/// One line of a table: a way of drawing at a size, its rate at each value.
+struct Measures<'a> {
+    way: Settings,
+    size: (u32, u32),
+    rows: [Option<&'a Row>; 3],
+}
+
+fn lines<'a>(rows: &'a [Row], table: usize) -> Vec<Measures<'a>> {
+    let mut lines: Vec<Measures> = Vec::new();
+    for row in rows.iter().filter(|r| r.view / 3 == table) {
+        let (way, size) = (
+            variant(&row.settings),
+            (row.settings.width, row.settings.height),
+        );
+        let place = row.view % 3;
+        match lines.iter_mut().find(|l| l.way == way && l.size == size) {
+            Some(line) => line.rows[place] = Some(row),
+            None => {
+                let mut line = Measures {
+                    way,
+                    size,
+                    rows: [None; 3],
+                };
+                line.rows[place] = Some(row);
+                lines.push(line);
+            }
+        }
+    }
+    lines.sort_by_key(|l| l.size);
+    lines
+}
+
+/// A table's header and records, the print first.
+fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<String>>) {
+    let table = &TABLES[index];
+    let mut header = vec!["size".to_owned(), "search".to_owned(), "stage".to_owned()];
+    header.extend(
+        table
+            .values
+            .iter()
+            .map(|v| format!("{} = {}", table.letter, number(*v, 3))),
+    );
+    header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
+    let mut records = Vec::new();
+    for (size, rates) in SIZES.iter().zip(&table.rates) {
+        let mut print = vec![
+            format!("{}x{}", size.0, size.1),
+            "print, GT 630M".into(),
+            "fragment".into(),
+        ];
+        print.extend(rates.iter().map(|r| number(*r, 4)));
+        print.extend([
+            number(rates[2] / rates[0], 3),
+            table.claim.name().to_owned(),
+        ]);
+        records.push(print);
+        for line in lines(rows, index).iter().filter(|l| l.size == *size) {
+            let mut record = vec![
+                format!("{}x{}", size.0, size.1),
+                looks.way(&line.way),
+                stage(line.way.stage).to_owned(),
+            ];
+            record.extend(
+                line.rows
+                    .iter()
+                    .map(|row| match row.and_then(|r| r.time()) {
+                        Some(time) => number(1e3 / time.value, 3),
+                        None => "–".to_owned(),
+                    }),
+            );
+            let found = line.rows[0]
+                .zip(line.rows[2])
+                .and_then(|(first, last)| trend(first, last));
+            match found {
+                Some((trend, ratio)) => {
+                    record.extend([text::interval(&ratio, 3), trend.name().to_owned()])
+                }
+                None => record.extend(["–".to_owned(), "–".to_owned()]),
+            }
+            records.push(record);
+        }
+    }
+    (header, records)
+}
+
+/// All three tables as text.
+#[must_use]
+pub fn as_text(rows: &[Row]) -> String {
+    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+    let looks = Looks::new(&ways);
+    let mut out = String::new();
+    for (index, table) in TABLES.iter().enumerate() {
+        let (header, records) = records(rows, index, &looks);
+        out += &format!(
+            "Table {}: {}, frames per second\n",
+            table.number, table.title
+        );
+        out += &text::table(&[vec![header], records].concat());
+        out.push('\n');
+    }
+    out
+}
+
+/// What may be compared, and what may not.
+const COMPARABLE: [&str; 3] = [
+    "The print names neither the solid, nor its textures, nor what of the picture it covers, and gives rates rounded to five frames: its rates cannot be set against ours, \
+     on whatever device. Its pictures hold a displacement map as well; ours here hold the plain solid, which is cheaper to shade.",
+    "What can be compared is the trend along a line: how a rate changes as a parameter grows, all else equal. That is why each line ends with the ratio of its last rate to its first, with the interval of \
+     this run.",
+    "e and b are fractions of the largest distance that the map of the plain solid holds, as the papers scale them; the bevel's 25 steps are followed by 10 halvings there, 35 \
+     look-ups in all. Offsets grow the solid until its box cuts it, so that the share of the picture that is hit changes with them, which moves rates by itself.",
+];
+
+/// Writes the page of the tables.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(
+    folder: &Path,
+    plan: &Plan,
+    measured: &Measured,
+    machine: &Machine,
+    album: &Album,
+) -> Result<()> {
+    let rows = &measured.rows;
+    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+    let looks = Looks::new(&ways);
+    let mut page = Page::new("revmap: the papers' tables, measured again");
+    overview::begin(&mut page, machine, measured);
+    page.chapter("What can be compared");
+    COMPARABLE.iter().for_each(|words| page.text(words));
+    for (index, table) in TABLES.iter().enumerate() {
+        page.chapter(&format!("Table {}: {}", table.number, table.title));
+        let (header, records) = records(rows, index, &looks);
+        let header: Vec<&str> = header.iter().map(String::as_str).collect();
+        page.text("Frames per second; the print, and below it every search as measured here.");
+        page.table(&header, &records, &[0, 1, 2, 7]);
+        for size in SIZES {
+            let figure = chart(table, rows, index, size, &looks);
+            if figure.1 == 0 {
+                continue;
+            }
+            keep_figure(
+                folder,
+                &format!("table{}-{}x{}", table.number, size.0, size.1),
+                &figure.0,
+            )?;
+            page.figure(
+                &figure.0,
+                &format!(
+                    "Each line is a search in one stage, filled for fragment and hollow for compute: its rate over its own rate at the smallest {}, so that lines that rise get faster.",
+                    table.letter
+                ),
+            );
+        }
+    }
+    page.chapter("All rows");
+    overview::row_table(&mut page, rows, &looks);
+    overview::pictures(&mut page, plan, album);
+    overview::end(&mut page, plan, measured);
+    write_text(&folder.join("report.html"), &page.html())
+}
+
+/// Rates over the first of each line, and how many lines there are.
+fn chart(
+    table: &Printed,
+    rows: &[Row],
+    index: usize,
+    size: (u32, u32),
+    looks: &Looks,
+) -> (super::chart::Figure, usize) {
+    let mut series = Vec::new();
+    for line in lines(rows, index).iter().filter(|l| l.size == size) {
+        let Some(first) = line.rows[0].and_then(|r| r.time()) else {
+            continue;
+        };
+        let points = line
+            .rows
+            .iter()
+            .zip(table.values)
+            .filter_map(|(row, value)| {
+                let time = row.and_then(|r| r.time())?;
+                Some(Point {
+                    x: value,
+                    y: first.value / time.value,
+                    label: None,
+                })
+            });
+        series.push(Series {
+            name: looks.name(&line.way),
+            style: looks.style(&line.way),
+            points: points.collect(),
+            joined: true,
+        });
+    }
+    let count = series.len();
+    let print = SIZES
+        .iter()
+        .position(|s| *s == size)
+        .map(|k| table.rates[k]);
+    let guides = print
+        .map(|rates| super::chart::xy::Guide {
+            name: "print".into(),
+            points: table
+                .values
+                .iter()
+                .zip(rates)
+                .map(|(v, r)| (*v, r / rates[0]))
+                .collect(),
+            color: super::chart::style::PALE,
+            dashed: true,
+        })
+        .into_iter()
+        .collect();
+    let unit = if table.letter == 'c' {
+        "depth to which the bevel reaches"
+    } else {
+        "fraction of the map's largest distance"
+    };
+    let figure = XyChart {
+        title: format!(
+            "Table {}: {}, {}x{}",
+            table.number, table.title, size.0, size.1
+        ),
+        x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
+        y: Axis::linear("rate / rate at the first value").with(1.0),
+        series,
+        guides,
+    }
+    .figure();
+    (figure, count)
+}
+
+#[cfg(all(test, feature = "scene-file"))]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::row::tests::row;
+    use super::super::view::Technique;
+    use super::*;
+
+    #[test]
+    fn the_views_are_those_of_the_tables() {
+        let views = views().unwrap();
+        assert_eq!(views.len(), 9);
+        for (k, wanted) in [
+            Technique::Extended,
+            Technique::Beveled,
+            Technique::Chamfered,
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            assert!(
+                views[3 * k..3 * k + 3]
+                    .iter()
+                    .all(|v| v.technique() == wanted)
+            );
+        }
+        let offset = |k: usize| views[k].offset().unwrap();
+        assert!((offset(2).extend / offset(0).extend - 3.2).abs() < 1e-9);
+        assert!((offset(6).bevel - offset(5).bevel).abs() < 1e-12 && offset(8).chamfer == 0.7);
+        views.iter().for_each(|v| v.scene.check().unwrap());
+    }
+
+    #[test]
+    fn trends_are_told_only_when_they_are_sure() {
+        let timed = |times: [f64; 4]| {
+            row(&times
+                .map(|t| [(None, t)])
+                .iter()
+                .map(|p| p.as_slice())
+                .collect::<Vec<_>>())
+        };
+        let slow = timed([20.0, 20.4, 19.8, 20.1]);
+        let fast = timed([10.0, 10.1, 9.9, 10.2]);
+        let noisy = timed([14.0, 30.0, 20.0, 24.0]);
+        assert_eq!(trend(&slow, &fast).unwrap().0, Trend::Rises);
+        assert_eq!(trend(&fast, &slow).unwrap().0, Trend::Falls);
+        assert_eq!(trend(&slow, &noisy).unwrap().0, Trend::Unclear);
+    }
+
+    #[test]
+    fn a_line_holds_its_three_values() {
+        let mut rows = Vec::new();
+        for (view, ms) in [(3, 10.0), (4, 8.0), (5, 5.0), (0, 1.0)] {
+            let mut r = row(&[&[(None, ms)], &[(None, ms)]]);
+            r.view = view;
+            rows.push(r);
+        }
+        let looks = Looks::new(
+            &rows
+                .iter()
+                .map(|r| variant(&r.settings))
+                .collect::<Vec<_>>(),
+        );
+        let (_, records) = records(&rows, 1, &looks);
+        assert_eq!(records.len(), 3);
+        assert_eq!(records[0][3..], ["200", "210", "230", "1.15", "rises"]);
+        assert_eq!(records[1][3..7], ["100", "125", "200", "2 (2 to 2)"]);
+    }
+}

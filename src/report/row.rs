@@ -1,0 +1,380 @@
+//! One measurement with all that was found out about it, as a line of `results.csv`.
+
+use super::measure::Sample;
+use super::names::{self, number};
+use super::plan::Case;
+use super::stats::{self, Interval};
+use super::view::{Technique, View};
+use crate::frame::{Comparison, Frame};
+use crate::maps::MapSource;
+use crate::scene::Offset;
+use crate::settings::Settings;
+
+/// Columns of `results.csv`, in their order.
+pub const COLUMNS: [&str; 31] = [
+    "scene",
+    "technique",
+    "extend",
+    "bevel",
+    "chamfer",
+    "stage",
+    "solver",
+    "max_steps",
+    "width",
+    "height",
+    "map_rows",
+    "map_source",
+    "map_format",
+    "objects",
+    "gpu_ms_median",
+    "gpu_ms_p95",
+    "frame_ms_median",
+    "fps",
+    "steps_mean",
+    "steps_p99",
+    "steps_max",
+    "missed",
+    "ghost",
+    "depth_rms_texels",
+    "depth_p99_texels",
+    "depth_max_texels",
+    "normal_rms_degrees",
+    "silhouette_hausdorff_px",
+    "flip",
+    "device",
+    "driver",
+];
+
+/// How far the device's clock and the wall clock may be apart, relative to the wall clock.
+pub const CLOCKS_APART: f64 = 0.15;
+
+/// Look-ups over the pixels in which the search ran.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steps {
+    /// Mean.
+    pub mean: f64,
+    /// 99th percentile (nearest rank).
+    pub p99: f64,
+    /// Most.
+    pub max: f64,
+}
+
+impl Steps {
+    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any box.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Self {
+        let steps: Vec<f64> = frame
+            .steps
+            .iter()
+            .filter(|s| **s > 0.0)
+            .map(|s| f64::from(*s))
+            .collect();
+        Self {
+            mean: steps.iter().sum::<f64>() / steps.len().max(1) as f64,
+            p99: stats::quantile(&steps, 0.99).unwrap_or(0.0),
+            max: steps.iter().copied().fold(0.0, f64::max),
+        }
+    }
+}
+
+/// What the two clocks say about each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clocks {
+    /// They agree.
+    Agree,
+    /// The device has no clock of its own; the wall clock stands alone.
+    Wall,
+    /// They are further apart than [`CLOCKS_APART`]: at least one is wrong, and the row counts in no summary.
+    Disagree {
+        /// Median of the device's clock, ms.
+        gpu_ms: f64,
+        /// Median of the wall clock, ms.
+        frame_ms: f64,
+    },
+}
+
+/// One measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Index of the view in the plan.
+    pub view: usize,
+    /// The view's name.
+    pub scene: String,
+    /// Form of the offset.
+    pub technique: Technique,
+    /// The offset, where all objects have the same.
+    pub offset: Option<Offset>,
+    /// How it was drawn.
+    pub settings: Settings,
+    /// Rows of the maps, where all objects have the same.
+    pub map_rows: Option<u32>,
+    /// Source of the distances, where all objects have the same.
+    pub source: Option<MapSource>,
+    /// Solids in the scene, copies counted.
+    pub solids: usize,
+    /// How far the picture is from the truth.
+    pub errors: Comparison,
+    /// Look-ups.
+    pub steps: Steps,
+    /// Bytes of maps on the device.
+    pub map_bytes: u64,
+    /// What frames took, in the passes and rounds in which they were drawn.
+    pub passes: Vec<Vec<Sample>>,
+}
+
+impl Row {
+    /// A row of which the accuracy is known, and no time yet.
+    #[must_use]
+    pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
+        let objects = &view.scene.objects;
+        let settings = case.settings;
+        Self {
+            view: case.view,
+            scene: view.name.clone(),
+            technique: view.technique(),
+            offset: view.offset(),
+            settings,
+            map_rows: settings
+                .map_rows
+                .or_else(|| one(objects.iter().map(|o| o.map_rows))),
+            source: settings
+                .map_source
+                .or_else(|| one(objects.iter().map(|o| MapSource::best_for(&o.profile)))),
+            solids: view.solids(),
+            errors,
+            steps,
+            map_bytes,
+            passes: Vec::new(),
+        }
+    }
+
+    /// The bound on steps.
+    #[must_use]
+    pub fn max_steps(&self) -> u32 {
+        self.settings.max_steps.unwrap_or_else(|| {
+            self.settings
+                .solver
+                .default_steps(self.offset.is_some_and(|o| o.bevel != 0.0))
+        })
+    }
+
+    /// All samples of the device's clock, ms; empty where it has none.
+    #[must_use]
+    pub fn gpu_ms(&self) -> Vec<f64> {
+        self.passes
+            .iter()
+            .flatten()
+            .filter_map(|s| s.gpu_ms)
+            .collect()
+    }
+
+    /// All samples of the wall clock, ms.
+    #[must_use]
+    pub fn frame_ms(&self) -> Vec<f64> {
+        self.passes.iter().flatten().map(|s| s.frame_ms).collect()
+    }
+
+    /// Whether the two clocks agree.
+    #[must_use]
+    pub fn clocks(&self) -> Clocks {
+        let Some(gpu_ms) = stats::median(&self.gpu_ms()) else {
+            return Clocks::Wall;
+        };
+        let frame_ms = stats::median(&self.frame_ms()).unwrap_or(0.0);
+        if (gpu_ms - frame_ms).abs() <= CLOCKS_APART * frame_ms {
+            Clocks::Agree
+        } else {
+            Clocks::Disagree { gpu_ms, frame_ms }
+        }
+    }
+
+    /// One sample's time: by the device's clock where there is one, else by the wall clock.
+    #[must_use]
+    pub fn sample_ms(sample: &Sample) -> f64 {
+        sample.gpu_ms.unwrap_or(sample.frame_ms)
+    }
+
+    /// The median of each pass, ms.
+    #[must_use]
+    pub fn pass_medians(&self) -> Vec<f64> {
+        let times = |pass: &Vec<Sample>| {
+            stats::median(&pass.iter().map(Self::sample_ms).collect::<Vec<_>>())
+        };
+        self.passes.iter().filter_map(times).collect()
+    }
+
+    /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was timed.
+    #[must_use]
+    pub fn time(&self) -> Option<Interval> {
+        match self.clocks() {
+            Clocks::Disagree { .. } => None,
+            Clocks::Agree | Clocks::Wall => stats::geometric(&self.pass_medians()),
+        }
+    }
+
+    /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are empty: a number there
+    /// would be believed.
+    #[must_use]
+    pub fn record(&self, device: &str, driver: &str) -> Vec<String> {
+        let gpu = match self.clocks() {
+            Clocks::Agree => self.gpu_ms(),
+            Clocks::Wall | Clocks::Disagree { .. } => Vec::new(),
+        };
+        let frame = stats::median(&self.frame_ms());
+        let num = |v: Option<f64>| v.map(|v| number(v, 6)).unwrap_or_default();
+        let offset = |f: fn(&Offset) -> f64| num(self.offset.as_ref().map(f));
+        let e = &self.errors;
+        let whole = |n: usize| n.to_string();
+        let s = &self.settings;
+        vec![
+            self.scene.clone(),
+            self.technique.name().into(),
+            offset(|o| o.extend),
+            offset(|o| o.bevel),
+            offset(|o| o.chamfer),
+            names::stage(s.stage).into(),
+            s.solver.name().into(),
+            self.max_steps().to_string(),
+            s.width.to_string(),
+            s.height.to_string(),
+            self.map_rows.map(|r| r.to_string()).unwrap_or_default(),
+            self.source.map(names::source).unwrap_or_default().into(),
+            names::format(s.map_format).into(),
+            whole(self.solids),
+            num(stats::median(&gpu)),
+            num(stats::quantile(&gpu, 0.95)),
+            num(frame),
+            num(frame.map(|ms| 1e3 / ms)),
+            num(Some(self.steps.mean)),
+            num(Some(self.steps.p99)),
+            num(Some(self.steps.max)),
+            whole(e.missed),
+            whole(e.ghost),
+            num(e.depth.map(|d| d.rms)),
+            num(e.depth.map(|d| d.p99)),
+            num(e.depth.map(|d| d.max)),
+            num(e.normal.map(|n| n.rms)),
+            num(Some(e.silhouette_hausdorff)),
+            num(Some(e.flip)),
+            device.into(),
+            driver.into(),
+        ]
+    }
+}
+
+/// The value that all have, if they do.
+fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
+    let first = all.next()?;
+    all.all(|other| other == first).then_some(first)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::view::tests::spindle;
+    use super::*;
+    use crate::frame::{CompareOptions, compare};
+
+    /// A row without errors, timed as told: `(gpu, frame)` in each pass and round.
+    pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
+        let frame = Frame::new(4, 3, [0.0; 4]).unwrap();
+        let errors = compare(&frame, &frame, &CompareOptions::default()).unwrap();
+        let case = Case {
+            view: 0,
+            settings: Settings {
+                solver: crate::settings::Solver::Circle,
+                map_format: crate::maps::MapFormat::R16,
+                ..Settings::default()
+            },
+        };
+        let mut row = Row::new(&spindle(), &case, errors, Steps::of(&frame), 1000);
+        let samples = |pass: &&[(Option<f64>, f64)]| {
+            pass.iter()
+                .map(|&(gpu_ms, frame_ms)| Sample { gpu_ms, frame_ms })
+                .collect()
+        };
+        row.passes = passes.iter().map(samples).collect();
+        row
+    }
+
+    #[test]
+    fn clocks_that_disagree_are_told() {
+        let fine = row(&[
+            &[(Some(20.0), 21.0), (Some(22.0), 23.0)],
+            &[(Some(21.0), 22.0)],
+        ]);
+        assert_eq!(fine.clocks(), Clocks::Agree);
+        assert!((fine.time().unwrap().value - 21.0).abs() < 1e-9);
+        // A clock that reads 36 us where 20 ms pass; one that reads too much; the bound itself.
+        let lies = row(&[&[(Some(0.036), 20.0)], &[(Some(0.036), 20.0)]]);
+        assert_eq!(
+            lies.clocks(),
+            Clocks::Disagree {
+                gpu_ms: 0.036,
+                frame_ms: 20.0
+            }
+        );
+        assert_eq!(lies.time(), None);
+        assert_eq!(row(&[&[(Some(20.0 * 1.16), 20.0)]]).time(), None);
+        assert!(row(&[&[(Some(17.0), 20.0)]]).time().is_some());
+        let alone = row(&[&[(None, 20.0)], &[(None, 20.0)]]);
+        assert_eq!(
+            (alone.clocks(), alone.time().unwrap().value.round()),
+            (Clocks::Wall, 20.0)
+        );
+    }
+
+    #[test]
+    fn a_record_has_the_columns_of_the_contract() {
+        let fine = row(&[&[(Some(20.0), 21.0), (Some(30.0), 31.0), (Some(10.0), 11.0)]]);
+        let record = fine.record("dev", "drv");
+        assert_eq!(record.len(), COLUMNS.len());
+        let at = |name: &str| &record[COLUMNS.iter().position(|c| *c == name).unwrap()];
+        for (column, wanted) in [
+            ("scene", "spindle"),
+            ("technique", "revolution"),
+            ("extend", "0"),
+            ("chamfer", "1"),
+            ("stage", "fragment"),
+            ("solver", "circle"),
+            ("max_steps", "20"),
+            ("width", "800"),
+            ("map_rows", "512"),
+            ("map_source", "exact"),
+            ("map_format", "r16"),
+            ("objects", "1"),
+            ("gpu_ms_median", "20"),
+            ("gpu_ms_p95", "30"),
+            ("frame_ms_median", "21"),
+            ("fps", "47.619"),
+            ("missed", "0"),
+            ("depth_rms_texels", ""),
+            ("flip", "0"),
+            ("device", "dev"),
+            ("driver", "drv"),
+        ] {
+            assert_eq!(at(column), wanted, "{column}");
+        }
+        let lies = row(&[&[(Some(0.036), 20.0)]]).record("dev", "drv");
+        assert_eq!(
+            (lies[14].as_str(), lies[15].as_str(), lies[16].as_str()),
+            ("", "", "20")
+        );
+    }
+
+    #[test]
+    fn steps_count_where_the_search_ran() {
+        let mut frame = Frame::new(200, 1, [0.0; 4]).unwrap();
+        for k in 0..100 {
+            frame.steps[k] = (k + 1) as f32;
+        }
+        assert_eq!(
+            Steps::of(&frame),
+            Steps {
+                mean: 50.5,
+                p99: 99.0,
+                max: 100.0
+            }
+        );
+    }
+}

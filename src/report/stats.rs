@@ -1,0 +1,328 @@
+//! The few statistics that benchmarks need: medians, intervals that are honest about few samples, geometric means, power laws.
+//!
+//! Times on one machine drift and come in bouts: neighbouring samples are alike, so an interval from all of them would be too
+//! narrow. Samples are therefore taken in several *passes*, minutes apart and with everything built anew; the median of a pass is one
+//! observation, and intervals are Student's over these few observations (the method of batch means).
+
+/// A value with the interval that covers it with 95 % confidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The estimate.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end; `+inf` above a single observation, which says nothing about spread.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Half the width, relative to the value.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        (self.high - self.low) / (2.0 * self.value)
+    }
+
+    /// Whether the two have a point in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.low <= other.high && other.low <= self.high
+    }
+}
+
+/// The value below which the share `q` of all lie (nearest rank); `None` of nothing.
+#[must_use]
+pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let rank = (q * sorted.len() as f64).ceil().max(1.0) as usize;
+    sorted.get(rank.min(sorted.len()).checked_sub(1)?).copied()
+}
+
+/// The middle value, or the mean of the two in the middle; `None` of nothing.
+#[must_use]
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let half = sorted.len() / 2;
+    match sorted.len() % 2 {
+        1 => sorted.get(half).copied(),
+        _ => Some((sorted.get(half.checked_sub(1)?)? + sorted.get(half)?) / 2.0),
+    }
+}
+
+/// Mean and standard deviation of the mean; `None` below two values.
+fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
+    if values.len() < 2 {
+        return None;
+    }
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    Some((mean, (variance / n).sqrt()))
+}
+
+/// The geometric mean of positive observations with Student's interval of their logarithms. One observation has an
+/// interval that excludes nothing; `None` of nothing, or of what is not positive.
+#[must_use]
+pub fn geometric(observations: &[f64]) -> Option<Interval> {
+    if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
+        return None;
+    }
+    let logs: Vec<f64> = observations.iter().map(|v| v.ln()).collect();
+    let Some((mean, error)) = mean_and_error(&logs) else {
+        return Some(Interval {
+            value: observations[0],
+            low: 0.0,
+            high: f64::INFINITY,
+        });
+    };
+    let reach = student(logs.len() as f64 - 1.0) * error;
+    Some(Interval {
+        value: mean.exp(),
+        low: (mean - reach).exp(),
+        high: (mean + reach).exp(),
+    })
+}
+
+/// The mean of observations with Student's interval; a single one has an interval that excludes nothing. `None` of nothing.
+#[must_use]
+pub fn mean(observations: &[f64]) -> Option<Interval> {
+    let Some((value, error)) = mean_and_error(observations) else {
+        return observations.first().map(|&value| Interval {
+            value,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        });
+    };
+    let reach = student(observations.len() as f64 - 1.0) * error;
+    Some(Interval {
+        value,
+        low: value - reach,
+        high: value + reach,
+    })
+}
+
+/// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's interval.
+#[must_use]
+pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
+    let value = geometric(a)?.value / geometric(b)?.value;
+    let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();
+    let (Some((_, ea)), Some((_, eb))) = (mean_and_error(&logs(a)), mean_and_error(&logs(b)))
+    else {
+        return Some(Interval {
+            value,
+            low: 0.0,
+            high: f64::INFINITY,
+        });
+    };
+    let (va, vb) = (ea * ea, eb * eb);
+    let degrees = if va + vb > 0.0 {
+        (va + vb).powi(2) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0))
+    } else {
+        1e9
+    };
+    let reach = (student(degrees) * (va + vb).sqrt()).exp();
+    Some(Interval {
+        value,
+        low: value / reach,
+        high: value * reach,
+    })
+}
+
+/// The factor on the standard error that gives a two-sided 95 % interval with `degrees` of freedom (Student's t).
+///
+/// Between the tabled degrees it is interpolated in `1 / degrees`, within 0.5 %.
+#[must_use]
+pub fn student(degrees: f64) -> f64 {
+    const TABLE: [(f64, f64); 13] = [
+        (1.0, 12.706),
+        (2.0, 4.303),
+        (3.0, 3.182),
+        (4.0, 2.776),
+        (5.0, 2.571),
+        (6.0, 2.447),
+        (7.0, 2.365),
+        (8.0, 2.306),
+        (10.0, 2.228),
+        (15.0, 2.131),
+        (30.0, 2.042),
+        (120.0, 1.980),
+        (1e12, 1.960),
+    ];
+    let degrees = degrees.clamp(1.0, 1e12);
+    let above = TABLE
+        .partition_point(|(d, _)| *d < degrees)
+        .clamp(1, TABLE.len() - 1);
+    let ((d0, t0), (d1, t1)) = (TABLE[above - 1], TABLE[above]);
+    let share = (1.0 / d0 - 1.0 / degrees) / (1.0 / d0 - 1.0 / d1);
+    t0 + share * (t1 - t0)
+}
+
+/// `y = factor * x ^ exponent`, fitted to logarithms by least squares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerLaw {
+    /// The exponent, with its 95 % interval; without end for two points.
+    pub exponent: Interval,
+    /// `y` at `x = 1`.
+    pub factor: f64,
+}
+
+impl PowerLaw {
+    /// Fits positive points; `None` below two different `x`.
+    #[must_use]
+    pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
+        let logs: Vec<(f64, f64)> = points
+            .iter()
+            .filter(|(x, y)| *x > 0.0 && *y > 0.0)
+            .map(|(x, y)| (x.ln(), y.ln()))
+            .collect();
+        let n = logs.len() as f64;
+        let (mx, my) = logs
+            .iter()
+            .fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+        let sxx: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
+        let sxy: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
+        if logs.len() < 2 || sxx <= 1e-12 {
+            return None;
+        }
+        let slope = sxy / sxx;
+        let residual: f64 = logs
+            .iter()
+            .map(|(x, y)| (y - my - slope * (x - mx)).powi(2))
+            .sum();
+        let reach = if logs.len() > 2 {
+            student(n - 2.0) * (residual / (n - 2.0) / sxx).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        Some(Self {
+            exponent: Interval {
+                value: slope,
+                low: slope - reach,
+                high: slope + reach,
+            },
+            factor: (my - slope * mx).exp(),
+        })
+    }
+
+    /// `y` at `x`.
+    #[must_use]
+    pub fn at(&self, x: f64) -> f64 {
+        self.factor * x.powf(self.exponent.value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Uniform numbers in [0, 1), the same on every run.
+    fn noise(seed: &mut u64) -> f64 {
+        *seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    #[test]
+    fn ranks_and_medians() {
+        let v = [5.0, 1.0, 3.0, 2.0];
+        assert_eq!(median(&v), Some(2.5));
+        assert_eq!(median(&v[..3]), Some(3.0));
+        assert_eq!((median(&[]), quantile(&[], 0.5)), (None, None));
+        assert_eq!(
+            (quantile(&v, 0.0), quantile(&v, 0.75), quantile(&v, 0.76)),
+            (Some(1.0), Some(3.0), Some(5.0))
+        );
+        let hundred: Vec<f64> = (1..=100).map(f64::from).collect();
+        assert_eq!(quantile(&hundred, 0.95), Some(95.0));
+    }
+
+    #[test]
+    fn the_interval_of_known_observations() {
+        // Logarithms -0.1, 0, 0.1: mean 0, standard error 0.1 / sqrt 3, two degrees of freedom.
+        let i = geometric(&[(-0.1f64).exp(), 1.0, 0.1f64.exp()]).unwrap();
+        let reach = 4.303 * 0.1 / 3f64.sqrt();
+        assert!(
+            (i.value - 1.0).abs() < 1e-12
+                && (i.low.ln() + reach).abs() < 1e-9
+                && (i.high.ln() - reach).abs() < 1e-9
+        );
+        let m = mean(&[1.0, 2.0, 3.0]).unwrap();
+        assert!((m.value - 2.0).abs() < 1e-12 && (m.high - 2.0 - 4.303 / 3f64.sqrt()).abs() < 1e-9);
+        let one = geometric(&[2.0]).unwrap();
+        assert_eq!((one.value, one.high), (2.0, f64::INFINITY));
+        assert_eq!(
+            (
+                geometric(&[]),
+                geometric(&[1.0, 0.0]),
+                geometric(&[1.0, f64::NAN])
+            ),
+            (None, None, None)
+        );
+    }
+
+    /// 95 % intervals cover the truth in 95 % of many trials, not in 80 and not in 100.
+    #[test]
+    fn intervals_cover_as_often_as_they_say() {
+        let mut seed = 7;
+        let mut gauss = || {
+            let (a, b) = (noise(&mut seed).max(1e-300), noise(&mut seed));
+            (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+        };
+        let (mut single, mut double) = (0, 0);
+        for _ in 0..4000 {
+            let a: Vec<f64> = (0..4).map(|_| (0.2 * gauss()).exp() * 3.0).collect();
+            let b: Vec<f64> = (0..4).map(|_| (0.05 * gauss()).exp()).collect();
+            let i = geometric(&a).unwrap();
+            single += usize::from(i.low <= 3.0 && 3.0 <= i.high);
+            let r = ratio(&a, &b).unwrap();
+            double += usize::from(r.low <= 3.0 && 3.0 <= r.high);
+        }
+        assert!((3740..3860).contains(&single), "{single} of 4000");
+        assert!((3720..3900).contains(&double), "{double} of 4000");
+    }
+
+    #[test]
+    fn students_factor_between_the_tabled() {
+        for (degrees, t) in [
+            (1.0, 12.706),
+            (9.0, 2.262),
+            (12.0, 2.179),
+            (20.0, 2.086),
+            (60.0, 2.000),
+            (1e15, 1.960),
+        ] {
+            assert!(
+                (student(degrees) / t - 1.0).abs() < 5e-3,
+                "{degrees}: {}",
+                student(degrees)
+            );
+        }
+    }
+
+    #[test]
+    fn a_power_law_is_found_with_its_interval() {
+        let exact: Vec<_> = [1.0, 4.0, 16.0, 64.0]
+            .map(|x: f64| (x, 3.0 * x.powf(0.75)))
+            .to_vec();
+        let law = PowerLaw::fit(&exact).unwrap();
+        assert!((law.exponent.value - 0.75).abs() < 1e-12 && (law.factor - 3.0).abs() < 1e-12);
+        assert!(
+            law.exponent.high - law.exponent.low < 1e-6 && (law.at(4.0) - exact[1].1).abs() < 1e-9
+        );
+        let mut bent = exact;
+        bent[3].1 *= 1.3;
+        let law = PowerLaw::fit(&bent).unwrap();
+        assert!(
+            law.exponent.low < 0.75
+                && 0.75 < law.exponent.high
+                && law.exponent.high - law.exponent.low > 0.01
+        );
+        assert!(
+            PowerLaw::fit(&bent[..1]).is_none()
+                && PowerLaw::fit(&[(2.0, 1.0), (2.0, 3.0)]).is_none()
+        );
+    }
+}

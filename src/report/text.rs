@@ -1,0 +1,108 @@
+//! Tables as plain text, for standard output.
+
+use super::names::{number, stage};
+use super::plan::{Labels, PAPERS_LOOP};
+use super::ratios::over_papers_loop;
+use super::row::Row;
+use super::stats::Interval;
+
+/// Columns of text, the first aligned left, the others right.
+#[must_use]
+pub fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns)
+        .map(|c| {
+            rows.iter()
+                .filter_map(|r| r.get(c))
+                .map(|f| f.chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let mut out = String::new();
+    for row in rows {
+        let line: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .enumerate()
+            .map(|(c, (field, &width))| {
+                if c < 1 {
+                    format!("{field:width$}")
+                } else {
+                    format!("{field:>width$}")
+                }
+            })
+            .collect();
+        out += line.join("  ").trim_end();
+        out.push('\n');
+    }
+    out
+}
+
+/// An interval as `0.42 (0.40 to 0.44)`; only the value where a single observation says nothing about spread.
+#[must_use]
+pub fn interval(i: &Interval, digits: usize) -> String {
+    if i.high.is_finite() {
+        format!(
+            "{} ({} to {})",
+            number(i.value, digits),
+            number(i.low, digits),
+            number(i.high, digits)
+        )
+    } else {
+        number(i.value, digits)
+    }
+}
+
+/// A share of pixels in percent.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    format!("{} %", number(100.0 * share, 3))
+}
+
+/// The table of ratios, headed.
+#[must_use]
+pub fn ratios(rows: &[Row]) -> String {
+    let labels = Labels::new(rows.iter().map(|r| &r.settings));
+    let mut lines = vec![
+        [
+            "search",
+            "stage",
+            "time / papers",
+            "95 % interval",
+            "single pictures",
+            "wrong pixels",
+            "depth p99 (texels)",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+    ];
+    for ratio in over_papers_loop(rows) {
+        let ends = if ratio.time.high.is_finite() {
+            format!(
+                "{} to {}",
+                number(ratio.time.low, 3),
+                number(ratio.time.high, 3)
+            )
+        } else {
+            "unknown".to_owned()
+        };
+        lines.push(vec![
+            labels.way(&ratio.settings),
+            stage(ratio.settings.stage).to_owned(),
+            number(ratio.time.value, 3),
+            ends,
+            format!(
+                "{} to {}",
+                number(ratio.range.0, 3),
+                number(ratio.range.1, 3)
+            ),
+            percent(ratio.wrong),
+            ratio.depth_p99.map(|p| number(p, 3)).unwrap_or_default(),
+        ]);
+    }
+    if lines.len() == 1 {
+        return format!("no ratios: no usable row of the {PAPERS_LOOP}\n");
+    }
+    table(&lines)
+}

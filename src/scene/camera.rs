@@ -1,0 +1,225 @@
+//! A camera as rays: the one place where pixels become directions, shared by the GPU's block and the reference.
+
+use super::Camera;
+use crate::error::{Error, Result, Stage};
+use glam::DVec3;
+
+/// The rays of a camera for pictures of one size.
+///
+/// With `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`, the ray through the centre of pixel
+/// `(i, j)` is `eye + t (f + x right + y up')`, `x = (2 (i + 1/2) / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`.
+/// The direction is not normalised: `t` is the depth along `f`. Since pixels are square, `right` and `up` are kept multiplied
+/// by the width of a pixel at depth 1, `2 tan(fov/2) / h`, and a pixel is a number of such steps from the middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraFrame {
+    /// The eye, world units.
+    pub eye: DVec3,
+    /// Unit vector towards the target.
+    pub forward: DVec3,
+    /// One pixel to the right, at depth 1.
+    pub right: DVec3,
+    /// One pixel up, at depth 1.
+    pub up: DVec3,
+    /// The middle of the picture in pixels from its upper left corner: `(w / 2, h / 2)`.
+    pub middle: [f64; 2],
+}
+
+impl CameraFrame {
+    /// The rays of `camera` for pictures of `width x height` pixels.
+    ///
+    /// When `up` points along the view, world y takes its place (then world x): one may look straight down.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`], naming the key, when eye and target are one point, the field of view is not between 0 and 180
+    /// degrees, `up` is zero, or a number is not finite; [`Stage::Frame`] when a side of the picture is 0.
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
+        let wrong = |key: &str, what: &str| {
+            Err(Error::new(Stage::Scene, what).at_key(format!("camera.{key}")))
+        };
+        for (key, value) in [
+            ("eye", camera.eye),
+            ("target", camera.target),
+            ("up", camera.up),
+        ] {
+            if !value.is_finite() {
+                return wrong(key, "is not finite; give three numbers");
+            }
+        }
+        if !(camera.fov_y > 0.0 && camera.fov_y < 180.0) {
+            return wrong("fov_y", "must lie between 0 and 180 degrees, ends excluded");
+        }
+        if width == 0 || height == 0 {
+            let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
+            return Err(Error::new(Stage::Frame, message));
+        }
+        let Some(forward) = (camera.target - camera.eye).try_normalize() else {
+            return wrong("target", "is the same point as the eye; move one of them");
+        };
+        let Some(up) = camera.up.try_normalize() else {
+            return wrong("up", "is zero; give a direction");
+        };
+        let right = [up, DVec3::Y, DVec3::X]
+            .into_iter()
+            .map(|up| forward.cross(up))
+            .find(|side| side.length() > 1e-9)
+            .map_or(DVec3::X, DVec3::normalize);
+        let pixel = 2.0 * (camera.fov_y.to_radians() * 0.5).tan() / f64::from(height);
+        Ok(Self {
+            eye: camera.eye,
+            forward,
+            right: right * pixel,
+            up: right.cross(forward) * pixel,
+            middle: [f64::from(width) * 0.5, f64::from(height) * 0.5],
+        })
+    }
+
+    /// Direction through the point `(x, y)` of the picture, in pixels from its upper left corner; depth 1 along `forward`.
+    #[must_use]
+    pub fn direction(&self, x: f64, y: f64) -> DVec3 {
+        self.forward + self.right * (x - self.middle[0]) + self.up * (self.middle[1] - y)
+    }
+
+    /// Direction through the centre of pixel `(i, j)`.
+    #[must_use]
+    pub fn pixel(&self, i: u32, j: u32) -> DVec3 {
+        self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera {
+            eye: DVec3::new(1.6, 0.3, 1.1),
+            target: DVec3::new(0.0, 0.0, 0.5),
+            up: DVec3::Z,
+            fov_y: 40.0,
+        }
+    }
+
+    #[test]
+    fn pixels_are_where_the_formula_says() {
+        let (w, h) = (800, 600);
+        let frame = CameraFrame::new(&camera(), w, h).unwrap();
+        let c = camera();
+        let forward = (c.target - c.eye).normalize();
+        let right = forward.cross(c.up).normalize();
+        let up = right.cross(forward);
+        let tan = 20f64.to_radians().tan();
+        for (i, j) in [(0, 0), (799, 0), (0, 599), (400, 300), (123, 456)] {
+            let x = (2.0 * (f64::from(i) + 0.5) / 800.0 - 1.0) * tan * 800.0 / 600.0;
+            let y = (1.0 - 2.0 * (f64::from(j) + 0.5) / 600.0) * tan;
+            let expected = forward + right * x + up * y;
+            assert!((frame.pixel(i, j) - expected).length() < 1e-14);
+            assert!((frame.pixel(i, j).dot(frame.forward) - 1.0).abs() < 1e-14);
+        }
+        assert_eq!(frame.direction(400.0, 300.0), frame.forward);
+        // Row 0 is on top, column 0 on the left.
+        assert!(frame.pixel(400, 0).z > frame.pixel(400, 599).z);
+        assert!((frame.pixel(799, 300) - frame.pixel(0, 300)).dot(right) > 0.0);
+    }
+
+    #[test]
+    fn looking_along_up_still_gives_a_frame() {
+        for up in [
+            DVec3::Z,
+            DVec3::new(0.0, 0.0, -3.0),
+            DVec3::new(1e-13, 0.0, 1.0),
+        ] {
+            let c = Camera {
+                eye: DVec3::new(0.0, 0.0, 3.0),
+                target: DVec3::ZERO,
+                up,
+                fov_y: 40.0,
+            };
+            let frame = CameraFrame::new(&c, 64, 64).unwrap();
+            assert!(frame.pixel(3, 60).is_finite());
+            assert!(
+                frame.right.length() > 0.0 && frame.up.dot(DVec3::Y) > 0.0,
+                "{frame:?}"
+            );
+        }
+        let c = Camera {
+            eye: DVec3::ZERO,
+            target: DVec3::Y,
+            up: DVec3::Y,
+            fov_y: 40.0,
+        };
+        assert!(CameraFrame::new(&c, 64, 64).unwrap().right.length() > 0.0);
+    }
+
+    #[test]
+    fn impossible_cameras_are_named() {
+        let cases: [(&str, Camera); 8] = [
+            (
+                "camera.target",
+                Camera {
+                    target: camera().eye,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.fov_y",
+                Camera {
+                    fov_y: 0.0,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.fov_y",
+                Camera {
+                    fov_y: 180.0,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.fov_y",
+                Camera {
+                    fov_y: f64::NAN,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.up",
+                Camera {
+                    up: DVec3::ZERO,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.up",
+                Camera {
+                    up: DVec3::NAN,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.eye",
+                Camera {
+                    eye: DVec3::INFINITY,
+                    ..camera()
+                },
+            ),
+            (
+                "camera.target",
+                Camera {
+                    target: DVec3::NAN,
+                    ..camera()
+                },
+            ),
+        ];
+        for (key, camera) in cases {
+            assert_eq!(
+                CameraFrame::new(&camera, 8, 8).unwrap_err().key.as_deref(),
+                Some(key)
+            );
+        }
+        assert_eq!(
+            CameraFrame::new(&camera(), 0, 8).unwrap_err().stage,
+            Stage::Frame
+        );
+    }
+}

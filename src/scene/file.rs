@@ -1,0 +1,360 @@
+//! Scenes from TOML files (feature `scene-file`).
+//!
+//! Paths are relative to the scene file. Unknown keys are errors. Every key but an object's `profile` (or `polygon`) and
+//! the camera's `eye` and `target` has a default.
+//!
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `background` | linear RGBA behind everything | `[0, 0, 0, 0]` |
+//! | `ambient` | light from everywhere, linear RGB | `[0.1, 0.1, 0.1]` |
+//! | `shadow` | `"off"`, `"hard"` or `"soft"` | `"off"` |
+//! | `camera.eye`, `camera.target` | where the eye is and what it looks at, world units | |
+//! | `camera.up` | which way is up | `[0, 0, 1]` |
+//! | `camera.fov_y` | vertical field of view, degrees | `40` |
+//! | `light.N.direction` | the way the light travels | `[-0.4, -0.6, -0.7]` |
+//! | `light.N.color` | linear RGB | `[1, 1, 1]` |
+//! | `object.N.profile` | an image or an SVG drawing, dark = solid | |
+//! | `object.N.polygon` | in its place: `[[r, z], ...]`, object units, closed by itself | |
+//! | `object.N.profile_axis` | `"left"`: half a profile; `"center"`: a silhouette | `"center"` |
+//! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5` |
+//! | `object.N.map_rows` | rows of the shape map | `512` |
+//! | `object.N.color` | linear RGB | `[0.8, 0.8, 0.8]` |
+//! | `object.N.color_map` | an image in place of `color` | |
+//! | `object.N.specular` | weight of the Blinn-Phong highlight | `0.25` |
+//! | `object.N.shininess` | its exponent | `32` |
+//! | `object.N.height_map` | an image of heights for bump mapping | |
+//! | `object.N.bump` | `a`, the depth of the bumps | `1` |
+//! | `object.N.bump_form` | `"surface-gradient"` or `"papers"` | `"surface-gradient"` |
+//! | `object.N.projection` | `"planar"`, `"cylindrical"`, `"spherical"` or `"arc"` | from the profile's name (`vase.spherical.png`), else `"cylindrical"` |
+//! | `object.N.texture_repeat` | repetitions along `xi`, `eta` | `[1, 1]` |
+//! | `object.N.extend` | `e`, object units; negative insets | `0` |
+//! | `object.N.bevel` | `b`, slope | `0` |
+//! | `object.N.chamfer` | `c`, depth in `[0, 1]` to which the bevel reaches | `1` |
+//! | `object.N.axis` | `(Ox, Oy)`, box texture coordinates | `[0.5, 0.5]` |
+//! | `object.N.repeat` | cells of the box along x, y, z | `[1, 1, 1]` |
+//! | `object.N.mirror` | whether every other cell is mirrored | `[false, false, false]` |
+//! | `object.N.position` | of the middle of the box's lower face | `[0, 0, 0]` |
+//! | `object.N.rotation` | quaternion x y z w, of any length but zero | `[0, 0, 0, 1]` |
+//! | `object.N.scale` | `S` | `[1, 1, 1]` |
+//! | `object.N.instances` | a CSV file of rows `x,y,z,qx,qy,qz,qw,sx,sy,sz`, one for each copy | |
+//!
+//! A scene without a `[[light]]` has one of the defaults above; `light = []` switches it off.
+
+use super::instances::{self, unit};
+use super::keys::Keys;
+use super::{
+    BumpForm, Camera, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
+    overrides,
+};
+use crate::error::{Error, Result, Stage};
+use crate::maps::{ColorMap, DisplacementMap, Projection};
+use crate::profile::{Profile, ProfileAxis};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toml::Table;
+
+/// Keys of the whole file.
+const SCENE: &[&str] = &[
+    "background",
+    "ambient",
+    "shadow",
+    "camera",
+    "light",
+    "object",
+];
+/// Keys of `[camera]`.
+const CAMERA: &[&str] = &["eye", "target", "up", "fov_y"];
+/// Keys of `[[light]]`.
+const LIGHT: &[&str] = &["direction", "color"];
+/// Keys of `[[object]]`.
+const OBJECT: &[&str] = &[
+    "profile",
+    "polygon",
+    "profile_axis",
+    "radius",
+    "map_rows",
+    "color",
+    "color_map",
+    "specular",
+    "shininess",
+    "height_map",
+    "bump",
+    "bump_form",
+    "projection",
+    "texture_repeat",
+    "extend",
+    "bevel",
+    "chamfer",
+    "axis",
+    "repeat",
+    "mirror",
+    "position",
+    "rotation",
+    "scale",
+    "instances",
+];
+/// `R` of a polygon's box unless it says otherwise.
+const RADIUS: f64 = 0.5;
+
+/// Reads the scene `file` and all that it names. Each of `sets` is `key=value`, put in place of what the file says:
+/// `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
+///
+/// # Errors
+/// [`Stage::Scene`] and [`Stage::Profile`], with file and key; [`Stage::Usage`] for a malformed assignment.
+pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
+    let file = file.as_ref();
+    let text = std::fs::read_to_string(file).map_err(|e| {
+        Error::new(
+            Stage::Scene,
+            format!("cannot be read ({e}); give a scene in TOML"),
+        )
+        .in_file(file)
+    })?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    parse(&text, folder, sets).map_err(|e| e.in_file(file))
+}
+
+/// Reads a scene from `text`; paths in it are relative to `folder`. `sets` as in [`load`].
+///
+/// # Errors
+/// As [`load`]; faults of the text itself name no file.
+pub fn parse(text: &str, folder: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
+    let mut root: Table = text.parse().map_err(|e| syntax(text, &e))?;
+    for assignment in sets {
+        overrides::apply(&mut root, assignment)?;
+    }
+    let mut reader = Reader {
+        folder: folder.as_ref(),
+        profiles: HashMap::new(),
+        color_maps: HashMap::new(),
+        height_maps: HashMap::new(),
+    };
+    let scene = reader.scene(&root)?;
+    scene.check()?;
+    Ok(scene)
+}
+
+/// A fault of TOML's grammar, on one line.
+fn syntax(text: &str, error: &toml::de::Error) -> Error {
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    let start = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..start).unwrap_or("");
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    Error::new(Stage::Scene, format!("is not TOML: {message}"))
+        .at_key(format!("line {line}, column {column}"))
+}
+
+/// What has been read so far: files named more than once are read once, and shared.
+struct Reader<'a> {
+    folder: &'a Path,
+    profiles: HashMap<(PathBuf, ProfileAxisKey), Arc<Profile>>,
+    color_maps: HashMap<PathBuf, Arc<ColorMap>>,
+    height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
+}
+
+/// [`ProfileAxis`] as a part of a table's key: whether it is the middle.
+type ProfileAxisKey = bool;
+
+impl Reader<'_> {
+    fn scene(&mut self, root: &Table) -> Result<Scene> {
+        let keys = Keys::new(root, "", SCENE)?;
+        let empty = Table::new();
+        let mut scene = Scene::new(camera(keys.table("camera")?.unwrap_or(&empty))?);
+        scene.background = keys.floats("background")?.unwrap_or(scene.background);
+        scene.ambient = keys.floats("ambient")?.unwrap_or(scene.ambient);
+        scene.shadow = keys.one_of("shadow", &Shadow::NAMES)?.unwrap_or_default();
+        if keys.has("light") {
+            let tables = keys.tables("light")?.into_iter().enumerate();
+            scene.lights = tables
+                .map(|(i, table)| light(table, i))
+                .collect::<Result<_>>()?;
+        }
+        for (i, table) in keys.tables("object")?.into_iter().enumerate() {
+            scene.objects.push(self.object(table, i)?);
+        }
+        if scene.objects.is_empty() {
+            return Err(keys.fail(
+                "object",
+                "the scene is empty; add an [[object]] with a profile",
+            ));
+        }
+        Ok(scene)
+    }
+
+    fn object(&mut self, table: &Table, index: usize) -> Result<Object> {
+        let keys = Keys::new(table, format!("object.{index}"), OBJECT)?;
+        let mut object = self.profile(&keys)?;
+        object.map_rows = keys.count("map_rows")?.unwrap_or(object.map_rows);
+        object.color = keys.floats("color")?.unwrap_or(object.color);
+        object.specular = specular(&keys)?;
+        object.texturing = self.texturing(&keys, object.file.as_deref())?;
+        object.offset = offset(&keys)?;
+        object.axis = keys.numbers("axis")?.unwrap_or(object.axis);
+        object.repeat = keys.counts("repeat")?.unwrap_or(object.repeat);
+        object.mirror = keys.flags("mirror")?.unwrap_or(object.mirror);
+        object.placement = placement(&keys)?;
+        if let Some(file) = keys.file("instances", self.folder)? {
+            object.instances = instances::load(&file)?;
+        }
+        Ok(object)
+    }
+
+    /// An object with its profile, all else at its default.
+    fn profile(&mut self, keys: &Keys) -> Result<Object> {
+        let file = keys.file("profile", self.folder)?;
+        let polygon = keys.pairs("polygon")?;
+        let axis = keys.one_of("profile_axis", &AXES)?.unwrap_or_default();
+        let radius = keys.number("radius")?.unwrap_or(RADIUS);
+        match (file, polygon) {
+            (Some(file), None) => {
+                let key = (file.clone(), axis == ProfileAxis::Center);
+                let profile = match self.profiles.get(&key) {
+                    Some(known) => known.clone(),
+                    None => {
+                        let new = Profile::load(&file, axis)
+                            .map_err(|e| e.in_file(&file).at_key(keys.place("profile")))?;
+                        self.profiles.entry(key).or_insert(Arc::new(new)).clone()
+                    }
+                };
+                let name = file
+                    .file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
+                let mut object = Object::new(name, profile);
+                object.file = Some(file);
+                Ok(object)
+            }
+            (None, Some(points)) => {
+                let profile =
+                    Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
+                Ok(Object::new("polygon", Arc::new(profile)))
+            }
+            (None, None) => Err(keys.fail(
+                "profile",
+                "is missing; name an image or a drawing, or give a polygon",
+            )),
+            (Some(_), Some(_)) => {
+                Err(keys.fail("polygon", "stands beside a profile; give one of the two"))
+            }
+        }
+    }
+
+    fn texturing(&mut self, keys: &Keys, profile: Option<&Path>) -> Result<Texturing> {
+        let mut covering = Texturing::default();
+        if let Some(file) = keys.file("color_map", self.folder)? {
+            let map = shared(&mut self.color_maps, &file, |f| ColorMap::load(f));
+            covering.color_map = Some(map.map_err(|e| e.at_key(keys.place("color_map")))?);
+        }
+        if let Some(file) = keys.file("height_map", self.folder)? {
+            let map = shared(&mut self.height_maps, &file, |f| {
+                DisplacementMap::from_image(f)
+            });
+            covering.displacement_map = Some(map.map_err(|e| e.at_key(keys.place("height_map")))?);
+        }
+        covering.bump = keys.number("bump")?.unwrap_or(covering.bump);
+        covering.bump_form = keys
+            .one_of("bump_form", &BumpForm::NAMES)?
+            .unwrap_or_default();
+        covering.projection = keys
+            .one_of("projection", &Projection::ALL.map(|p| (p.name(), p)))?
+            .or_else(|| profile.and_then(Projection::of_file))
+            .unwrap_or_default();
+        covering.repeat = keys.numbers("texture_repeat")?.unwrap_or(covering.repeat);
+        Ok(covering)
+    }
+}
+
+/// A fault with the key that it names, or `key`, put below the object's.
+fn below(keys: &Keys, key: &str, mut error: Error) -> Error {
+    let own = error.key.take();
+    error.at_key(keys.place(own.as_deref().unwrap_or(key)))
+}
+
+/// What `file` holds, read when it is first named.
+fn shared<T>(
+    known: &mut HashMap<PathBuf, Arc<T>>,
+    file: &Path,
+    read: impl Fn(&Path) -> Result<T>,
+) -> Result<Arc<T>> {
+    if let Some(value) = known.get(file) {
+        return Ok(value.clone());
+    }
+    let value = Arc::new(read(file)?);
+    known.insert(file.to_path_buf(), value.clone());
+    Ok(value)
+}
+
+const AXES: [(&str, ProfileAxis); 2] =
+    [("left", ProfileAxis::Left), ("center", ProfileAxis::Center)];
+
+fn camera(table: &Table) -> Result<Camera> {
+    let keys = Keys::new(table, "camera", CAMERA)?;
+    let point =
+        |key: &str| -> Result<Option<DVec3>> { Ok(keys.numbers(key)?.map(DVec3::from_array)) };
+    let needed = |key: &str| -> Result<DVec3> {
+        point(key)?
+            .ok_or_else(|| keys.fail(key, "is missing; give three numbers, as in [1.6, 0.3, 1.1]"))
+    };
+    let plain = Camera::new(needed("eye")?, needed("target")?);
+    Ok(Camera {
+        up: point("up")?.unwrap_or(plain.up),
+        fov_y: keys.number("fov_y")?.unwrap_or(plain.fov_y),
+        ..plain
+    })
+}
+
+fn light(table: &Table, index: usize) -> Result<Light> {
+    let keys = Keys::new(table, format!("light.{index}"), LIGHT)?;
+    let plain = Light::default();
+    Ok(Light {
+        direction: keys
+            .numbers("direction")?
+            .map_or(plain.direction, DVec3::from_array),
+        color: keys.floats("color")?.unwrap_or(plain.color),
+    })
+}
+
+fn specular(keys: &Keys) -> Result<Specular> {
+    let plain = Specular::default();
+    Ok(Specular {
+        strength: keys
+            .number("specular")?
+            .map_or(plain.strength, |x| x as f32),
+        shininess: keys
+            .number("shininess")?
+            .map_or(plain.shininess, |x| x as f32),
+    })
+}
+
+fn offset(keys: &Keys) -> Result<Offset> {
+    let plain = Offset::default();
+    Ok(Offset {
+        extend: keys.number("extend")?.unwrap_or(plain.extend),
+        bevel: keys.number("bevel")?.unwrap_or(plain.bevel),
+        chamfer: keys.number("chamfer")?.unwrap_or(plain.chamfer),
+    })
+}
+
+fn placement(keys: &Keys) -> Result<Placement> {
+    let plain = Placement::default();
+    Ok(Placement {
+        position: keys
+            .numbers("position")?
+            .map_or(plain.position, DVec3::from_array),
+        rotation: match keys.numbers("rotation")? {
+            Some(xyzw) => unit(xyzw).map_err(|e| e.at_key(keys.place("rotation")))?,
+            None => plain.rotation,
+        },
+        scale: keys
+            .numbers("scale")?
+            .map_or(plain.scale, DVec3::from_array),
+    })
+}
+
+#[cfg(test)]
+#[path = "file_tests.rs"]
+mod tests;

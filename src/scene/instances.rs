@@ -1,0 +1,123 @@
+//! Placements of copies from a CSV file: one row `x,y,z,qx,qy,qz,qw,sx,sy,sz` for each.
+
+use super::Placement;
+use crate::error::{Error, Result, Stage};
+use glam::{DQuat, DVec3};
+use std::path::Path;
+
+/// Numbers in a row.
+const COLUMNS: usize = 10;
+/// More copies than this are taken for a mistake: their transforms alone would be hundreds of megabytes.
+const MAX_COPIES: usize = 1 << 20;
+
+/// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x` are passed over.
+/// Rotations are brought to unit length; ranges are the scene's check's business.
+pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
+    let text = std::fs::read_to_string(file).map_err(|e| {
+        Error::new(
+            Stage::Scene,
+            format!("cannot be read ({e}); give a CSV file"),
+        )
+        .in_file(file)
+    })?;
+    parse(&text).map_err(|e| e.in_file(file))
+}
+
+fn parse(text: &str) -> Result<Vec<Placement>> {
+    let mut copies = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        let heading = copies.is_empty() && line.starts_with('x');
+        if line.is_empty() || line.starts_with('#') || heading {
+            continue;
+        }
+        copies.push(row(line).map_err(|e| e.at_key(format!("line {}", number + 1)))?);
+        if copies.len() > MAX_COPIES {
+            return Err(fail(format!(
+                "holds more than {MAX_COPIES} copies; split the scene"
+            )));
+        }
+    }
+    if copies.is_empty() {
+        return Err(fail(
+            "holds no copies; give rows of x,y,z,qx,qy,qz,qw,sx,sy,sz",
+        ));
+    }
+    Ok(copies)
+}
+
+fn row(line: &str) -> Result<Placement> {
+    let mut values = [0.0; COLUMNS];
+    let mut fields = line.split(',');
+    for slot in &mut values {
+        let field = fields.next().map(str::trim).ok_or_else(|| {
+            fail(format!(
+                "has {} values; give {COLUMNS}: x,y,z,qx,qy,qz,qw,sx,sy,sz",
+                line.split(',').count()
+            ))
+        })?;
+        *slot = field
+            .parse()
+            .map_err(|_| fail(format!("{field:?} is not a number")))?;
+    }
+    if fields.next().is_some() {
+        return Err(fail(format!(
+            "has more than {COLUMNS} values: x,y,z,qx,qy,qz,qw,sx,sy,sz"
+        )));
+    }
+    let [x, y, z, qx, qy, qz, qw, sx, sy, sz] = values;
+    Ok(Placement {
+        position: DVec3::new(x, y, z),
+        rotation: unit([qx, qy, qz, qw])?,
+        scale: DVec3::new(sx, sy, sz),
+    })
+}
+
+/// A quaternion brought to unit length.
+pub(super) fn unit(xyzw: [f64; 4]) -> Result<DQuat> {
+    let rotation = DQuat::from_array(xyzw);
+    let length = rotation.length();
+    if length > 0.0 && length.is_finite() {
+        Ok(rotation / length)
+    } else {
+        Err(fail(format!(
+            "the rotation {xyzw:?} is no quaternion; [0, 0, 0, 1] is upright"
+        )))
+    }
+}
+
+fn fail(message: impl Into<String>) -> Error {
+    Error::new(Stage::Scene, message)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn rows_become_placements() {
+        let copies =
+            parse("x,y,z,qx,qy,qz,qw,sx,sy,sz\n# first\n1,2,3,0,0,0,2,1,1,1\n\n-1, 0, 0, 0,0,1,0, 2,3,4\n").unwrap();
+        assert_eq!(copies.len(), 2);
+        assert_eq!(copies[0].position, DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(copies[0].rotation, DQuat::IDENTITY);
+        assert_eq!(copies[1].rotation.to_array(), [0.0, 0.0, 1.0, 0.0]);
+        assert_eq!(copies[1].scale, DVec3::new(2.0, 3.0, 4.0));
+    }
+
+    #[test]
+    fn faults_name_the_line() {
+        for (text, wanted) in [
+            ("", "holds no copies"),
+            ("1,2,3", "line 1: has 3 values"),
+            ("\n1,2,3,0,0,0,1,1,1,one", "line 2: \"one\" is not a number"),
+            ("1,2,3,0,0,0,1,1,1,1,1", "line 1: has more than 10"),
+            ("1,2,3,0,0,0,0,1,1,1", "line 1: the rotation"),
+            ("1,2,3,0,nan,0,1,1,1,1", "line 1: the rotation"),
+        ] {
+            let message = parse(text).unwrap_err().to_string();
+            assert!(message.contains(wanted), "{message}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! What is to be seen: camera, lights, objects. Plain values, checked once by [`Scene::check`]; files are read by
+//! `file::load` (feature `scene-file`).
+//!
+//! A scene needs no file. An engine fills the same values:
+//!
+//! ```
+//! use glam::DVec3;
+//! use revmap::profile::Profile;
+//! use revmap::scene::{Camera, Object, Scene};
+//! use std::sync::Arc;
+//!
+//! // A double cone of height 1 and radius 0.4: the half-plane's points (r, z), closed along the axis.
+//! let points = [[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]];
+//! let profile = Arc::new(Profile::polygon(&points, 0.5)?);
+//!
+//! let mut spindle = Object::new("spindle", profile);
+//! spindle.color = [0.8, 0.3, 0.1];
+//! spindle.offset.extend = 0.02;
+//! spindle.placement.position = DVec3::new(0.0, 0.0, -0.5);
+//!
+//! let mut scene = Scene::new(Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::ZERO));
+//! scene.objects.push(spindle);
+//! scene.check()?;
+//! # Ok::<(), revmap::Error>(())
+//! ```
+
+mod camera;
+mod check;
+#[cfg(feature = "scene-file")]
+pub mod file;
+#[cfg(feature = "scene-file")]
+mod instances;
+#[cfg(feature = "scene-file")]
+mod keys;
+mod object;
+#[cfg(feature = "scene-file")]
+mod overrides;
+
+pub use camera::CameraFrame;
+pub use object::{BumpForm, Object, Offset, Placement, Specular, Texturing};
+
+use glam::DVec3;
+
+/// A whole scene.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Linear RGBA behind everything.
+    pub background: [f32; 4],
+    /// Light that comes from everywhere, linear RGB.
+    pub ambient: [f32; 3],
+    /// The eye.
+    pub camera: Camera,
+    /// Lights from afar.
+    pub lights: Vec<Light>,
+    /// Whether objects darken each other and themselves.
+    pub shadow: Shadow,
+    /// The solids.
+    pub objects: Vec<Object>,
+}
+
+impl Scene {
+    /// An empty scene: transparent black behind, a little ambient light, one white light, no shadows.
+    #[must_use]
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            background: [0.0; 4],
+            ambient: Self::AMBIENT,
+            camera,
+            lights: vec![Light::default()],
+            shadow: Shadow::Off,
+            objects: Vec::new(),
+        }
+    }
+
+    /// The ambient light of a scene that names none: enough to tell a shape turned from the light.
+    pub const AMBIENT: [f32; 3] = [0.1; 3];
+}
+
+/// A pinhole camera. Pixel `(i, j)` of a `w x h` picture is looked at through its centre; row 0 is on top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where the eye is, world units.
+    pub eye: DVec3,
+    /// What it looks at.
+    pub target: DVec3,
+    /// Which way is up.
+    pub up: DVec3,
+    /// Vertical field of view, degrees, between 0 and 180.
+    pub fov_y: f64,
+}
+
+impl Camera {
+    /// The vertical field of view that a camera has unless it is told, degrees.
+    pub const FOV_Y: f64 = 40.0;
+
+    /// A camera at `eye` that looks at `target`, `+z` up, with a vertical field of view of [`Camera::FOV_Y`].
+    #[must_use]
+    pub fn new(eye: DVec3, target: DVec3) -> Self {
+        Self {
+            eye,
+            target,
+            up: DVec3::Z,
+            fov_y: Self::FOV_Y,
+        }
+    }
+}
+
+/// A directional light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// The way the light travels; any length but zero.
+    pub direction: DVec3,
+    /// Linear RGB.
+    pub color: [f32; 3],
+}
+
+impl Default for Light {
+    /// White, from above, in front and to one side.
+    fn default() -> Self {
+        Self {
+            direction: DVec3::new(-0.4, -0.6, -0.7),
+            color: [1.0; 3],
+        }
+    }
+}
+
+/// Shadows, by tracing from the surface towards each light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shadow {
+    /// None; nothing is traced.
+    #[default]
+    Off,
+    /// Lit or not.
+    Hard,
+    /// With a penumbra estimated from how close the ray towards the light passes other surfaces.
+    Soft,
+}
+
+impl Shadow {
+    /// Every form with the name that scene files give it.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("off", Self::Off),
+        ("hard", Self::Hard),
+        ("soft", Self::Soft),
+    ];
+}

@@ -1,0 +1,121 @@
+//! *How* a scene is drawn; *what* is drawn is the [`Scene`](crate::scene::Scene).
+
+use crate::maps::{MapFormat, MapSource};
+
+/// Where rays are traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DrawStage {
+    /// Shape boxes are rasterised; the fragment shader traces.
+    Fragment,
+    /// A compute shader traces the screen's tiles that boxes cover.
+    Compute,
+    /// On the CPU, in double precision: ground truth.
+    Reference,
+}
+
+/// How the first hit along a ray is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Solver {
+    /// Equal steps along the ray.
+    Linear,
+    /// Equal steps, then halvings: relief mapping.
+    Relief,
+    /// Equal steps, then secants: interval mapping.
+    Secant,
+    /// The papers' circle tracing: steps of the distance read from the map.
+    Circle,
+    /// Ours for parameters that change from frame to frame: conservative steps under every offset, a last secant, no fixed count
+    /// of steps; on the map alone.
+    Live,
+    /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
+    Quadric,
+}
+
+impl Solver {
+    /// Every search, in the order in which reports list them.
+    pub const ALL: [Self; 6] = [
+        Self::Linear,
+        Self::Relief,
+        Self::Secant,
+        Self::Circle,
+        Self::Live,
+        Self::Quadric,
+    ];
+
+    /// What is taken where none is named.
+    pub const DEFAULT: Self = Self::Quadric;
+
+    /// Its name in options and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Relief => "relief",
+            Self::Secant => "secant",
+            Self::Circle => "circle",
+            Self::Live => "live",
+            Self::Quadric => "quadric",
+        }
+    }
+
+    /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
+    /// than any ray of a sound map takes. `quadric` has none to bound.
+    #[must_use]
+    pub fn default_steps(self, beveled: bool) -> u32 {
+        match self {
+            Self::Linear | Self::Relief | Self::Secant => 64,
+            Self::Circle if beveled => 25,
+            Self::Circle => 20,
+            Self::Live => 512,
+            Self::Quadric => 1,
+        }
+    }
+}
+
+/// Which planes of a frame are wanted; what is not wanted is neither computed nor stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Planes {
+    /// Colour alone, 8-bit sRGB.
+    Color,
+    /// Everything a [`Frame`](crate::frame::Frame) holds, in 32-bit floats.
+    All,
+}
+
+/// How to draw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Where rays are traced.
+    pub stage: DrawStage,
+    /// The search.
+    pub solver: Solver,
+    /// Bound on the search's steps; `None` takes the solver's own.
+    pub max_steps: Option<u32>,
+    /// Rows of every shape map; `None` takes each object's own.
+    pub map_rows: Option<u32>,
+    /// Source of distances; `None`: exact where the profile is an outline, else coverage.
+    pub map_source: Option<MapSource>,
+    /// Storage of distances.
+    pub map_format: MapFormat,
+    /// What to draw.
+    pub planes: Planes,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            width: 800,
+            height: 600,
+            stage: DrawStage::Fragment,
+            solver: Solver::DEFAULT,
+            max_steps: None,
+            map_rows: None,
+            map_source: None,
+            map_format: MapFormat::R32,
+            planes: Planes::All,
+        }
+    }
+}

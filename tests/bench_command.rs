@@ -1,0 +1,223 @@
+//! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On a real device, small and brief.
+#![cfg(all(feature = "cli", unix))]
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use revmap::report::csv::Table;
+use revmap::report::row::COLUMNS;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/sphere.toml");
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_revmap"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .env_remove("RUST_BACKTRACE")
+        .stdin(Stdio::null());
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_brief_run_measures_every_combination() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run(
+        folder.path(),
+        &[
+            "bench",
+            SCENE,
+            "--quick",
+            "--size",
+            "96x72,64x48",
+            "--solver",
+            "circle,live",
+            "--map-rows",
+            "128",
+            "--elevation",
+            "10",
+            "--out",
+            "a/b",
+        ],
+    );
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let made = folder.path().join("a/b");
+    let results = Table::load(&made.join("results.csv")).unwrap();
+    assert_eq!(results.header, COLUMNS);
+    // Sizes x stages x searches, and the papers' loop at each size and stage.
+    assert_eq!(results.records.len(), 2 * 2 * 2 + 2 * 2);
+    let marked = Table::load(&made.join("left-out.csv")).unwrap();
+    for (number, record) in results.records.iter().enumerate() {
+        let field = |name: &str| record[results.column(name).unwrap()].as_str();
+        let value = |name: &str| {
+            field(name)
+                .parse::<f64>()
+                .unwrap_or_else(|_| panic!("{name}: {:?}", field(name)))
+        };
+        assert_eq!(
+            (
+                field("scene"),
+                field("objects"),
+                field("map_source").is_empty()
+            ),
+            ("sphere@10", "1", false)
+        );
+        assert!(
+            value("frame_ms_median") > 0.0
+                && value("steps_mean") > 0.0
+                && value("depth_p99_texels") >= 0.0
+        );
+        assert!((value("fps") * value("frame_ms_median") / 1e3 - 1.0).abs() < 1e-3);
+        // A clock that is told agrees; one that does not is told to have been left out.
+        match field("gpu_ms_median").parse::<f64>() {
+            Ok(gpu) => assert!((gpu / value("frame_ms_median") - 1.0).abs() <= 0.151),
+            Err(_) => assert!(
+                marked
+                    .records
+                    .iter()
+                    .any(|r| r[0] == (number + 1).to_string())
+            ),
+        }
+    }
+    let raw = Table::load(&made.join("raw.csv")).unwrap();
+    assert!(
+        raw.records.len() >= results.records.len() * 4 * 2,
+        "four passes of two rounds at least"
+    );
+    for file in [
+        "report.html",
+        "machine.txt",
+        "charts/ratios.png",
+        "charts/ratios.svg",
+        "pictures/sphere@10.png",
+    ] {
+        assert!(made.join(file).exists(), "{file}");
+    }
+    assert!(
+        text(&out.stdout).contains("papers' loop"),
+        "{}",
+        text(&out.stdout)
+    );
+
+    // Against itself nothing has changed.
+    let out = run(folder.path(), &["bench", "--compare", "a/b", "a/b"]);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    assert!(
+        text(&out.stdout).contains(" 0 slower, 0 faster,"),
+        "{}",
+        text(&out.stdout)
+    );
+}
+
+#[test]
+fn a_brief_chart_has_its_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run(
+        folder.path(),
+        &[
+            "chart", SCENE, "--quick", "--size", "64x48", "--solver", "circle", "--out", "c",
+        ],
+    );
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    for file in [
+        "report.html",
+        "results.csv",
+        "sphere-64x48.html",
+        "charts/summary-depth-error.png",
+        "charts/sphere-64x48-rows-depth.svg",
+    ] {
+        assert!(folder.path().join("c").join(file).exists(), "{file}");
+    }
+    assert!(
+        std::fs::read_to_string(folder.path().join("c/report.html"))
+            .unwrap()
+            .contains("href=\"sphere-64x48.html\"")
+    );
+}
+
+#[test]
+fn wrong_usage_is_told_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, code, wanted) in [
+        (
+            &["bench", "--stage", "reference"][..],
+            2,
+            "--stage: reference is what all others are compared with",
+        ),
+        (&["bench", "--solver", "circle,nothing"], 2, "nothing"),
+        (&["bench", "--size", "64x48,0x3"], 2, "0x3"),
+        (&["bench", "--elevation", "100"], 2, "-90 to 90"),
+        (&["bench", "--quick", "--full"], 2, "--full"),
+        (&["bench", "--compare", "a"], 2, "--compare"),
+        (
+            &["bench", "--compare", "a", "b"],
+            1,
+            "results.csv: cannot be read",
+        ),
+        (&["bench", "missing.toml", "--quick"], 1, "missing.toml"),
+        (&["chart", "missing.toml", "--quick"], 1, "missing.toml"),
+    ] {
+        let out = run(folder.path(), arguments);
+        let said = text(&out.stderr);
+        assert_eq!(out.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(
+            said.contains(wanted) && said.lines().count() == 1,
+            "{arguments:?}: {said}"
+        );
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            0,
+            "{arguments:?} leaves nothing behind"
+        );
+    }
+}
+
+/// Ctrl-C in the middle: what was measured is kept, and the exit code says that it is not all.
+#[test]
+fn an_interrupt_keeps_what_was_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = command(
+        folder.path(),
+        &[
+            "bench", SCENE, "--size", "800x600", "--solver", "circle", "--out", "kept",
+        ],
+    )
+    .stdout(Stdio::piped())
+    .stderr(Stdio::piped())
+    .spawn()
+    .unwrap();
+    // After the first pass of five or more there are results.
+    let results = folder.path().join("kept/results.csv");
+    let begin = Instant::now();
+    while !results.exists() {
+        assert!(
+            begin.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(),
+            "nothing was measured"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    let out = child.wait_with_output().unwrap();
+    let said = text(&out.stderr);
+    assert_eq!(out.status.code(), Some(1), "{said}");
+    assert!(said.contains("interrupted"), "{said}");
+    assert_eq!(Table::load(&results).unwrap().records.len(), 4);
+    assert!(
+        std::fs::read_to_string(folder.path().join("kept/report.html"))
+            .unwrap()
+            .contains("ended early")
+    );
+}

@@ -1,0 +1,140 @@
+//! Bump mapping against the normal of the surface that is really displaced, by every projection.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{draw, eye, placement, scene_of};
+use glam::{DVec2, DVec3};
+use revmap::frame::Frame;
+use revmap::maps::{ArcLength, DisplacementMap, MapFormat, Projection};
+use revmap::profile::Profile;
+use revmap::scene::{CameraFrame, Scene};
+use revmap::settings::Settings;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Lower and upper rim of a cup's outside: the surface looked at is exactly this cone.
+const RIMS: [[f64; 2]; 2] = [[0.22, 0.08], [0.4, 0.92]];
+
+fn cup() -> Profile {
+    let [low, high] = RIMS;
+    Profile::polygon(&[[0.0, low[1]], low, high, [0.0, high[1]]], 0.5).unwrap()
+}
+
+/// Low waves: what 16-bit slopes and filters add stays far below what is measured.
+fn height([u, v]: [f64; 2]) -> f64 {
+    0.5 + 0.2 * (TAU * 2.0 * u + 0.4).sin() + 0.15 * (TAU * v).cos() * (TAU * u).cos()
+}
+
+fn slopes(side: u32) -> Arc<DisplacementMap> {
+    let heights: Vec<f32> = (0..side * side)
+        .map(|k| {
+            let u = (f64::from(k % side) + 0.5) / f64::from(side);
+            let v = 1.0 - (f64::from(k / side) + 0.5) / f64::from(side);
+            height([u, v]) as f32
+        })
+        .collect();
+    let map = DisplacementMap::from_heights(side, side, &heights, Default::default());
+    Arc::new(map.unwrap())
+}
+
+fn coordinates(projection: Projection, arc: &ArcLength, p: DVec3) -> [f64; 2] {
+    let r = p.x.hypot(p.y);
+    let xi = (PI + p.y.atan2(p.x)) / TAU;
+    match projection {
+        Projection::Planar => [p.x + 0.5, p.y + 0.5],
+        Projection::Cylindrical => [xi, p.z],
+        Projection::Spherical => [xi, 1.0 - r.atan2(p.z - 0.5) / PI],
+        Projection::Arc => [xi, arc.eta(r, p.z)],
+    }
+}
+
+/// The normal of `q = p + a H N` where `p` is the cone's point at azimuth `phi` and height `z`: by differences of `q` itself.
+fn displaced_normal(projection: Projection, arc: &ArcLength, a: f64, phi: f64, z: f64) -> DVec3 {
+    let [low, high] = RIMS.map(DVec2::from);
+    let side = high - low;
+    let q = |phi: f64, z: f64| {
+        let r = low.x + (z - low.y) / side.y * side.x;
+        let around = DVec3::new(phi.cos(), phi.sin(), 0.0);
+        let p = around * r + DVec3::Z * z;
+        let n = (around * side.y - DVec3::Z * side.x) / side.length();
+        p + a * height(coordinates(projection, arc, p)) * n
+    };
+    let step = 1e-5;
+    let around = q(phi + step, z) - q(phi - step, z);
+    let up = q(phi, z + step) - q(phi, z - step);
+    around.cross(up).normalize()
+}
+
+/// Rms angle, radians, between what was shaded and the displaced surface's normal, and by how much bumps turn normals at all.
+fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize) {
+    let object = &scene.objects[0];
+    let place = object.placement;
+    let camera = CameraFrame::new(&scene.camera, frame.width, frame.height).unwrap();
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    let (mut off, mut turned, mut count) = (0.0, 0.0, 0);
+    for index in (0..frame.pixels()).filter(|&i| frame.hits(i)) {
+        let (x, y) = (index as u32 % frame.width, index as u32 / frame.width);
+        let world = camera.eye + camera.pixel(x, y).normalize() * f64::from(frame.distance[index]);
+        let p = place.rotation.conjugate() * (world - place.position) / place.scale;
+        let on_side = (RIMS[0][1] + 0.03..RIMS[1][1] - 0.03).contains(&p.z);
+        // At rims a pixel covers much of a wave, whose mean is what it is right to see there.
+        let view = (camera.eye - world).normalize();
+        let faces = vector(frame.normal[index]).dot(view) > 0.3;
+        if !(on_side && faces) {
+            continue;
+        }
+        let texturing = &object.texturing;
+        let n = displaced_normal(
+            texturing.projection,
+            arc,
+            texturing.bump,
+            p.y.atan2(p.x),
+            p.z,
+        );
+        let n = (place.rotation * (n / place.scale)).normalize();
+        off += n.distance_squared(vector(frame.shading_normal[index]));
+        turned += n.distance_squared(vector(frame.normal[index]));
+        count += 1;
+    }
+    let rms = |sum: f64| (sum / f64::from(count)).sqrt();
+    (rms(off), rms(turned), count as usize)
+}
+
+/// Half the depth, a quarter of the remainder.
+#[test]
+fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
+    let slopes = slopes(128);
+    let plain = placement([0.0; 3], [0.0; 3], [1.0; 3]);
+    let turned = placement([0.1, -0.05, 0.1], [0.2, -0.3, 0.5], [1.3, 0.8, 0.9]);
+    for projection in Projection::ALL {
+        for (name, placement) in [("upright", plain), ("turned and stretched", turned)] {
+            let mut scene = scene_of(cup(), eye(-5.0, 2.0));
+            let arc = ArcLength::new(&scene.objects[0].profile).unwrap();
+            scene.objects[0].placement = placement;
+            scene.objects[0].texturing.projection = projection;
+            scene.objects[0].texturing.displacement_map = Some(slopes.clone());
+            let settings = Settings {
+                width: 160,
+                height: 120,
+                map_format: MapFormat::R32,
+                ..Settings::default()
+            };
+            let depths = [0.08, 0.04, 0.02];
+            let errors = depths.map(|a| {
+                scene.objects[0].texturing.bump = a;
+                let (off, turned, count) = remainder(&scene, &draw(&scene, &settings), &arc);
+                println!("{projection:?}, {name}, a = {a}: turned by {turned:.5}, off by {off:.6}, {count} pixels");
+                assert!(count > 1500 && turned > 0.4 * a, "bumps are seen");
+                off
+            });
+            for pair in errors.windows(2) {
+                let ratio = pair[0] / pair[1];
+                assert!(
+                    (3.4..4.6).contains(&ratio),
+                    "{projection:?}, {name}: {ratio}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Whether a picture's hits are the first there are: what a search has passed by more than a texel, and what it has made up.
+
+use super::{device, reference};
+use rayon::prelude::*;
+use revmap::frame::Frame;
+use revmap::gpu::Renderer;
+use revmap::reference::{Ray, Reference};
+use revmap::scene::{CameraFrame, Scene};
+use revmap::settings::Settings;
+use std::iter::Sum;
+
+/// Pixels counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Count {
+    /// Hit by the reference.
+    pub hits: usize,
+    /// Hit by the reference and not by the picture.
+    pub missed: usize,
+    /// The reverse.
+    pub ghost: usize,
+    /// The ray goes through more than a texel of solid before the picture's hit, or without one.
+    pub passed: usize,
+    /// The picture's hit is more than a texel off the solid.
+    pub made_up: usize,
+}
+
+impl Sum for Count {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |a, b| Self {
+            hits: a.hits + b.hits,
+            missed: a.missed + b.missed,
+            ghost: a.ghost + b.ghost,
+            passed: a.passed + b.passed,
+            made_up: a.made_up + b.made_up,
+        })
+    }
+}
+
+/// Compares a drawn frame with the reference's, pixel by pixel; `texel` in object units, for solids of scale 1, and eyes outside
+/// of them.
+pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
+    let solids = Reference::new(scene).unwrap();
+    let camera = CameraFrame::new(&scene.camera, truth.width, truth.height).unwrap();
+    // Along a ray F changes by at most 1 + b for a unit of length, b below 3 here, times the cells that a box is divided into.
+    let cells = scene
+        .objects
+        .iter()
+        .flat_map(|o| o.repeat)
+        .max()
+        .unwrap_or(1);
+    let near = 0.25 * texel / f64::from(cells);
+    (0..truth.pixels())
+        .into_par_iter()
+        .map(|index| {
+            let (hit, drawn) = (truth.hits(index), frame.hits(index));
+            let mut one = Count {
+                hits: usize::from(hit),
+                missed: usize::from(hit && !drawn),
+                ghost: usize::from(drawn && !hit),
+                ..Count::default()
+            };
+            let (z, z_drawn) = (truth.distance[index], frame.distance[index]);
+            if z == z_drawn || f64::from((z - z_drawn).abs()) < near {
+                return one;
+            }
+            let (x, y) = (index as u32 % truth.width, index as u32 / truth.width);
+            let ray = Ray {
+                origin: scene.camera.eye,
+                direction: camera.pixel(x, y).normalize(),
+            };
+            let t = f64::from(z_drawn);
+            let least = solids.clearance_within(ray, [0.0, t], 0.05 * texel);
+            one.passed = usize::from(least < -texel);
+            if drawn {
+                let there = solids.clearance_within(ray, [t, t], 0.05 * texel);
+                one.made_up = usize::from(there > texel);
+            }
+            one
+        })
+        .sum()
+}
+
+/// Scenes that differ in parameters alone, each drawn by each of the settings from maps made once, for the first.
+pub fn counts<const N: usize>(
+    scenes: &[Scene],
+    settings: [&Settings; N],
+    texel: f64,
+) -> Vec<[Count; N]> {
+    let mut renderers = settings.map(|s| Renderer::new(device(), &scenes[0], s).unwrap());
+    let all = scenes.iter().map(|scene| {
+        let truth = reference(scene, settings[0]);
+        renderers.each_mut().map(|renderer| {
+            renderer.update(scene).unwrap();
+            renderer.draw().unwrap();
+            let frame = renderer.read().unwrap();
+            count(scene, &truth, &frame, texel)
+        })
+    });
+    let all = all.collect();
+    drop(renderers);
+    device().check().unwrap();
+    all
+}

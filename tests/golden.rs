@@ -1,0 +1,58 @@
+//! A picture of each real profile, looked at and kept. `REVMAP_BLESS=1 cargo test --test golden` keeps new ones: look at them
+//! before they are committed. A picture that is missing fails.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::draw;
+use revmap::scene::file;
+use revmap::settings::Settings;
+use std::path::PathBuf;
+
+/// Of 8-bit channels, how far one may be off, and how many of all may be off by more: drivers round differently, and a silhouette
+/// may fall to either side of a pixel's centre (measured: llvmpipe 22.3.6 against SwiftShader).
+const TOLERANCE: (u8, f64) = (3, 0.002);
+
+#[test]
+fn real_profiles_look_as_they_did() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let bless = std::env::var_os("REVMAP_BLESS").is_some_and(|v| v == "1");
+    let settings = Settings {
+        width: 320,
+        height: 240,
+        ..Settings::default()
+    };
+    let mut failures = Vec::new();
+    for name in ["pawn", "bishop", "king", "rook", "bottle"] {
+        let scene = file::load(root.join(format!("assets/scenes/{name}.toml")), &[]).unwrap();
+        let frame = draw(&scene, &settings);
+        let golden = root.join(format!("tests/golden/{name}.png"));
+        if bless {
+            std::fs::create_dir_all(golden.parent().unwrap()).unwrap();
+            revmap::frame::write_png(&frame, &golden).unwrap();
+            continue;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let drawn = folder.path().join("drawn.png");
+        revmap::frame::write_png(&frame, &drawn).unwrap();
+        let open = |path: &PathBuf| {
+            image::open(path)
+                .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+                .into_rgba8()
+                .into_raw()
+        };
+        let (kept, drawn) = (open(&golden), open(&drawn));
+        assert_eq!(kept.len(), drawn.len(), "{name}");
+        let off = kept
+            .iter()
+            .zip(&drawn)
+            .filter(|(a, b)| a.abs_diff(**b) > TOLERANCE.0)
+            .count();
+        let share = off as f64 / kept.len() as f64;
+        println!("{name}: {off} of {} channels differ", kept.len());
+        if share > TOLERANCE.1 {
+            failures.push(format!("{name}: {off} of {} channels differ", kept.len()));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}

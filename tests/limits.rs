@@ -1,0 +1,153 @@
+//! Offsets as large as they may be, and larger than a renderer's maps: cut by the box or by the map, never with a hole.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::passing::count;
+use common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
+use revmap::error::Stage;
+use revmap::gpu::{self, Renderer};
+use revmap::maps::MapFormat;
+use revmap::profile::Profile;
+use revmap::scene::{Offset, Scene};
+use revmap::settings::{DrawStage, Settings, Solver};
+
+fn settings() -> Settings {
+    Settings {
+        width: 160,
+        height: 120,
+        map_rows: Some(256),
+        map_format: MapFormat::R32,
+        ..Settings::default()
+    }
+}
+
+fn with(scene: &Scene, extend: f64, bevel: f64, chamfer: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.objects[0].offset = Offset {
+        extend,
+        bevel,
+        chamfer,
+    };
+    scene
+}
+
+/// Maps reach as far as an offset asks for, and what goes beyond the box is cut by it.
+#[test]
+fn what_reaches_beyond_its_box_is_cut_and_closed() {
+    for (name, profile) in [("sphere", shapes::sphere()), ("discs", shapes::discs())] {
+        let plain = scene_of(profile, eye(25.0, 2.2));
+        for (extend, bevel, chamfer) in [
+            (0.15, 0.0, 1.0),
+            (0.4, 0.0, 1.0),
+            (30.0, 0.0, 1.0),
+            (0.0, 2.0, 1.0),
+            (-0.2, 50.0, 0.5),
+            (-0.3, 1.0, 0.0),
+        ] {
+            let scene = with(&plain, extend, bevel, chamfer);
+            let truth = reference(&scene, &settings());
+            let frame = draw(&scene, &settings());
+            assert_sound(&frame, name);
+            let found = count(&scene, &truth, &frame, 1.0 / 256.0);
+            println!("{name}, e {extend}, b {bevel}, c {chamfer}: {found:?}");
+            assert!(found.hits > 1000 || extend < -0.25, "{name}: {found:?}");
+            assert_eq!(
+                (found.passed, found.made_up),
+                (0, 0),
+                "{name}, {extend}, {bevel}"
+            );
+            // Silhouettes of large faces: hardly a pixel is a rounding's.
+            assert!(
+                found.missed + found.ghost <= 5 + found.hits / 500,
+                "{name}: {found:?}"
+            );
+        }
+    }
+}
+
+/// A renderer's maps stay when an offset grows beyond what they were made for. Searches on the map cut the solid where the map ends;
+/// the one that solves for the surface needs no map and is cut by the box alone.
+#[test]
+fn beyond_the_map_a_solid_is_cut_without_a_hole() {
+    let plain = scene_of(shapes::sphere(), eye(25.0, 2.2));
+    let wide = with(&plain, 0.8, 0.0, 1.0);
+    let cylinder = Profile::polygon(&[[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]], 0.5);
+    // Made for no offset, the map ends with the box's inscribed cylinder.
+    let inscribed = reference(&scene_of(cylinder.unwrap(), eye(25.0, 2.2)), &settings());
+    let boxed = reference(&wide, &settings());
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        for (solver, wanted) in [
+            (Solver::Live, &inscribed),
+            (Solver::Circle, &inscribed),
+            (Solver::Quadric, &boxed),
+        ] {
+            let settings = Settings {
+                stage,
+                solver,
+                ..settings()
+            };
+            let mut renderer = Renderer::new(device(), &plain, &settings).unwrap();
+            renderer.update(&wide).unwrap();
+            renderer.draw().unwrap();
+            let frame = renderer.read().unwrap();
+            assert_sound(&frame, "beyond the map");
+            let pixels = 0..frame.pixels();
+            let hits = pixels.clone().filter(|&i| wanted.hits(i)).count();
+            let differ = pixels
+                .clone()
+                .filter(|&i| frame.hits(i) != wanted.hits(i))
+                .count();
+            let both = pixels.filter(|&i| frame.hits(i) && wanted.hits(i));
+            let far = |&i: &usize| (frame.distance[i] - wanted.distance[i]).abs() > 0.02;
+            let off = both.filter(far).count();
+            println!(
+                "{stage:?}, {}: of {hits} {differ} differ, {off} are elsewhere",
+                solver.name()
+            );
+            assert!(
+                hits > 3000 && differ <= 20 && off <= 20,
+                "{stage:?}, {}",
+                solver.name()
+            );
+        }
+    }
+    device().check().unwrap();
+}
+
+/// What makes no sense is refused while parameters move, too, and what a map cannot hold.
+#[test]
+fn a_renderer_refuses_what_a_file_would_not_say() {
+    let plain = scene_of(shapes::vase(), eye(25.0, 2.2));
+    let mut renderer = Renderer::new(device(), &plain, &settings()).unwrap();
+    let mut refused = |key: &str, scene: &Scene| {
+        let error = renderer.update(scene).unwrap_err();
+        assert_eq!(
+            (error.stage, error.key.as_deref()),
+            (Stage::Scene, Some(key)),
+            "{error}"
+        );
+    };
+    refused("object.0.extend", &with(&plain, f64::NAN, 0.0, 1.0));
+    refused("object.0.bevel", &with(&plain, 0.0, -0.1, 1.0));
+    refused("object.0.bevel", &with(&plain, 0.0, f64::INFINITY, 1.0));
+    refused("object.0.chamfer", &with(&plain, 0.0, 0.1, 2.0));
+    let mut scene = plain.clone();
+    scene.objects[0].repeat = [1, 0, 1];
+    refused("object.0.repeat", &scene);
+    scene.objects[0].repeat = [10_000, 1, 1];
+    refused("object.0.repeat", &scene);
+    // And goes on drawing.
+    renderer.update(&with(&plain, 0.01, 0.1, 1.0)).unwrap();
+    renderer.draw().unwrap();
+
+    // The papers' format knows distances outside alone.
+    let papers = Settings {
+        map_format: MapFormat::Rgba8,
+        solver: Solver::Live,
+        ..settings()
+    };
+    let error = gpu::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
+    assert_eq!(error.key.as_deref(), Some("object.0.extend"));
+    assert!(error.to_string().contains("rgba8"), "{error}");
+}

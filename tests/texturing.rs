@@ -1,0 +1,296 @@
+//! Texture coordinates against their formulas, the seam, the colours of the reference.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{draw, eye, placement, reference, scene_of, shapes};
+use glam::DVec3;
+use revmap::frame::Frame;
+use revmap::maps::{ArcLength, ColorMap, MapFormat, Projection};
+use revmap::profile::Profile;
+use revmap::scene::{CameraFrame, Scene};
+use revmap::settings::{DrawStage, Settings};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Half a texel of a map of 720 x 360.
+const HALF: [f64; 2] = [0.5 / 720.0, 0.5 / 360.0];
+
+fn settings() -> Settings {
+    Settings {
+        width: 120,
+        height: 90,
+        map_format: MapFormat::R32,
+        ..Settings::default()
+    }
+}
+
+/// The point that a pixel shows, by its distance.
+fn point(scene: &Scene, frame: &Frame, index: usize) -> DVec3 {
+    let camera = CameraFrame::new(&scene.camera, frame.width, frame.height).unwrap();
+    let (x, y) = (index as u32 % frame.width, index as u32 / frame.width);
+    camera.eye + camera.pixel(x, y).normalize() * f64::from(frame.distance[index])
+}
+
+/// `p` from the axis at the box's floor.
+fn formula(projection: Projection, arc: &ArcLength, p: DVec3, axis: [f64; 2]) -> [f64; 2] {
+    let r = p.x.hypot(p.y);
+    let xi = (PI + p.y.atan2(p.x)) / TAU;
+    match projection {
+        // The box is one unit wide.
+        Projection::Planar => [p.x + axis[0], p.y + axis[1]],
+        Projection::Cylindrical => [xi, p.z],
+        Projection::Spherical => [xi, (PI - (r / (p.z - 0.5)).atan().rem_euclid(PI)) / PI],
+        Projection::Arc => [xi, arc.eta(r, p.z)],
+    }
+}
+
+/// Distance on a circle of circumference 1.
+fn round(d: f64) -> f64 {
+    (d - d.round()).abs()
+}
+
+/// From the front, at the seam, down on the upper pole and up at the lower one, near enough to see a pole in many pixels.
+fn views() -> [DVec3; 5] {
+    let middle = DVec3::new(0.0, 0.0, 0.5);
+    [
+        eye(20.0, 1.7),
+        middle + DVec3::new(-1.7, 0.0, 0.2),
+        middle + DVec3::new(-0.2, 0.01, 1.5),
+        middle + DVec3::new(-0.1, -0.1, -1.5),
+        middle + DVec3::new(0.001, 0.0, 0.6),
+    ]
+}
+
+#[test]
+fn coordinates_are_their_formulas() {
+    for projection in Projection::ALL {
+        let (mut all, mut seam, mut pole) = (0, 0, 0);
+        let profiles: [(&str, Profile); 3] = [
+            ("sphere", shapes::sphere()),
+            ("vase", shapes::vase()),
+            ("torus", shapes::torus()),
+        ];
+        for (name, profile) in profiles {
+            let arc = ArcLength::new(&profile).unwrap();
+            let mut scene = scene_of(profile, eye(0.0, 1.7));
+            for (k, view) in views().into_iter().enumerate() {
+                let axis = if k == 0 { [0.44, 0.53] } else { [0.5, 0.5] };
+                scene.camera.eye = view;
+                scene.objects[0].axis = axis;
+                scene.objects[0].texturing.projection = projection;
+                let frame = draw(&scene, &settings());
+                for index in (0..frame.pixels()).filter(|&i| frame.hits(i)) {
+                    let mut p = point(&scene, &frame, index);
+                    p.x -= axis[0] - 0.5;
+                    p.y -= axis[1] - 0.5;
+                    let [u, v] = frame.uv[index].map(f64::from);
+                    let wanted = formula(projection, &arc, p, axis);
+                    let planar = projection == Projection::Planar;
+                    let du = if planar {
+                        (u - wanted[0]).abs()
+                    } else {
+                        round(u - wanted[0])
+                    };
+                    let dv = if projection == Projection::Arc {
+                        round(v - wanted[1])
+                    } else {
+                        (v - wanted[1]).abs()
+                    };
+                    let r = p.x.hypot(p.y);
+                    // Nearer to the axis than this the distance's 24 bits do not tell the azimuth.
+                    let known = planar || r > 3e-4;
+                    assert!(
+                        (du <= HALF[0] || !known) && dv <= HALF[1],
+                        "{projection:?} {name} view {k}: ({u}, {v}) for {wanted:?} at {p}"
+                    );
+                    all += 1;
+                    seam += usize::from(p.x < 0.0 && p.y.abs() < 0.01);
+                    pole += usize::from(r < 0.02);
+                }
+            }
+        }
+        println!("{projection:?}: {all} pixels, {seam} at the seam, {pole} at a pole");
+        assert!(
+            all >= 1000 && seam >= 100 && pole >= 50,
+            "{projection:?}: {all}, {seam}, {pole}"
+        );
+    }
+}
+
+/// A map whose value is a wave around and a wave along, without a jump where it repeats.
+fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
+    let code = |x: f64| (255.0 * x).round() as u8;
+    let texels = (0..width * height)
+        .map(|k| {
+            let u = (f64::from(k % width) + 0.5) / f64::from(width);
+            let v = 1.0 - (f64::from(k / width) + 0.5) / f64::from(height);
+            [
+                code(0.5 + 0.4 * (TAU * around * u).cos()),
+                code(0.5 + 0.4 * (TAU * around * u).sin()),
+                code(0.5 + 0.4 * (PI * v).cos()),
+                255,
+            ]
+        })
+        .collect();
+    Arc::new(ColorMap::from_texels(width, height, texels).unwrap())
+}
+
+fn srgb(linear: f32) -> f64 {
+    revmap::frame::srgb_from_linear(f64::from(linear))
+}
+
+/// Left and right of the azimuth's jump the colours go on as they do elsewhere, and where the texture repeats so often that small levels are read.
+#[test]
+fn the_seam_is_not_seen() {
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        for repeat in [1.0, 5.0] {
+            let mut scene = scene_of(shapes::sphere(), eye(0.0, 1.7));
+            scene.objects[0].texturing.color_map = Some(waves(1024, 512, 4.0));
+            scene.objects[0].texturing.repeat = [repeat; 2];
+            let colors = |side: f64| {
+                let mut scene = scene.clone();
+                // Four waves around: a quarter turn on, the picture is the same, without the seam.
+                scene.camera.eye = DVec3::new(-side, side - 1.0, 0.05).normalize() * 1.3;
+                scene.camera.eye.z += 0.5;
+                draw(
+                    &scene,
+                    &Settings {
+                        stage,
+                        width: 160,
+                        height: 120,
+                        ..settings()
+                    },
+                )
+            };
+            let (with, without) = (colors(1.0), colors(0.0));
+            let mut worst: f64 = 0.0;
+            let mut seam = 0;
+            for index in (0..with.pixels()).filter(|&i| with.hits(i) && without.hits(i)) {
+                for (a, b) in with.albedo[index].iter().zip(without.albedo[index]) {
+                    worst = worst.max((srgb(*a) - srgb(b)).abs());
+                }
+                let next = with.uv.get(index + 1).map_or(0.0, |uv| uv[0]);
+                seam += usize::from((with.uv[index][0] - next).abs() > 0.5);
+            }
+            println!(
+                "{stage:?} repeated {repeat}: {seam} pixels at the seam, largest difference {worst:.4}"
+            );
+            assert!(seam >= 60, "{seam} pixels see the seam");
+            assert!(worst < 0.02, "{stage:?} repeated {repeat}: {worst}");
+        }
+    }
+}
+
+/// Within a cavity, too, bumps stand the right way up by every projection: lengths along the profile run the other way round there.
+#[test]
+fn bumps_within_a_cavity_are_the_references() {
+    let can = [
+        [0.0, 0.05],
+        [0.45, 0.05],
+        [0.45, 0.95],
+        [0.0, 0.95],
+        [0.0, 0.85],
+        [0.35, 0.85],
+        [0.35, 0.15],
+        [0.0, 0.15],
+    ];
+    let heights: Vec<f32> = (0..32 * 32)
+        .map(|k| (0.5 + 0.3 * (TAU * 3.0 * f64::from(k / 32) / 32.0).sin()) as f32)
+        .collect();
+    let slopes = revmap::maps::DisplacementMap::from_heights(32, 32, &heights, Default::default());
+    let slopes = Arc::new(slopes.unwrap());
+    for projection in [
+        Projection::Cylindrical,
+        Projection::Spherical,
+        Projection::Arc,
+    ] {
+        let profile = Profile::polygon(&can, 0.5).unwrap();
+        let mut scene = scene_of(profile, DVec3::new(-0.15, 0.02, 0.5));
+        scene.camera.target = DVec3::new(0.35, 0.0, 0.5);
+        scene.camera.fov_y = 60.0;
+        let look = &mut scene.objects[0].texturing;
+        look.displacement_map = Some(slopes.clone());
+        look.bump = 0.05;
+        look.projection = projection;
+        let (truth, frame) = (reference(&scene, &settings()), draw(&scene, &settings()));
+        let mut angles: Vec<f64> = (0..truth.pixels())
+            .filter(|&i| truth.hits(i) && frame.hits(i))
+            .map(|i| {
+                let normal = |f: &Frame| DVec3::from_array(f.shading_normal[i].map(f64::from));
+                normal(&truth).angle_between(normal(&frame)).to_degrees()
+            })
+            .collect();
+        angles.sort_by(f64::total_cmp);
+        let (count, p90) = (angles.len(), angles[angles.len() * 9 / 10]);
+        println!("{projection:?}: {count} pixels, p90 {p90:.3} degrees");
+        assert!(
+            count == truth.pixels() && p90 < 1.0,
+            "{projection:?}: {count}, {p90}"
+        );
+    }
+}
+
+/// Colours, bumped normals and coordinates of a turned and stretched solid are the reference's, by every projection.
+#[test]
+fn colours_and_bumps_are_the_references() {
+    let heights: Vec<f32> = (0..64 * 64)
+        .map(|k| {
+            let (x, y) = (f64::from(k % 64) / 64.0, f64::from(k / 64) / 64.0);
+            (0.5 + 0.2 * (TAU * 2.0 * x).sin() + 0.2 * (TAU * 3.0 * y).cos()) as f32
+        })
+        .collect();
+    let slopes = revmap::maps::DisplacementMap::from_heights(64, 64, &heights, Default::default());
+    let slopes = Arc::new(slopes.unwrap());
+    for projection in Projection::ALL {
+        for (form, bump) in [("surface-gradient", 0.03), ("papers", 0.01)] {
+            // From where the texture is not squeezed into lines: the reference has no smaller levels.
+            let planar = projection == Projection::Planar;
+            let mut scene = scene_of(shapes::vase(), eye(if planar { 80.0 } else { 15.0 }, 2.0));
+            let object = &mut scene.objects[0];
+            object.placement = placement([0.02, -0.05, 0.1], [0.3, -0.2, 0.5], [1.2, 0.9, 0.8]);
+            object.axis = [0.48, 0.5];
+            object.offset.extend = 0.01;
+            let look = &mut object.texturing;
+            look.color_map = Some(waves(64, 32, 3.0));
+            look.displacement_map = Some(slopes.clone());
+            look.bump = bump;
+            look.bump_form = revmap::scene::BumpForm::NAMES
+                .iter()
+                .find(|n| n.0 == form)
+                .unwrap()
+                .1;
+            look.projection = projection;
+            look.repeat = [2.0, 1.0];
+            let truth = reference(&scene, &settings());
+            let frame = draw(&scene, &settings());
+            let (mut angles, mut colors) = (Vec::new(), Vec::new());
+            for i in (0..truth.pixels()).filter(|&i| truth.hits(i) && frame.hits(i)) {
+                let normal = |f: &Frame| DVec3::from_array(f.shading_normal[i].map(f64::from));
+                angles.push(
+                    normal(&truth)
+                        .dot(normal(&frame))
+                        .clamp(-1.0, 1.0)
+                        .acos()
+                        .to_degrees(),
+                );
+                let d = |c: usize| (srgb(truth.albedo[i][c]) - srgb(frame.albedo[i][c])).abs();
+                colors.push(d(0).max(d(1)).max(d(2)));
+            }
+            let part = |v: &mut Vec<f64>, percent: usize| {
+                v.sort_by(f64::total_cmp);
+                v[v.len() * percent / 100]
+            };
+            let half = (part(&mut angles, 50), part(&mut colors, 50));
+            let most = (part(&mut angles, 75), part(&mut colors, 75));
+            let what = format!(
+                "{projection:?}, {form}: {} pixels, {half:.4?} {most:.4?}",
+                angles.len()
+            );
+            println!("{what}");
+            // Measured (llvmpipe 22.3.6): what is left comes of smaller levels at slanting rims, which the reference has none of.
+            assert!(half.0 < 0.15 && half.1 < 0.012, "{what}");
+            assert!(most.0 < 0.4 && most.1 < 0.025, "{what}");
+        }
+    }
+}
