@@ -1,16 +1,12 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // A shape box of each instance: a strip of 14 vertices, made from the vertex's number.
-#include "include/pixel_ray.glsl"
-
-layout(location = 0) flat out uint instance_index;
-layout(location = 1) flat out vec3 ray_eye;
-layout(location = 2) flat out vec3 ray_dir_00;
-layout(location = 3) flat out vec3 ray_dir_x;
-layout(location = 4) flat out vec3 ray_dir_y;
+#include "include/vertex.glsl"
+#include "include/box_varyings.glsl"
 
 void main()
 {
+    frame = frame_block;
     solid = batch_solid;
     Instance i = batch_instance(gl_InstanceIndex);
     vec3 scale = scale_of(i);
@@ -31,10 +27,10 @@ void main()
     gl_Position = frame.clip_from_world * vec4(point_to_world(i, corner * half_size + vec3(0.0, 0.0, 0.5)), 1.0);
     gl_Position.z = inside ? 0.0 : gl_Position.z;
 
-    PixelRays rays = pixel_rays(i);
-    instance_index = gl_InstanceIndex;
-    ray_eye = rays.eye;
-    ray_dir_00 = rays.dir_00;
-    ray_dir_x = rays.dir_x;
-    ray_dir_y = rays.dir_y;
+    hand_over(i, gl_InstanceIndex, 0.0);
+    box_bounds = solid.bounds;
+    box_map = solid.map;
+    box_offset = solid.offset;
+    box_pieces = solid.pieces;
+    box_axis = solid.axis;
 }

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Traces a pixel of a shape box: every plane.
-#include "include/box_varyings.glsl"
+#include "include/box_fragment.glsl"
 #include "include/pixel_words.glsl"
 
 layout(depth_greater) out float gl_FragDepth;
@@ -12,15 +12,14 @@ layout(location = 3) out vec4 albedo_v;
 
 void main()
 {
-    solid = batch_solid;
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     Hit hit;
-    bool found = trace(ray_eye, ray_direction(varying_rays(), pixel), hit);
+    bool found = trace_box(pixel, hit);
     atomicAdd(pixel_words[second_word(pixel)], hit.steps);
     if (!found) {
         discard;
     }
-    Shaded s = shade(batch_instance(instance_index), varying_rays(), pixel, hit);
+    Shaded s = shade_fragment(pixel, hit);
     color = s.color;
     normal_distance = vec4(s.normal, s.distance);
     shading_normal_u = vec4(s.shading_normal, s.uv.x);

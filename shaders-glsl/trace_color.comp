@@ -7,6 +7,7 @@
 
 void main()
 {
+    begin();
     Bin bin = this_bin();
     uvec2 pixel = this_pixel(bin);
     if (any(greaterThanEqual(pixel, frame.size.xy))) {
@@ -14,7 +15,7 @@ void main()
     }
     Nearest nearest;
     if (nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest)) {
-        vec4 color = shade(batch_instance(nearest.instance), nearest.rays, pixel, nearest.hit).color;
+        vec4 color = shade_nearest(pixel, nearest).color;
         pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
         pixel_words[second_word(pixel)] = pack_srgb(color);
     }

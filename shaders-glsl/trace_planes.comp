@@ -11,6 +11,7 @@ layout(set = 2, binding = 5, rgba32f) uniform writeonly image2D albedo_v;
 
 void main()
 {
+    begin();
     Bin bin = this_bin();
     uvec2 pixel = this_pixel(bin);
     if (any(greaterThanEqual(pixel, frame.size.xy))) {
@@ -20,7 +21,7 @@ void main()
     bool found = nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest);
     pixel_words[second_word(pixel)] += nearest.steps;
     if (found) {
-        Shaded s = shade(batch_instance(nearest.instance), nearest.rays, pixel, nearest.hit);
+        Shaded s = shade_nearest(pixel, nearest);
         pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
         imageStore(color, ivec2(pixel), s.color);
         imageStore(normal_distance, ivec2(pixel), vec4(s.normal, s.distance));

@@ -29,21 +29,25 @@ pub enum Solver {
     Live,
     /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
+    /// The same pieces in shells of triangles, so that the rasteriser finds which a ray may meet. In the fragment stage, for objects
+    /// that it can wrap; others, and compute, are searched as by [`Quadric`](Self::Quadric).
+    Hull,
 }
 
 impl Solver {
     /// Every search, in the order in which reports list them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Linear,
         Self::Relief,
         Self::Secant,
         Self::Circle,
         Self::Live,
         Self::Quadric,
+        Self::Hull,
     ];
 
     /// What is taken where none is named.
-    pub const DEFAULT: Self = Self::Quadric;
+    pub const DEFAULT: Self = Self::Hull;
 
     /// Its name in options and results.
     #[must_use]
@@ -55,11 +59,18 @@ impl Solver {
             Self::Circle => "circle",
             Self::Live => "live",
             Self::Quadric => "quadric",
+            Self::Hull => "hull",
         }
     }
 
+    /// Whether it meets pieces of quadrics, not the map.
+    #[must_use]
+    pub const fn takes_pieces(self) -> bool {
+        matches!(self, Self::Quadric | Self::Hull)
+    }
+
     /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `quadric` has none to bound.
+    /// than any ray of a sound map takes. `quadric` and `hull` have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -67,7 +78,7 @@ impl Solver {
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,
-            Self::Quadric => 1,
+            Self::Quadric | Self::Hull => 1,
         }
     }
 }

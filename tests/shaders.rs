@@ -78,7 +78,7 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
     let words = g::SHAPE_BOX_PLANES_FRAG;
     assert_layout!(
         words,
-        "FrameBlock",
+        "Frame",
         FrameBlock {
             clip_from_world,
             eye,
@@ -106,6 +106,7 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             cells,
             instances,
             pieces,
+            hull,
             single
         }
     );
@@ -160,6 +161,9 @@ fn a_variant_sets_every_specialisation_constant() {
     for words in [
         g::SHAPE_BOX_COLOR_FRAG,
         g::SHAPE_BOX_PLANES_FRAG,
+        g::HULL_VERT,
+        g::HULL_COLOR_FRAG,
+        g::HULL_PLANES_FRAG,
         g::TRACE_COLOR_COMP,
         g::TRACE_PLANES_COMP,
     ] {
@@ -193,6 +197,9 @@ fn kept_spirv_is_what_the_sources_give() {
         ("shape_box.vert", g::SHAPE_BOX_VERT),
         ("shape_box_color.frag", g::SHAPE_BOX_COLOR_FRAG),
         ("shape_box_planes.frag", g::SHAPE_BOX_PLANES_FRAG),
+        ("hull.vert", g::HULL_VERT),
+        ("hull_color.frag", g::HULL_COLOR_FRAG),
+        ("hull_planes.frag", g::HULL_PLANES_FRAG),
         ("trace_color.comp", g::TRACE_COLOR_COMP),
         ("trace_planes.comp", g::TRACE_PLANES_COMP),
     ] {

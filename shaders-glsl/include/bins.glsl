@@ -6,6 +6,10 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+// Of a single instance.
+Look single_look;
+PixelRays single_rays;
+
 // A bin: its corner in bins (x | y << 16), where its list begins, how long it is.
 struct Bin {
     uint corner;
@@ -23,6 +27,17 @@ layout(push_constant) uniform Pushed {
     uint first_bin;
     uint corner; // of a single instance's rectangle, in work groups: x | y << 16
 } pushed;
+
+// The copies of the blocks: before anything else (see blocks.glsl).
+void begin()
+{
+    frame = frame_block;
+    solid = batch_solid;
+    if (SINGLE != 0u) {
+        single_look = look_of(solid.single);
+        single_rays = pixel_rays(solid.single);
+    }
+}
 
 // A single instance needs no bins: the work groups are those of its rectangle.
 Bin this_bin()
@@ -58,12 +73,11 @@ struct Nearest {
 bool nearest_hit(Bin bin, uvec2 pixel, float depth, out Nearest nearest)
 {
     bool found = false;
-    solid = batch_solid;
     nearest.depth = depth;
     nearest.steps = 0u;
     for (uint n = 0u; n < (SINGLE != 0u ? 1u : bin.count); ++n) {
         uint index = SINGLE != 0u ? 0u : bin_words[bin.first + n];
-        PixelRays rays = pixel_rays(batch_instance(index));
+        PixelRays rays = SINGLE != 0u ? single_rays : pixel_rays(instances[index]);
         Hit hit;
         bool met = trace(rays.eye, ray_direction(rays, pixel), hit);
         nearest.steps += hit.steps;
@@ -76,6 +90,15 @@ bool nearest_hit(Bin bin, uvec2 pixel, float depth, out Nearest nearest)
         }
     }
     return found;
+}
+
+Shaded shade_nearest(uvec2 pixel, Nearest nearest)
+{
+    if (SINGLE != 0u) {
+        return shade(solid.single, single_look, nearest.rays, pixel, nearest.hit);
+    }
+    Instance i = instances[nearest.instance];
+    return shade(i, look_of(i), nearest.rays, pixel, nearest.hit);
 }
 
 #endif

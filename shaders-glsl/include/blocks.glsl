@@ -9,7 +9,7 @@ struct Light {
     vec4 color;   // linear RGB
 };
 
-layout(set = 0, binding = 0, std140) uniform FrameBlock {
+struct Frame {
     mat4 clip_from_world;
     vec4 eye;     // world; w: depth of the near plane
     vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel's size at unit depth
@@ -19,7 +19,15 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
     vec4 ambient; // linear RGB
     uvec4 size;   // width, height, number of lights, bins across
     Light lights[MAX_LIGHTS];
-} frame;
+};
+
+layout(set = 0, binding = 0, std140) uniform FrameBlock {
+    Frame frame_block;
+};
+
+// Entry files copy the blocks before anything else: software drivers read a uniform buffer lane by lane in fragments and wherever lanes
+// may have left, and only at a compute shader's very beginning all at once. What fragments need most comes to them in flat varyings.
+Frame frame;
 
 struct Instance {
     vec4 position_sx; // of the middle of the box's lower face; scale along x
@@ -39,6 +47,7 @@ struct Solid {
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
     uvec4 pieces;    // of the quadric search's tables: where they begin, rows (a power of 4), first record, topmost level
+    uvec4 hull;      // first band
     Instance single; // the batch's instance, where it has but one
 };
 
@@ -63,7 +72,7 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
 Instance batch_instance(uint index)
 {
     if (SINGLE != 0u) {
-        return batch_solid.single;
+        return solid.single;
     }
     return instances[index];
 }

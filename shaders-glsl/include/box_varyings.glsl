@@ -1,17 +1,12 @@
-// What a shape box hands its fragments.
+// Of a shape box, besides: what clipping and searching ask in every fragment.
 #ifndef BOX_VARYINGS_GLSL
 #define BOX_VARYINGS_GLSL
-#include "shade.glsl"
+#include "varyings.glsl"
 
-layout(location = 0) flat in uint instance_index;
-layout(location = 1) flat in vec3 ray_eye;
-layout(location = 2) flat in vec3 ray_dir_00;
-layout(location = 3) flat in vec3 ray_dir_x;
-layout(location = 4) flat in vec3 ray_dir_y;
-
-PixelRays varying_rays()
-{
-    return PixelRays(ray_eye, ray_dir_00, ray_dir_x, ray_dir_y);
-}
+layout(location = 10) flat VARYING vec4 box_bounds;
+layout(location = 11) flat VARYING vec4 box_map;
+layout(location = 12) flat VARYING vec4 box_offset;
+layout(location = 13) flat VARYING uvec4 box_pieces;
+layout(location = 14) flat VARYING vec4 box_axis;
 
 #endif

@@ -6,24 +6,7 @@
 #ifndef SEARCH_QUADRIC_GLSL
 #define SEARCH_QUADRIC_GLSL
 #include "meridian.glsl"
-
-// Nodes: (min r^2, max r^2, bits of the row's run, 0), level by level; then records: 3 vectors each.
-layout(set = 0, binding = 4, std430) readonly buffer PieceTables {
-    vec4 piece_tables[];
-};
-
-// The batch's own tables alone: software drivers gather from uniform buffers several times as fast.
-layout(set = 0, binding = 5, std140) uniform OwnPieceTables {
-    vec4 own_piece_tables[PIECE_VECTORS];
-};
-
-vec4 piece_table(uint at)
-{
-    if (OWN_TABLES != 0u && (SHADOW == SHADOW_OFF || shadow_map < 0)) {
-        return own_piece_tables[at];
-    }
-    return piece_tables[solid.pieces.x + at];
-}
+#include "piece_tables.glsl"
 
 const uint RUN_BITS = 12u;
 
@@ -34,7 +17,8 @@ float entering_root(Meridian m, vec4 q, float side)
     float be = side * (q.x * m.b + (0.5 * q.z + q.w * m.o.z) * m.v.z);
     float ga = side * (q.x * m.c + (q.y + m.o.z * (q.z + m.o.z * q.w)));
     float root = sqrt(be * be - al * ga);
-    return be <= 0.0 ? ga / (root - be) : -(be + root) / al;
+    bool towards = be <= 0.0;
+    return (towards ? ga : -(be + root)) / (towards ? root - be : al);
 }
 
 float square_at(Meridian m, float s)

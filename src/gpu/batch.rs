@@ -78,7 +78,7 @@ fn reach(object: &Object, margin: f64) -> f64 {
 
 /// Fails where a map's format cannot show what the object asks for.
 pub(crate) fn check_format(number: usize, object: &Object, settings: &Settings) -> Result<()> {
-    let reads = settings.solver != Solver::Quadric;
+    let reads = !settings.solver.takes_pieces();
     if reads && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
         return Err(Error::new(
             Stage::Scene,
@@ -123,7 +123,7 @@ pub(crate) fn solid_block(
     let [x, y] = axis_offset(object);
     // Where the map ends, what is read from it ends.
     let reach = match solver {
-        Solver::Quadric => f64::INFINITY,
+        Solver::Quadric | Solver::Hull => f64::INFINITY,
         _ => f64::from(map.columns) * texel,
     };
     let clip = (map.bounds.r_max + grow)
@@ -170,6 +170,7 @@ pub(crate) fn solid_block(
             0,
         ],
         pieces: [0; 4],
+        hull: [0; 4],
         single: object.placements().first().map(instance_block).unwrap_or_default(),
     }
 }

@@ -73,6 +73,8 @@ pub struct SolidBlock {
     pub instances: [u32; 4],
     /// Of the quadric search's tables: where they begin, rows, first record, topmost level.
     pub pieces: [u32; 4],
+    /// Of the hull: its first band.
+    pub hull: [u32; 4],
     /// The batch's instance, where it has but one.
     pub single: InstanceBlock,
 }

@@ -1,7 +1,7 @@
 //! The quadric search's tables, made anew whenever an offset moves.
 
 use crate::error::{Error, Result};
-use crate::pieces::{ContourSource, CutOptions, Tables, cut};
+use crate::pieces::{ContourSource, CutOptions, Piece, Tables, cut};
 use crate::profile::{Profile, Shape};
 use crate::scene::{Object, Offset, Scene};
 use std::sync::Arc;
@@ -44,30 +44,30 @@ impl Contours {
         })
     }
 
-    /// Appends the tables under `offset` to `out`, from the next multiple of `align` vectors on (their layout is
-    /// `search_quadric.glsl`'s); returns where they stand: first vector, rows, first record from there, topmost level.
-    pub fn append(
-        &self,
-        offset: &Offset,
-        align: usize,
-        out: &mut Vec<[f32; 4]>,
-    ) -> Result<[u32; 4]> {
+    /// The boundary under `offset`.
+    pub fn pieces(&self, offset: &Offset) -> Result<Vec<Piece>> {
         let contour = self.source.contour(offset)?;
-        let tables = Tables::new(&cut(&contour, &CutOptions::default()), ROWS);
-        let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        out.resize(out.len().next_multiple_of(align), [0.0; 4]);
-        let begin = out.len();
-        for (n, [low, high]) in tables.nodes.iter().enumerate() {
-            let run = tables.rows.get(n).copied().unwrap_or(0);
-            out.push([*low, *high, f32::from_bits(run), 0.0]);
-        }
-        let first_record = index(out.len() - begin);
-        for record in &tables.records {
-            out.extend([record.quadric, record.guard, record.range]);
-        }
-        let top = index(tables.levels.len().saturating_sub(1));
-        Ok([index(begin), ROWS, first_record, top])
+        Ok(cut(&contour, &CutOptions { tolerance: std::env::var("HULL_TOL").map_or(CutOptions::default().tolerance, |v| v.parse::<f64>().unwrap() / 512.0) }))
     }
+}
+
+/// Appends the tables of these pieces to `out`, from the next multiple of `align` vectors on (their layout is
+/// `search_quadric.glsl`'s); returns where they stand: first vector, rows, first record from there, topmost level.
+pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[f32; 4]>) -> [u32; 4] {
+    let tables = Tables::new(pieces, ROWS);
+    let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    out.resize(out.len().next_multiple_of(align), [0.0; 4]);
+    let begin = out.len();
+    for (n, [low, high]) in tables.nodes.iter().enumerate() {
+        let run = tables.rows.get(n).copied().unwrap_or(0);
+        out.push([*low, *high, f32::from_bits(run), 0.0]);
+    }
+    let first_record = index(out.len() - begin);
+    for record in &tables.records {
+        out.extend([record.quadric, record.guard, record.range]);
+    }
+    let top = index(tables.levels.len().saturating_sub(1));
+    [index(begin), ROWS, first_record, top]
 }
 
 fn named(error: Error, number: usize, object: &Object) -> Error {

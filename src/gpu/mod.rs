@@ -13,6 +13,7 @@ mod commands;
 mod contours;
 mod descriptors;
 mod device;
+mod hulls;
 mod instance;
 mod memory;
 mod messages;

@@ -3,7 +3,7 @@
 use super::call::Call;
 use super::device::Shared;
 use crate::error::Result;
-use crate::settings::{DrawStage, Planes};
+use crate::settings::Planes;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{Variant, generated as spirv};
 use ash::vk;
@@ -20,6 +20,17 @@ pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
 
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
+/// What a pipeline draws with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Kind {
+    /// Shape boxes, rasterised.
+    Box,
+    /// Hulls, rasterised.
+    Hull,
+    /// Bins of pixels.
+    Compute,
+}
+
 /// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
 pub(crate) struct Pipelines {
     /// By frequency: 0 buffers of a frame, 1 textures of a batch, 2 the target of a compute pass.
@@ -28,7 +39,7 @@ pub(crate) struct Pipelines {
     pub render_pass: vk::RenderPass,
     planes: Planes,
     cache: vk::PipelineCache,
-    made: HashMap<(Variant, bool), vk::Pipeline>,
+    made: HashMap<(Variant, Kind), vk::Pipeline>,
     device: Arc<Shared>,
 }
 
@@ -54,7 +65,7 @@ impl Pipelines {
                 (T::UNIFORM_BUFFER_DYNAMIC, every),
                 (T::STORAGE_BUFFER, every),
                 (T::UNIFORM_BUFFER, every),
-                (T::STORAGE_BUFFER, pixel),
+                (T::STORAGE_BUFFER, every),
                 (T::UNIFORM_BUFFER_DYNAMIC, pixel),
             ],
             &[(T::COMBINED_IMAGE_SAMPLER, pixel); 5],
@@ -103,9 +114,9 @@ impl Pipelines {
         Ok(all)
     }
 
-    /// The pipeline of `variant` in `stage`, made now if it is new.
-    pub fn get(&mut self, variant: Variant, stage: DrawStage) -> Result<vk::Pipeline> {
-        let key = (variant, stage == DrawStage::Compute);
+    /// The pipeline of `variant` and `kind`, made now if it is new.
+    pub fn get(&mut self, variant: Variant, kind: Kind) -> Result<vk::Pipeline> {
+        let key = (variant, kind);
         if let Some(made) = self.made.get(&key) {
             return Ok(*made);
         }
@@ -128,10 +139,9 @@ impl Pipelines {
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
-        let pipeline = if stage == DrawStage::Compute {
-            self.compute(&specialization)?
-        } else {
-            self.graphics(&specialization)?
+        let pipeline = match kind {
+            Kind::Compute => self.compute(&specialization)?,
+            Kind::Box | Kind::Hull => self.graphics(kind, &specialization)?,
         };
         self.made.insert(key, pipeline);
         Ok(pipeline)
@@ -165,19 +175,34 @@ impl Pipelines {
         first(made, "vkCreateComputePipelines")
     }
 
-    fn graphics(&self, specialization: &vk::SpecializationInfo<'_>) -> Result<vk::Pipeline> {
-        let vertex = self.module(spirv::SHAPE_BOX_VERT)?;
-        let fragment = self.module(match self.planes {
-            Planes::Color => spirv::SHAPE_BOX_COLOR_FRAG,
-            Planes::All => spirv::SHAPE_BOX_PLANES_FRAG,
+    fn graphics(
+        &self,
+        kind: Kind,
+        specialization: &vk::SpecializationInfo<'_>,
+    ) -> Result<vk::Pipeline> {
+        let hull = kind == Kind::Hull;
+        let vertex = self.module(if hull {
+            spirv::HULL_VERT
+        } else {
+            spirv::SHAPE_BOX_VERT
+        })?;
+        let fragment = self.module(match (hull, self.planes) {
+            (false, Planes::Color) => spirv::SHAPE_BOX_COLOR_FRAG,
+            (false, Planes::All) => spirv::SHAPE_BOX_PLANES_FRAG,
+            (true, Planes::Color) => spirv::HULL_COLOR_FRAG,
+            (true, Planes::All) => spirv::HULL_PLANES_FRAG,
         })?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
         let no_vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let strip = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_STRIP);
+        let assembly =
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if hull {
+                vk::PrimitiveTopology::TRIANGLE_LIST
+            } else {
+                vk::PrimitiveTopology::TRIANGLE_STRIP
+            });
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
@@ -203,7 +228,7 @@ impl Pipelines {
         let info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&no_vertices)
-            .input_assembly_state(&strip)
+            .input_assembly_state(&assembly)
             .viewport_state(&viewport)
             .rasterization_state(&raster)
             .multisample_state(&samples)

@@ -5,11 +5,12 @@ use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, ShadowBlock, SolidBlock};
 use super::clock::Clock;
 use super::commands::Commands;
-use super::contours::Contours;
+use super::contours::{Contours, append_tables};
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
+use super::hulls;
 use super::memory::Buffer;
-use super::pipelines::Pipelines;
+use super::pipelines::{Kind, Pipelines};
 use super::target::Target;
 use super::textures::Textures;
 use crate::error::{Error, Result, Stage};
@@ -17,7 +18,9 @@ use crate::frame::Frame;
 use crate::scene::{CameraFrame, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
 use crate::shader::Variant;
-use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS, MAX_SHADOW_BATCHES, PIECE_VECTORS};
+use crate::shader::generated::{
+    BIN_PIXELS, GROUP_PIXELS, HULL_SIDES, MAX_SHADOW_BATCHES, PIECE_VECTORS,
+};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::ops::Range;
@@ -49,6 +52,8 @@ pub struct Renderer {
     shadow_buffer: Buffer,
     bin_buffer: Buffer,
     piece_buffer: Buffer,
+    /// Corners of a hull's triangles, the same for every hull.
+    index_buffer: Buffer,
     commands: Commands,
     clock: Clock,
     settings: Settings,
@@ -66,6 +71,8 @@ struct Batch {
     bins: Range<u32>,
     /// Of a single instance: its work groups.
     groups: Option<Rectangle>,
+    /// Of a hull: how many corners its triangles have.
+    hull_indices: Option<u32>,
 }
 
 impl Renderer {
@@ -97,11 +104,12 @@ impl Renderer {
                 instances: instances..end,
                 bins: 0..0,
                 groups: None,
+                hull_indices: None,
             });
             instances = end;
         }
 
-        let contours = if settings.solver == Solver::Quadric {
+        let contours = if settings.solver.takes_pieces() {
             Contours::of(scene)?
         } else {
             Vec::new()
@@ -122,6 +130,7 @@ impl Renderer {
         let shadow_buffer = uniform("shadow block", size_of::<ShadowBlock>() as u64)?;
         let mut renderer = Self {
             bin_buffer: storage(&device, "bins", 0)?,
+            index_buffer: indices(&device, 0)?,
             piece_buffer: storage(&device, "pieces", 16 * u64::from(PIECE_VECTORS))?,
             descriptors: Descriptors::new(&device, &pipelines, batches.len())?,
             pipelines,
@@ -163,6 +172,8 @@ impl Renderer {
         write(&mut self.frame_buffer, 0, &frame)?;
         let mut bins = Bins::default();
         let mut pieces: Vec<[f32; 4]> = Vec::new();
+        let mut bands = 0;
+        let near = f64::from(frame.eye[3]);
         let mut shadows: ShadowBlock = bytemuck::Zeroable::zeroed();
         let casts = scene.shadow != Shadow::Off;
         if casts {
@@ -183,15 +194,33 @@ impl Renderer {
                 shape,
                 self.settings.solver,
             );
-            if self.settings.solver == Solver::Quadric {
+            let mut kind = match self.settings.stage {
+                DrawStage::Compute => Kind::Compute,
+                _ => Kind::Box,
+            };
+            batch.hull_indices = None;
+            if self.settings.solver.takes_pieces() {
+                let cut = self.contours[number].pieces(&object.offset)?;
+                if self.settings.solver == Solver::Hull
+                    && kind == Kind::Box
+                    && let Some(hull) = hulls::of(object, &cut, &camera, near)
+                {
+                    kind = Kind::Hull;
+                    block.hull[0] = hulls::append(&hull, &cut, &mut pieces) as u32;
+                    batch.hull_indices = Some(6 * HULL_SIDES * hull.bands.len() as u32);
+                    bands = bands.max(hull.bands.len());
+                }
                 let align = self.device.limits.min_uniform_buffer_offset_alignment;
                 let align = usize::try_from(align).unwrap_or(256).max(16) / 16;
-                block.pieces = self.contours[number].append(&object.offset, align, &mut pieces)?;
-                let own = pieces.len() - block.pieces[0] as usize;
-                variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
-                batch.tables_offset = 16 * block.pieces[0];
+                // A hull's own fragments read none of the tree; shadows' rays do.
+                if kind != Kind::Hull || casts {
+                    block.pieces = append_tables(&cut, align, &mut pieces);
+                    let own = pieces.len() - block.pieces[0] as usize;
+                    variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
+                    batch.tables_offset = 16 * block.pieces[0];
+                }
             }
-            batch.pipeline = self.pipelines.get(variant, self.settings.stage)?;
+            batch.pipeline = self.pipelines.get(variant, kind)?;
             write(&mut self.batch_buffer, batch.block_offset as usize, &block)?;
             if casts {
                 shadows.shadow_solids[number] = block;
@@ -235,6 +264,13 @@ impl Renderer {
                 size_of_val(pieces.as_slice()),
             )?;
             write_slice(&mut self.piece_buffer, &pieces)?;
+        }
+        if bands > 0 {
+            let corners = hulls::indices(bands);
+            if self.index_buffer.bytes < size_of_val(corners.as_slice()) as u64 {
+                self.index_buffer = indices(&self.device, size_of_val(corners.as_slice()))?;
+                write_slice(&mut self.index_buffer, &corners)?;
+            }
         }
         write(&mut self.shadow_buffer, 0, &shadows)?;
         self.descriptors.frame(
@@ -312,11 +348,17 @@ impl Renderer {
         for batch in &self.batches {
             self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
             let count = batch.instances.end - batch.instances.start;
+            let first = batch.instances.start;
+            let raw = &self.device.raw;
             // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as `self`.
             unsafe {
-                self.device
-                    .raw
-                    .cmd_draw(cmd, 14, count, 0, batch.instances.start)
+                if let Some(corners) = batch.hull_indices {
+                    let kind = vk::IndexType::UINT32;
+                    raw.cmd_bind_index_buffer(cmd, self.index_buffer.raw, 0, kind);
+                    raw.cmd_draw_indexed(cmd, corners, count, 0, 0, first);
+                } else {
+                    raw.cmd_draw(cmd, 14, count, 0, first);
+                }
             };
         }
     }
@@ -407,6 +449,11 @@ fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
     // Pieces are read both ways.
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_BUFFER;
     Buffer::new(device, name, bytes, usage, MemoryLocation::CpuToGpu)
+}
+
+fn indices(device: &Arc<Shared>, bytes: usize) -> Result<Buffer> {
+    let usage = vk::BufferUsageFlags::INDEX_BUFFER;
+    Buffer::new(device, "corners of hulls", bytes as u64, usage, MemoryLocation::CpuToGpu)
 }
 
 /// Makes `buffer` anew where it is too small.

@@ -44,7 +44,7 @@ impl Variant {
             solver: match settings.solver {
                 Solver::Circle => g::SOLVER_CIRCLE,
                 Solver::Live => g::SOLVER_LIVE,
-                Solver::Quadric => g::SOLVER_QUADRIC,
+                Solver::Quadric | Solver::Hull => g::SOLVER_QUADRIC,
                 Solver::Linear => g::SOLVER_LINEAR,
                 Solver::Relief => g::SOLVER_RELIEF,
                 Solver::Secant => g::SOLVER_SECANT,
