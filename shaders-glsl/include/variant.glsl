@@ -46,9 +46,9 @@ const uint SHADOW_SOFT = 2u;
 
 const uint MAX_LIGHTS = 8u;
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
-const uint HULL_SIDES = 24u; // corners of a hull's rings
-const uint HULL_TESTS = 3u; // most pieces of a hull's cell
-const uint BAND_VECTORS = 7u; // of a band: its rings, then the cell's quadrics and guards
+const uint HULL_SIDES = 12u; // corners of a hull's rings
+const uint HULL_TESTS = 6u; // most pieces of a hull's cell
+const uint BAND_VECTORS = 13u; // of a band: its rings, then the cell's quadrics and guards
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
 const uint BIN_PIXELS = 32u; // side of a compute bin
