@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Traces the pixels of a batch's bins: colour, packed sRGB, and depth.
 #include "include/bins.glsl"
-#include "include/pixel_words.glsl"
 #include "include/srgb.glsl"
 
 void main()
@@ -14,9 +13,9 @@ void main()
         return;
     }
     Nearest nearest;
-    if (nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest)) {
+    if (nearest_hit(bin, pixel, nearest)) {
         vec4 color = shade_nearest(pixel, nearest).color;
-        pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
+        keep_depth(pixel, nearest);
         pixel_words[second_word(pixel)] = pack_srgb(color);
     }
 }

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Traces the pixels of a batch's bins: every plane.
 #include "include/bins.glsl"
-#include "include/pixel_words.glsl"
 
 layout(set = 2, binding = 2, rgba32f) uniform writeonly image2D color;
 layout(set = 2, binding = 3, rgba32f) uniform writeonly image2D normal_distance;
@@ -18,11 +17,11 @@ void main()
         return;
     }
     Nearest nearest;
-    bool found = nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest);
+    bool found = nearest_hit(bin, pixel, nearest);
     pixel_words[second_word(pixel)] += nearest.steps;
     if (found) {
         Shaded s = shade_nearest(pixel, nearest);
-        pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
+        keep_depth(pixel, nearest);
         imageStore(color, ivec2(pixel), s.color);
         imageStore(normal_distance, ivec2(pixel), vec4(s.normal, s.distance));
         imageStore(shading_normal_u, ivec2(pixel), vec4(s.shading_normal, s.uv.x));

@@ -164,6 +164,7 @@ fn a_variant_sets_every_specialisation_constant() {
         g::HULL_VERT,
         g::HULL_COLOR_FRAG,
         g::HULL_PLANES_FRAG,
+        g::BEAM_COMP,
         g::TRACE_COLOR_COMP,
         g::TRACE_PLANES_COMP,
     ] {
@@ -197,6 +198,7 @@ fn kept_spirv_is_what_the_sources_give() {
         ("shape_box.vert", g::SHAPE_BOX_VERT),
         ("shape_box_color.frag", g::SHAPE_BOX_COLOR_FRAG),
         ("shape_box_planes.frag", g::SHAPE_BOX_PLANES_FRAG),
+        ("beam.comp", g::BEAM_COMP),
         ("hull.vert", g::HULL_VERT),
         ("hull_color.frag", g::HULL_COLOR_FRAG),
         ("hull_planes.frag", g::HULL_PLANES_FRAG),

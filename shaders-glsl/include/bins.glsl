@@ -2,31 +2,22 @@
 // Work groups count along x within a bin, along y from bin to bin.
 #ifndef BINS_GLSL
 #define BINS_GLSL
+#include "beams.glsl"
+#include "pixel_words.glsl"
 #include "shade.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 // Of a single instance.
 Look single_look;
 PixelRays single_rays;
 
-// A bin: its corner in bins (x | y << 16), where its list begins, how long it is.
+// A bin: its corner in bins (x | y << 16), where its list begins, how long it is. Of beams: a tile's corner in tiles, bits of its first and
+// last t.
 struct Bin {
     uint corner;
     uint first;
     uint count;
     uint unused;
 };
-
-// All bins, four words each; then the lists, to which `first` counts from the buffer's beginning.
-layout(set = 2, binding = 1, std430) readonly buffer BinWords {
-    uint bin_words[];
-};
-
-layout(push_constant) uniform Pushed {
-    uint first_bin;
-    uint corner; // of a single instance's rectangle, in work groups: x | y << 16
-} pushed;
 
 // The copies of the blocks: before anything else (see blocks.glsl).
 void begin()
@@ -42,6 +33,10 @@ void begin()
 // A single instance needs no bins: the work groups are those of its rectangle.
 Bin this_bin()
 {
+    if (BEAM != 0u) {
+        uint at = pushed.first_bin + 4u + 4u * gl_WorkGroupID.x;
+        return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
+    }
     if (SINGLE != 0u) {
         return Bin(pushed.corner, 0u, 1u, 0u);
     }
@@ -51,6 +46,9 @@ Bin this_bin()
 
 uvec2 this_pixel(Bin bin)
 {
+    if (BEAM != 0u) {
+        return uvec2(bin.corner & 0xffffu, bin.corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
+    }
     if (SINGLE != 0u) {
         uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16);
         return (corner + gl_WorkGroupID.xy) * GROUP_PIXELS + gl_LocalInvocationID.xy;
@@ -70,16 +68,21 @@ struct Nearest {
 };
 
 // The bin's instances in order; of equal depths the first stays, as under the depth test "less".
-bool nearest_hit(Bin bin, uvec2 pixel, float depth, out Nearest nearest)
+bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
 {
     bool found = false;
-    nearest.depth = depth;
+    nearest.depth = DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
     nearest.steps = 0u;
     for (uint n = 0u; n < (SINGLE != 0u ? 1u : bin.count); ++n) {
         uint index = SINGLE != 0u ? 0u : bin_words[bin.first + n];
         PixelRays rays = SINGLE != 0u ? single_rays : pixel_rays(instances[index]);
         Hit hit;
-        bool met = trace(rays.eye, ray_direction(rays, pixel), hit);
+        bool met;
+        if (BEAM != 0u) {
+            met = trace_between(rays.eye, ray_direction(rays, pixel), uintBitsToFloat(bin.first), uintBitsToFloat(bin.count), hit);
+        } else {
+            met = trace(rays.eye, ray_direction(rays, pixel), hit);
+        }
         nearest.steps += hit.steps;
         if (met && depth_of(hit.t) < nearest.depth) {
             found = true;
@@ -90,6 +93,13 @@ bool nearest_hit(Bin bin, uvec2 pixel, float depth, out Nearest nearest)
         }
     }
     return found;
+}
+
+void keep_depth(uvec2 pixel, Nearest nearest)
+{
+    if (DEPTH_KEEP != 0u) {
+        pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);
+    }
 }
 
 Shaded shade_nearest(uvec2 pixel, Nearest nearest)

@@ -29,7 +29,7 @@ float square_at(Meridian m, float s)
 // Whether the start of the ray is in the solid: by the number of pieces beyond it, away from the axis.
 bool starts_within(Meridian m)
 {
-    uint rows = solid.pieces.y;
+    uint rows = PIECE_ROWS;
     uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(rows));
     uint run = floatBitsToUint(piece_table(min(row, rows - 1u)).z);
     uint beyond = 0u;
@@ -46,7 +46,7 @@ bool starts_within(Meridian m)
 // FOUND or LEFT; `hit_quadric` is the piece that was hit.
 uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
 {
-    int rows = int(solid.pieces.y);
+    const int rows = int(PIECE_ROWS);
     float n = float(rows);
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));

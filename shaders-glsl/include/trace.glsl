@@ -27,6 +27,30 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     return search_linear(m, side, f, s, steps);
 }
 
+// Of a ray that is known to begin outside of the solid, none of which the box cuts: pieces alone, between two t.
+bool trace_between(vec3 eye, vec3 v, float t_in, float t_out, out Hit hit)
+{
+    Meridian m;
+    m.v = v;
+    m.o = eye + t_in * v;
+    m.a = dot(v.xy, v.xy);
+    m.b = dot(m.o.xy, v.xy);
+    m.c = dot(m.o.xy, m.o.xy);
+    m.inverse_speed = inversesqrt(dot(v, v));
+    m.t_start = t_in;
+    m.s_end = t_out - t_in;
+    float s = 0.0;
+    vec4 quadric;
+    hit.steps = 0u;
+    uint end = search_quadric(m, 1.0, s, hit.steps, quadric);
+    hit.t = t_in + s;
+    hit.normal = quadric_normal(m, s, quadric);
+    hit.point = m.o + s * v;
+    hit.sense = vec3(1.0);
+    hit.exhausted = false;
+    return end == FOUND;
+}
+
 // Look-ups are counted in `hit.steps` even when nothing is met.
 bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
 {

@@ -15,6 +15,10 @@ layout(constant_id = 9) const uint LIGHTS = 1u;     // number of lights: a loop 
 layout(constant_id = 10) const uint OWN_TABLES = 0u; // 1: the batch's pieces fit into a uniform buffer
 layout(constant_id = 11) const uint SINGLE = 0u;    // 1: the batch is one instance, which its block holds
 
+layout(constant_id = 12) const uint BEAM = 0u;      // 1: tiles and where their rays begin and end come from beam.comp
+layout(constant_id = 13) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
+layout(constant_id = 14) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
+
 const uint SOLVER_CIRCLE = 0u; // the papers' loop
 const uint SOLVER_LIVE = 1u;   // conservative steps and a last secant, on the map alone
 
@@ -46,6 +50,8 @@ const uint SHADOW_SOFT = 2u;
 
 const uint MAX_LIGHTS = 8u;
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
+const uint PIECE_ROWS = 64u; // of a solid's tables: a power of 4
+const uint BEAM_NODES = 16u; // of the tree's second level
 const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint HULL_TESTS = 6u; // most pieces of a hull's cell
 const uint BAND_VECTORS = 13u; // of a band: its rings, then the cell's quadrics and guards

@@ -89,7 +89,8 @@ pub(crate) fn check_format(number: usize, object: &Object, settings: &Settings) 
     Ok(())
 }
 
-fn axis_offset(object: &Object) -> [f64; 2] {
+/// Where the axis stands, object units from the middle of the box.
+pub(crate) fn axis_offset(object: &Object) -> [f64; 2] {
     object.axis.map(|o| (2.0 * o - 1.0) * object.profile.radius)
 }
 

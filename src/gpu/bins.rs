@@ -1,7 +1,7 @@
 //! Which squares of the screen each instance's box covers: the work list of the compute path.
 
 use crate::scene::{CameraFrame, Placement};
-use crate::shader::generated::BIN_PIXELS;
+use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS};
 use glam::{DVec2, DVec3};
 
 /// A square of the screen and the boxes that cover it.
@@ -27,6 +27,14 @@ pub(crate) struct Bins {
 pub(crate) struct Rectangle {
     pub low: (u32, u32),
     pub high: (u32, u32),
+}
+
+impl Rectangle {
+    /// The squares of as many whole groups of squares as hold it.
+    pub fn padded(self) -> u32 {
+        let groups = |low: u32, high: u32| (high - low + 1).next_multiple_of(GROUP_PIXELS);
+        groups(self.low.0, self.high.0) * groups(self.low.1, self.high.1)
+    }
 }
 
 impl Bins {

@@ -4,10 +4,8 @@ use crate::error::{Error, Result};
 use crate::pieces::{ContourSource, CutOptions, Piece, Tables, cut};
 use crate::profile::{Profile, Shape};
 use crate::scene::{Object, Offset, Scene};
+use crate::shader::generated::PIECE_ROWS;
 use std::sync::Arc;
-
-/// Rows of equal height; a power of 4, as the shader computes where levels begin.
-const ROWS: u32 = 64;
 
 /// What does not depend on the offset, of one object; objects of one profile share it.
 #[derive(Clone)]
@@ -54,7 +52,7 @@ impl Contours {
 /// Appends the tables of these pieces to `out`, from the next multiple of `align` vectors on (their layout is
 /// `search_quadric.glsl`'s); returns where they stand: first vector, rows, first record from there, topmost level.
 pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[f32; 4]>) -> [u32; 4] {
-    let tables = Tables::new(pieces, ROWS);
+    let tables = Tables::new(pieces, PIECE_ROWS);
     let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     out.resize(out.len().next_multiple_of(align), [0.0; 4]);
     let begin = out.len();
@@ -67,7 +65,7 @@ pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[f32; 
         out.extend([record.quadric, record.guard, record.range]);
     }
     let top = index(tables.levels.len().saturating_sub(1));
-    [index(begin), ROWS, first_record, top]
+    [index(begin), PIECE_ROWS, first_record, top]
 }
 
 fn named(error: Error, number: usize, object: &Object) -> Error {

@@ -1,5 +1,6 @@
 //! Hulls: what the vertex shader grows, and which objects can be drawn by theirs.
 
+use super::batch::axis_offset;
 use crate::pieces::{Hull, HullOptions, Piece, Record};
 use crate::scene::{CameraFrame, Object, Placement};
 use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
@@ -11,14 +12,48 @@ const CLEARANCE: f64 = 1e-3;
 /// How far a band may lie from the surface, object units: fewer triangles against fewer fragments that meet nothing.
 const GAP: f64 = 0.01;
 
-/// The hull of `object` whose boundary the pieces are, if it shows from this camera all that the box would: the box cuts nothing of the
-/// solid and holds no replicas, the eye is outside all shells, the near plane cuts none.
-pub(crate) fn of(object: &Object, pieces: &[Piece], camera: &CameraFrame, near: f64) -> Option<Hull> {
+/// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
+fn is_whole(object: &Object, pieces: &[Piece]) -> bool {
     let radius = object.profile.radius;
-    let [x, y] = object.axis.map(|o| (2.0 * o - 1.0) * radius);
+    let [x, y] = axis_offset(object);
     let side_face = radius - x.abs().max(y.abs());
-    let cut = pieces.iter().any(|p| p.r[1] > side_face);
-    if cut || object.repeat != [1; 3] {
+    object.repeat == [1; 3] && pieces.iter().all(|p| p.r[1] <= side_face)
+}
+
+/// Whether rays of an object's one copy can be taken between the ends that beams give: they begin outside the solid and no face
+/// of the box shows.
+pub(crate) fn takes_beams(object: &Object, pieces: &[Piece], camera: &CameraFrame) -> bool {
+    let [placement] = object.placements() else {
+        return false;
+    };
+    let (eye, _) = seen_from(object, placement, camera);
+    let eye = DVec2::new(eye.truncate().length(), eye.z);
+    let whole = pieces.iter().fold([0.0f64, f64::INFINITY, f64::NEG_INFINITY], |m, p| {
+        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+    });
+    let apart = eye.x > whole[0] + CLEARANCE
+        || eye.y < whole[1] - CLEARANCE
+        || eye.y > whole[2] + CLEARANCE;
+    apart && is_whole(object, pieces)
+}
+
+/// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.
+fn seen_from(object: &Object, placement: &Placement, camera: &CameraFrame) -> (DVec3, DVec3) {
+    let [x, y] = axis_offset(object);
+    let turn = placement.rotation.conjugate();
+    let eye = turn * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0);
+    (eye, turn * camera.forward * placement.scale)
+}
+
+/// The hull of `object` whose boundary the pieces are, if it shows from this camera all that the box would: the eye is outside all shells,
+/// the near plane cuts none.
+pub(crate) fn of(
+    object: &Object,
+    pieces: &[Piece],
+    camera: &CameraFrame,
+    near: f64,
+) -> Option<Hull> {
+    if !is_whole(object, pieces) {
         return None;
     }
     let hull = Hull::new(
@@ -30,22 +65,12 @@ pub(crate) fn of(object: &Object, pieces: &[Piece], camera: &CameraFrame, near: 
             ..HullOptions::default()
         },
     );
-    let axis = DVec3::new(x, y, 0.0);
-    let seen = |placement| is_in_front(&hull, placement, axis, camera, near);
+    let seen = |placement| is_in_front(&hull, seen_from(object, placement, camera), near);
     object.placements().iter().all(seen).then_some(hull)
 }
 
 /// Whether a copy's shells are all in front of the near plane, and the eye in none of them.
-fn is_in_front(
-    hull: &Hull,
-    placement: &Placement,
-    axis: DVec3,
-    camera: &CameraFrame,
-    near: f64,
-) -> bool {
-    let turn = placement.rotation.conjugate();
-    let eye = turn * (camera.eye - placement.position) / placement.scale - axis;
-    let forward = turn * camera.forward * placement.scale;
+fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), near: f64) -> bool {
     let aside = forward.truncate().length();
     let margin = CLEARANCE * forward.length();
     let ahead = hull.extents.iter().all(|&[_, r, low, high]| {

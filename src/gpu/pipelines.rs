@@ -29,6 +29,8 @@ pub(crate) enum Kind {
     Hull,
     /// Bins of pixels.
     Compute,
+    /// The list of tiles that a batch's rays may meet.
+    Beam,
 }
 
 /// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
@@ -140,7 +142,7 @@ impl Pipelines {
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
         let pipeline = match kind {
-            Kind::Compute => self.compute(&specialization)?,
+            Kind::Compute | Kind::Beam => self.compute(kind, &specialization)?,
             Kind::Box | Kind::Hull => self.graphics(kind, &specialization)?,
         };
         self.made.insert(key, pipeline);
@@ -158,10 +160,15 @@ impl Pipelines {
         })
     }
 
-    fn compute(&self, specialization: &vk::SpecializationInfo<'_>) -> Result<vk::Pipeline> {
-        let module = self.module(match self.planes {
-            Planes::Color => spirv::TRACE_COLOR_COMP,
-            Planes::All => spirv::TRACE_PLANES_COMP,
+    fn compute(
+        &self,
+        kind: Kind,
+        specialization: &vk::SpecializationInfo<'_>,
+    ) -> Result<vk::Pipeline> {
+        let module = self.module(match (kind, self.planes) {
+            (Kind::Beam, _) => spirv::BEAM_COMP,
+            (_, Planes::Color) => spirv::TRACE_COLOR_COMP,
+            (_, Planes::All) => spirv::TRACE_PLANES_COMP,
         })?;
         let info = vk::ComputePipelineCreateInfo::default()
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))

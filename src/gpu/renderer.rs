@@ -13,6 +13,7 @@ use super::memory::Buffer;
 use super::pipelines::{Kind, Pipelines};
 use super::target::Target;
 use super::textures::Textures;
+use super::usage::{Usage, buffer_barrier};
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Scene, Shadow};
@@ -71,6 +72,8 @@ struct Batch {
     bins: Range<u32>,
     /// Of a single instance: its work groups.
     groups: Option<Rectangle>,
+    /// Of a single instance whose tiles are listed by beams: their pipeline, and the word where the list begins.
+    beam: Option<(vk::Pipeline, u32)>,
     /// Of a hull: how many corners its triangles have.
     hull_indices: Option<u32>,
 }
@@ -104,6 +107,7 @@ impl Renderer {
                 instances: instances..end,
                 bins: 0..0,
                 groups: None,
+                beam: None,
                 hull_indices: None,
             });
             instances = end;
@@ -174,12 +178,15 @@ impl Renderer {
         let mut pieces: Vec<[f32; 4]> = Vec::new();
         let mut bands = 0;
         let near = f64::from(frame.eye[3]);
+        let most_groups = self.device.limits.max_compute_work_group_count[0];
         let mut shadows: ShadowBlock = bytemuck::Zeroable::zeroed();
         let casts = scene.shadow != Shadow::Off;
         if casts {
             self.check_shadows()?;
             shadows.shadow_batches[0] = u32::try_from(self.batches.len()).unwrap_or(0);
         }
+        let count = self.batches.len();
+        let mut tiles = Vec::new();
         for (number, (batch, object)) in self.batches.iter_mut().zip(&scene.objects).enumerate() {
             check_format(number, object, &self.settings)?;
             let mut variant = Variant::new(&self.settings, scene, object);
@@ -199,8 +206,12 @@ impl Renderer {
                 _ => Kind::Box,
             };
             batch.hull_indices = None;
+            batch.beam = None;
+            variant.depth_test = u32::from(number > 0);
+            variant.depth_keep = u32::from(number + 1 < count);
+            let mut cut = Vec::new();
             if self.settings.solver.takes_pieces() {
-                let cut = self.contours[number].pieces(&object.offset)?;
+                cut = self.contours[number].pieces(&object.offset)?;
                 if self.settings.solver == Solver::Hull
                     && kind == Kind::Box
                     && let Some(hull) = hulls::of(object, &cut, &camera, near)
@@ -219,6 +230,24 @@ impl Renderer {
                     variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
                     batch.tables_offset = 16 * block.pieces[0];
                 }
+            }
+            if self.settings.stage == DrawStage::Compute {
+                let radius = object.profile.radius;
+                if let [one] = object.placements() {
+                    batch.groups = rectangle(&camera, size, GROUP_PIXELS, radius, one);
+                } else {
+                    let first = batch.instances.start;
+                    batch.bins = bins.add(&camera, size, radius, first, object.placements());
+                }
+            }
+            if let Some(rectangle) = batch.groups
+                && self.settings.solver == Solver::Hull
+                && hulls::takes_beams(object, &cut, &camera)
+                && rectangle.padded() <= most_groups
+            {
+                variant.beam = 1;
+                batch.beam = Some((self.pipelines.get(variant, Kind::Beam)?, 0));
+                tiles.push((number, rectangle.padded()));
             }
             batch.pipeline = self.pipelines.get(variant, kind)?;
             write(&mut self.batch_buffer, batch.block_offset as usize, &block)?;
@@ -240,17 +269,17 @@ impl Renderer {
             for (target, placement) in bytes[at..].chunks_exact_mut(48).zip(all) {
                 target.copy_from_slice(bytemuck::bytes_of(&instance_block(placement)));
             }
-            if self.settings.stage == DrawStage::Compute {
-                let radius = object.profile.radius;
-                if let [one] = all {
-                    batch.groups = rectangle(&camera, size, GROUP_PIXELS, radius, one);
-                } else {
-                    batch.bins = bins.add(&camera, size, radius, batch.instances.start, all);
-                }
-            }
         }
         if self.settings.stage == DrawStage::Compute {
-            let words = bins.words();
+            let mut words = bins.words();
+            for (number, most) in tiles {
+                let begin = words.len() as u32;
+                if let Some((_, at)) = &mut self.batches[number].beam {
+                    *at = begin;
+                }
+                words.extend([0, 1, 1, 0]);
+                words.resize(words.len() + 4 * most as usize, 0);
+            }
             fit(&self.device, &mut self.bin_buffer, "bins", 4 * words.len())?;
             write_slice(&mut self.bin_buffer, &words)?;
         }
@@ -330,7 +359,7 @@ impl Renderer {
 
     fn record(&self, cmd: vk::CommandBuffer) {
         self.clock.start(cmd);
-        self.target.clear(cmd, self.background);
+        self.target.clear(cmd, self.background, self.batches.len() > 1);
         if self.settings.stage == DrawStage::Compute {
             self.record_compute(cmd);
         } else {
@@ -384,7 +413,9 @@ impl Renderer {
             }
             first = false;
             self.bind(cmd, batch, vk::PipelineBindPoint::COMPUTE);
-            if let Some(Rectangle { low, high }) = batch.groups {
+            if let (Some(rectangle), Some(beam)) = (batch.groups, batch.beam) {
+                self.record_beams(cmd, batch, rectangle, beam);
+            } else if let Some(Rectangle { low, high }) = batch.groups {
                 self.dispatch(
                     cmd,
                     [0, low.0 | low.1 << 16],
@@ -397,6 +428,36 @@ impl Renderer {
                 self.dispatch(cmd, [start, 0], [groups * groups, count]);
                 start += count;
             }
+        }
+    }
+
+    /// Lists the tiles that a single instance's rays may meet, then traces those.
+    fn record_beams(
+        &self,
+        cmd: vk::CommandBuffer,
+        batch: &Batch,
+        Rectangle { low, high }: Rectangle,
+        (list, at): (vk::Pipeline, u32),
+    ) {
+        let raw = &self.device.raw;
+        let words = &self.bin_buffer;
+        let none: [u32; 4] = [0, 1, 1, 0];
+        let pushed = [at, low.0 | low.1 << 16];
+        let groups = |a: u32, b: u32| (b - a + 1).div_ceil(GROUP_PIXELS);
+        let (point, stage) = (vk::PipelineBindPoint::COMPUTE, vk::ShaderStageFlags::COMPUTE);
+        buffer_barrier(&self.device, cmd, words, Usage::TileRead, Usage::TransferWrite);
+        // SAFETY: `cmd` is recording, outside a render pass; the list's words lie within the buffer; all that is bound lives as
+        // long as `self`, and both pipelines have one layout.
+        unsafe {
+            raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(at), bytemuck::bytes_of(&none));
+            buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, Usage::ComputeWrite);
+            raw.cmd_bind_pipeline(cmd, point, list);
+            let bytes = bytemuck::bytes_of(&pushed);
+            raw.cmd_push_constants(cmd, self.pipelines.layout, stage, 0, bytes);
+            raw.cmd_dispatch(cmd, groups(low.0, high.0), groups(low.1, high.1), 1);
+            buffer_barrier(&self.device, cmd, words, Usage::ComputeWrite, Usage::TileRead);
+            raw.cmd_bind_pipeline(cmd, point, batch.pipeline);
+            raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
         }
     }
 
@@ -446,8 +507,9 @@ fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
             ),
         ));
     }
-    // Pieces are read both ways.
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::UNIFORM_BUFFER;
+    // Pieces are read both ways; lists of tiles are made and counted on the device.
+    use vk::BufferUsageFlags as B;
+    let usage = B::STORAGE_BUFFER | B::UNIFORM_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
     Buffer::new(device, name, bytes, usage, MemoryLocation::CpuToGpu)
 }
 

@@ -122,7 +122,7 @@ impl Target {
     }
 
     /// Records the clearing of what no render pass clears.
-    pub fn clear(&self, cmd: vk::CommandBuffer, background: [f32; 4]) {
+    pub fn clear(&self, cmd: vk::CommandBuffer, background: [f32; 4], depths: bool) {
         let raw = &self.device.raw;
         let next = self.shader_use();
         if let Some(words) = &self.words {
@@ -140,7 +140,9 @@ impl Target {
             );
             // SAFETY: `cmd` is recording and both ranges lie within the buffer.
             unsafe {
-                raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
+                if depths {
+                    raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
+                }
                 raw.cmd_fill_buffer(cmd, words.raw, half, half, second);
             }
             buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, next);

@@ -32,6 +32,12 @@ pub struct Variant {
     pub own_tables: u32,
     /// 1 where the batch is one instance.
     pub single: u32,
+    /// 1 where beams say which tiles to trace.
+    pub beam: u32,
+    /// 0 where nothing was drawn before.
+    pub depth_test: u32,
+    /// 0 where nothing will be drawn after.
+    pub depth_keep: u32,
 }
 
 impl Variant {
@@ -80,6 +86,9 @@ impl Variant {
             lights: u32::try_from(scene.lights.len()).unwrap_or(g::MAX_LIGHTS),
             own_tables: 0,
             single: 0,
+            beam: 0,
+            depth_test: 1,
+            depth_keep: 1,
             shadow: match scene.shadow {
                 Shadow::Off => g::SHADOW_OFF,
                 Shadow::Hard => g::SHADOW_HARD,
@@ -90,7 +99,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 12] {
+    pub fn constants(&self) -> [(u32, u32); 15] {
         [
             (g::SOLVER_ID, self.solver),
             (g::MAP_FORMAT_ID, self.map_format),
@@ -104,6 +113,9 @@ impl Variant {
             (g::LIGHTS_ID, self.lights),
             (g::OWN_TABLES_ID, self.own_tables),
             (g::SINGLE_ID, self.single),
+            (g::BEAM_ID, self.beam),
+            (g::DEPTH_TEST_ID, self.depth_test),
+            (g::DEPTH_KEEP_ID, self.depth_keep),
         ]
     }
 }
