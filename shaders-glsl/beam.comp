@@ -31,14 +31,15 @@ void main()
     float end = -1e30;
     for (uint k = 0u; k < BEAM_NODES; ++k) {
         // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
-        float most = piece_tables[solid.pieces.x + PIECE_ROWS + k].y;
+        uint node = PIECE_ROWS + k;
+        float most = node_extent(piece_tables[solid.pieces.x + (node >> 2)][node & 3u]).y;
         float radius = sqrt(max(most, 0.0)) + beam;
         float low = (float(k) / float(BEAM_NODES) - beam - o.z) * per_z;
         float high = (float(k + 1u) / float(BEAM_NODES) + beam - o.z) * per_z;
         float reach = sqrt(max(radius * radius - least, 0.0) / a);
         float enter = max(min(low, high), nearest - reach);
         float leave = min(max(low, high), nearest + reach);
-        bool meets = most >= 0.0 && radius * radius > least && enter <= leave;
+        bool meets = most > 0.0 && radius * radius > least && enter <= leave;
         begin = meets ? min(begin, enter) : begin;
         end = meets ? max(end, leave) : end;
     }

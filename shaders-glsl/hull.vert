@@ -12,7 +12,7 @@ void main()
     Instance i = batch_instance(gl_InstanceIndex);
     uint at = solid.hull.x + BAND_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
     uint corner = uint(gl_VertexIndex) % (2u * HULL_SIDES);
-    vec4 rings = piece_tables[at];
+    vec4 rings = uintBitsToFloat(piece_tables[at]);
     vec2 rz = corner < HULL_SIDES ? rings.xy : rings.zw;
     float angle = float(corner % HULL_SIDES) * (6.28318530717958648 / float(HULL_SIDES));
     vec3 p = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(solid.axis.xy, 0.0);
@@ -22,7 +22,7 @@ void main()
     float base = dot(point_to_world(i, vec3(0.0, 0.0, 0.5)) - frame.eye.xyz, frame.forward.xyz);
     hand_over(i, gl_InstanceIndex, base);
     for (uint k = 0u; k < HULL_TESTS; ++k) {
-        hull_quadric[k] = piece_tables[at + 1u + 2u * k];
-        hull_guard[k] = piece_tables[at + 2u + 2u * k];
+        hull_quadric[k] = uintBitsToFloat(piece_tables[at + 1u + 2u * k]);
+        hull_guard[k] = uintBitsToFloat(piece_tables[at + 2u + 2u * k]);
     }
 }

@@ -8,8 +8,6 @@
 #include "meridian.glsl"
 #include "piece_tables.glsl"
 
-const uint RUN_BITS = 12u;
-
 // The root at which G falls from out to in; NaN or out of range where there is none.
 float entering_root(Meridian m, vec4 q, float side)
 {
@@ -29,14 +27,13 @@ float square_at(Meridian m, float s)
 // Whether the start of the ray is in the solid: by the number of pieces beyond it, away from the axis.
 bool starts_within(Meridian m)
 {
-    uint rows = PIECE_ROWS;
-    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(rows));
-    uint run = floatBitsToUint(piece_table(min(row, rows - 1u)).z);
+    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(PIECE_ROWS));
+    uint run = piece_word(PIECE_NODES + min(row, PIECE_ROWS - 1u));
     uint beyond = 0u;
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
-        uint at = solid.pieces.z + 3u * ((run >> RUN_BITS) + n);
-        vec4 q = piece_table(at);
-        vec4 range = piece_table(at + 2u);
+        uint record = (run >> RUN_BITS) + n;
+        vec4 q = piece_vector(solid.pieces.y + 2u * record);
+        vec2 range = uintBitsToFloat(piece_tables[solid.pieces.x + solid.pieces.z + record].xy);
         float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
     }
@@ -52,7 +49,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
     float slack = 4e-6 * m.inverse_speed;
-    int top = int(solid.pieces.w);
+    const int top = 2;
     int level = top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
     float t = 0.0;
@@ -71,12 +68,12 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             leave = max(min((float(border) / n - m.o.z) * per_z, m.s_end), t);
             most_out = square_at(m, leave);
             float least = square_at(m, clamp(nearest, t, leave));
-            int base = (rows - (rows >> (2 * level))) * 4 / 3;
-            vec4 extent = piece_table(uint(base + node));
+            int base = level == 0 ? 0 : level == 1 ? 64 : 80;
+            vec2 extent = node_extent(piece_word(uint(base + node)));
             ++steps;
             bool meets = max(most, most_out) >= extent.x && least <= extent.y;
             if (meets && level == 0) {
-                run = floatBitsToUint(extent.z);
+                run = piece_word(PIECE_NODES + uint(row));
                 break;
             }
             if (meets) {
@@ -91,10 +88,10 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        uint first = solid.pieces.z + 3u * (run >> RUN_BITS);
+        uint first = solid.pieces.y + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
-            vec4 q = piece_table(first + 3u * k);
-            vec4 guard = piece_table(first + 3u * k + 1u);
+            vec4 q = piece_vector(first + 2u * k);
+            vec4 guard = piece_vector(first + 2u * k + 1u);
             ++steps;
             float root = entering_root(m, q, side);
             float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);

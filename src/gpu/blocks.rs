@@ -71,7 +71,7 @@ pub struct SolidBlock {
     pub cells: [u32; 4],
     /// First, number, index of the shape map among those of shadows.
     pub instances: [u32; 4],
-    /// Of the quadric search's tables: where they begin, rows, first record, topmost level.
+    /// Of the quadric search's tables: where they begin, first record, first range, unit of `r^2`.
     pub pieces: [u32; 4],
     /// Of the hull: its first band.
     pub hull: [u32; 4],

@@ -49,23 +49,44 @@ impl Contours {
     }
 }
 
-/// Appends the tables of these pieces to `out`, from the next multiple of `align` vectors on (their layout is
-/// `search_quadric.glsl`'s); returns where they stand: first vector, rows, first record from there, topmost level.
-pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[f32; 4]>) -> [u32; 4] {
+/// Tables in a buffer, in vectors of 16 bytes.
+pub(crate) struct Placed {
+    /// As `Solid.pieces` of `blocks.glsl` has it.
+    pub block: [u32; 4],
+    /// What the search itself reads, from their beginning on.
+    pub vectors: usize,
+}
+
+/// Appends the tables of these pieces to `out`, from the next multiple of `align` vectors on; their layout is `piece_tables.glsl`'s.
+pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[u32; 4]>) -> Placed {
     let tables = Tables::new(pieces, PIECE_ROWS);
+    let largest = tables.nodes.iter().fold(f32::MIN_POSITIVE, |m, n| m.max(n[1]));
+    // A little more than what 16 bits hold, so that roundings of the product stay inside.
+    let unit = largest * (1.0 + 1e-6) / 65535.0;
+    let words: Vec<u32> = tables
+        .nodes
+        .iter()
+        .map(|[low, high]| {
+            let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;
+            let high = (high / unit).ceil().clamp(0.0, 65535.0) as u32;
+            low | high << 16
+        })
+        .chain(tables.rows.iter().copied())
+        .collect();
     let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    out.resize(out.len().next_multiple_of(align), [0.0; 4]);
+    out.resize(out.len().next_multiple_of(align), [0; 4]);
     let begin = out.len();
-    for (n, [low, high]) in tables.nodes.iter().enumerate() {
-        let run = tables.rows.get(n).copied().unwrap_or(0);
-        out.push([*low, *high, f32::from_bits(run), 0.0]);
-    }
-    let first_record = index(out.len() - begin);
+    out.extend(words.chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]]));
+    let first_record = out.len() - begin;
     for record in &tables.records {
-        out.extend([record.quadric, record.guard, record.range]);
+        out.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
     }
-    let top = index(tables.levels.len().saturating_sub(1));
-    [index(begin), PIECE_ROWS, first_record, top]
+    let vectors = out.len() - begin;
+    out.extend(tables.records.iter().map(|r| r.range.map(f32::to_bits)));
+    Placed {
+        block: [index(begin), index(first_record), index(vectors), unit.to_bits()],
+        vectors,
+    }
 }
 
 fn named(error: Error, number: usize, object: &Object) -> Error {

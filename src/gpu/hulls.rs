@@ -81,17 +81,19 @@ fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), near: f64) -> bool {
 }
 
 /// Appends a hull's bands in the layout of `hull.vert`; returns where they stand.
-pub(crate) fn append(hull: &Hull, pieces: &[Piece], out: &mut Vec<[f32; 4]>) -> usize {
+pub(crate) fn append(hull: &Hull, pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> usize {
     let begin = out.len();
     // A guard that nothing passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0]];
     for band in &hull.bands {
-        out.push([band.from[0], band.from[1], band.to[0], band.to[1]]);
+        let [from, to] = [band.from, band.to];
+        out.push([from[0], from[1], to[0], to[1]].map(f32::to_bits));
         let first = band.first as usize;
         for k in 0..HULL_TESTS as usize {
             let record = pieces.get(first + k).filter(|_| k < band.count as usize);
             let vectors = record.map(|p| Record::new(p, first + k));
-            out.extend(vectors.map_or(none, |r| [r.quadric, r.guard]));
+            let vectors = vectors.map_or(none, |r| [r.quadric, r.guard]);
+            out.extend(vectors.map(|v| v.map(f32::to_bits)));
         }
     }
     debug_assert_eq!(out.len() - begin, hull.bands.len() * BAND_VECTORS as usize);

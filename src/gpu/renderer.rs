@@ -175,7 +175,7 @@ impl Renderer {
         let frame = frame_block(scene, &camera, size)?;
         write(&mut self.frame_buffer, 0, &frame)?;
         let mut bins = Bins::default();
-        let mut pieces: Vec<[f32; 4]> = Vec::new();
+        let mut pieces: Vec<[u32; 4]> = Vec::new();
         let mut bands = 0;
         let near = f64::from(frame.eye[3]);
         let most_groups = self.device.limits.max_compute_work_group_count[0];
@@ -225,9 +225,9 @@ impl Renderer {
                 let align = usize::try_from(align).unwrap_or(256).max(16) / 16;
                 // A hull's own fragments read none of the tree; shadows' rays do.
                 if kind != Kind::Hull || casts {
-                    block.pieces = append_tables(&cut, align, &mut pieces);
-                    let own = pieces.len() - block.pieces[0] as usize;
-                    variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
+                    let tables = append_tables(&cut, align, &mut pieces);
+                    block.pieces = tables.block;
+                    variant.own_tables = u32::from(tables.vectors <= PIECE_VECTORS as usize);
                     batch.tables_offset = 16 * block.pieces[0];
                 }
             }
@@ -285,7 +285,7 @@ impl Renderer {
         }
         if !pieces.is_empty() {
             // The window on the last tables is as long as on all others.
-            pieces.resize(pieces.len() + PIECE_VECTORS as usize, [0.0; 4]);
+            pieces.resize(pieces.len() + PIECE_VECTORS as usize, [0; 4]);
             fit(
                 &self.device,
                 &mut self.piece_buffer,
