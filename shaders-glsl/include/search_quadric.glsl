@@ -49,8 +49,8 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
     float slack = 4e-6 * m.inverse_speed;
-    const int top = 2;
-    int level = top;
+    const int top = 3;
+    int level = BEAM != 0u ? 1 : top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
     float t = 0.0;
     float most = square_at(m, 0.0);
@@ -68,7 +68,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             leave = max(min((float(border) / n - m.o.z) * per_z, m.s_end), t);
             most_out = square_at(m, leave);
             float least = square_at(m, clamp(nearest, t, leave));
-            int base = level == 0 ? 0 : level == 1 ? 64 : 80;
+            int base = level < 2 ? (level == 0 ? 0 : 256) : (level == 2 ? 320 : 336);
             vec2 extent = node_extent(piece_word(uint(base + node)));
             ++steps;
             bool meets = max(most, most_out) >= extent.x && least <= extent.y;

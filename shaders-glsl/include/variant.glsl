@@ -50,9 +50,10 @@ const uint SHADOW_SOFT = 2u;
 
 const uint MAX_LIGHTS = 8u;
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
-const uint PIECE_ROWS = 64u; // of a solid's tables: a power of 4
-const uint PIECE_NODES = 84u; // of the tree over them: 64 + 16 + 4
-const uint BEAM_NODES = 16u; // of the tree's second level
+const uint PIECE_ROWS = 256u; // of a solid's tables: a power of 4
+const uint PIECE_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
+const uint BEAM_NODES = 16u; // of one of its levels
+const uint BEAM_FIRST_NODE = 320u; // where that begins
 const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint HULL_TESTS = 6u; // most pieces of a hull's cell
 const uint BAND_VECTORS = 13u; // of a band: its rings, then the cell's quadrics and guards
