@@ -4,6 +4,6 @@
 #include "varyings.glsl"
 
 layout(location = 10) flat VARYING vec4 hull_quadric[HULL_TESTS];
-layout(location = 16) flat VARYING vec4 hull_guard[HULL_TESTS];
+layout(location = 18) flat VARYING vec4 hull_guard[HULL_TESTS];
 
 #endif

@@ -30,6 +30,12 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
 // Of a ray that is known to begin outside of the solid, none of which the box cuts: pieces alone, between two t.
 bool trace_between(vec3 eye, vec3 v, float t_in, float t_out, out Hit hit)
 {
+    // Above the ceiling and below the floor another sheet of a quadric may pass the guard.
+    float per_z = 1.0 / (abs(v.z) > 1e-20 ? v.z : 1e-20);
+    float low = (solid.bounds.z - eye.z) * per_z;
+    float high = (solid.bounds.w - eye.z) * per_z;
+    t_in = max(t_in, min(low, high));
+    t_out = min(t_out, max(low, high));
     Meridian m;
     m.v = v;
     m.o = eye + t_in * v;

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 const CLEARANCE: f64 = 1e-3;
 
 /// How far a band may lie from the surface, object units: fewer triangles against fewer fragments that meet nothing.
-const GAP: f64 = 0.01;
+const GAP: f64 = 0.03;
 
 /// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
 fn is_whole(object: &Object, pieces: &[Piece]) -> bool {
