@@ -45,7 +45,7 @@ impl Contours {
     /// The boundary under `offset`.
     pub fn pieces(&self, offset: &Offset) -> Result<Vec<Piece>> {
         let contour = self.source.contour(offset)?;
-        Ok(cut(&contour, &CutOptions { tolerance: std::env::var("HULL_TOL").map_or(CutOptions::default().tolerance, |v| v.parse::<f64>().unwrap() / 512.0) }))
+        Ok(cut(&contour, &CutOptions::default()))
     }
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn of(
         &HullOptions {
             sides: HULL_SIDES,
             tests: HULL_TESTS,
-            gap: std::env::var("HULL_GAP").map_or(GAP, |v| v.parse().unwrap()),
+            gap: GAP,
             ..HullOptions::default()
         },
     );

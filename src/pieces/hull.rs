@@ -263,7 +263,12 @@ struct Shell<'a> {
 
 impl Shell<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
+    ///
+    /// Pieces shorter than the margin have no direction to build on, and no need: what wraps their neighbours wraps them.
     fn of(&self, cell: &[Piece]) -> Vec<[DVec2; 2]> {
+        let long = |p: &&Piece| p.start.distance(p.end) > self.options.margin;
+        let kept: Vec<Piece> = cell.iter().filter(long).copied().collect();
+        let cell = if kept.is_empty() { cell } else { &kept };
         let mut bands: Vec<[DVec2; 2]> = Vec::new();
         let mut from = 0;
         while from < cell.len() {
@@ -368,23 +373,27 @@ impl Shell<'_> {
         };
         let on_axis = |p: DVec2| p.x == 0.0;
         if let Some(piece) = cell.last()
-            && !piece.is_plane()
             && !(on_axis(piece.end) && on_axis(end))
         {
-            shell.push([end, self.foot(piece.end, end, end.y <= piece.end.y)]);
+            shell.push([end, self.foot(piece, piece.end, end, end.y <= piece.end.y)]);
         }
         if let Some(piece) = cell.first()
-            && !piece.is_plane()
             && !(on_axis(piece.start) && on_axis(begin))
         {
-            let foot = self.foot(piece.start, begin, begin.y > piece.start.y);
+            let around = begin.y > piece.start.y;
+            let foot = self.foot(piece, piece.start, begin, around);
             shell.insert(0, [foot, begin]);
         }
     }
 
     /// Where a wall ends that comes from `top`: through the joint, or rather through a polygon that keeps the joint's circle on the
     /// wall's inner side all round, and as far beyond as that polygon departs from the circle, so that no ray passes under the foot.
-    fn foot(&self, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
+    ///
+    /// A plane's rims are beyond its circles already: there walls stand upright.
+    fn foot(&self, piece: &Piece, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
+        if piece.is_plane() {
+            return DVec2::new(top.x, joint.y + (joint.y - top.y).signum() * ROOT);
+        }
         let factor = if around { self.widen } else { 1.0 };
         let ring = DVec2::new(joint.x * factor, joint.y);
         let reach = (self.widen - 1.0) * joint.x + ROOT;
