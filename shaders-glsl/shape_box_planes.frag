@@ -17,6 +17,9 @@ void main()
     Hit hit;
     bool found = trace(ray_eye, ray_direction(varying_rays(), pixel), hit);
     atomicAdd(pixel_words[second_word(pixel)], hit.steps);
+    if (hit.exhausted) {
+        atomicOr(pixel_words[second_word(pixel)], EXHAUSTED_BIT);
+    }
     if (!found) {
         discard;
     }

@@ -18,7 +18,7 @@ void main()
     }
     Nearest nearest;
     bool found = nearest_hit(bin, pixel, uintBitsToFloat(pixel_words[depth_word(pixel)]), nearest);
-    pixel_words[second_word(pixel)] += nearest.steps;
+    pixel_words[second_word(pixel)] = (pixel_words[second_word(pixel)] + nearest.steps) | (nearest.exhausted ? EXHAUSTED_BIT : 0u);
     if (found) {
         Shaded s = shade(batch_instance(nearest.instance), nearest.rays, pixel, nearest.hit);
         pixel_words[depth_word(pixel)] = floatBitsToUint(nearest.depth);

@@ -58,6 +58,13 @@ impl Solver {
         }
     }
 
+    /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
+    /// number, and pieces are solved without any.
+    #[must_use]
+    pub const fn may_run_out(self) -> bool {
+        matches!(self, Self::Circle | Self::Live)
+    }
+
     /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
     /// than any ray of a sound map takes. `quadric` has none to bound.
     #[must_use]

@@ -52,6 +52,7 @@ struct Nearest {
     uint instance;
     float depth;
     uint steps; // of all searches
+    bool exhausted; // one of them ran out of steps
 };
 
 // The bin's instances in order; of equal depths the first stays, as under the depth test "less".
@@ -61,12 +62,14 @@ bool nearest_hit(Bin bin, uvec2 pixel, float depth, out Nearest nearest)
     solid = batch_solid;
     nearest.depth = depth;
     nearest.steps = 0u;
+    nearest.exhausted = false;
     for (uint n = 0u; n < (SINGLE != 0u ? 1u : bin.count); ++n) {
         uint index = SINGLE != 0u ? 0u : bin_words[bin.first + n];
         PixelRays rays = pixel_rays(batch_instance(index));
         Hit hit;
         bool met = trace(rays.eye, ray_direction(rays, pixel), hit);
         nearest.steps += hit.steps;
+        nearest.exhausted = nearest.exhausted || hit.exhausted;
         if (met && depth_of(hit.t) < nearest.depth) {
             found = true;
             nearest.depth = depth_of(hit.t);

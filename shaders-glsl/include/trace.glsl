@@ -70,8 +70,8 @@ bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
         hit.point = m.o + m.s_end * v;
         return true;
     }
-    hit.exhausted = hit.exhausted || end == EXHAUSTED;
-    if (end != FOUND) {
+    hit.exhausted = hit.exhausted || end >= EXHAUSTED;
+    if (end != FOUND && end != NEARLY) {
         return false;
     }
     hit.t = m.t_start + s;

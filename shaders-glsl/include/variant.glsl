@@ -44,6 +44,8 @@ const uint SHADOW_OFF = 0u;
 const uint SHADOW_HARD = 1u;
 const uint SHADOW_SOFT = 2u;
 
+const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
+
 const uint MAX_LIGHTS = 8u;
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
