@@ -5,7 +5,7 @@ use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, ShadowBlock, SolidBlock};
 use super::clock::Clock;
 use super::commands::Commands;
-use super::contours::Contours;
+use super::contours::{Contours, Searches, append};
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::memory::Buffer;
@@ -43,6 +43,7 @@ pub struct Renderer {
     textures: Textures,
     /// What the quadric search's tables are built from, one an object; empty for other searches.
     contours: Vec<Contours>,
+    notes: Vec<String>,
     frame_buffer: Buffer,
     batch_buffer: Buffer,
     instance_buffer: Buffer,
@@ -129,6 +130,7 @@ impl Renderer {
             batches,
             textures,
             contours,
+            notes: Vec::new(),
             frame_buffer,
             batch_buffer,
             instance_buffer,
@@ -144,7 +146,7 @@ impl Renderer {
     }
 
     /// Takes over camera, lights, placements and parameters of `scene`, whose objects must be those the renderer was made with.
-    /// No map is computed again.
+    /// No map is computed again, but for a solid whose contour no longer closes under its offset ([`Renderer::notes`]).
     ///
     /// # Errors
     /// Of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
@@ -169,24 +171,33 @@ impl Renderer {
             self.check_shadows()?;
             shadows.shadow_batches[0] = u32::try_from(self.batches.len()).unwrap_or(0);
         }
+        let asked = self.settings.solver;
+        let searches = Searches::new(&self.contours, scene, asked, &mut self.notes);
+        // All maps before the first set of textures is written: shadows read those of other objects.
+        for (number, object) in scene.objects.iter().enumerate() {
+            if searches.solver(number) != asked {
+                let (device, commands) = (&self.device, &self.commands);
+                self.textures
+                    .demand_map(device, commands, object, &self.settings)?;
+            }
+        }
         for (number, (batch, object)) in self.batches.iter_mut().zip(&scene.objects).enumerate() {
-            check_format(number, object, &self.settings)?;
-            let mut variant = Variant::new(&self.settings, scene, object);
+            let solver = searches.solver(number);
+            let settings = Settings {
+                solver,
+                ..self.settings
+            };
+            check_format(number, object, &settings)?;
+            let mut variant = Variant::new(&settings, scene, object);
             variant.single = u32::from(batch.instances.len() == 1);
             let (shape, facts) = self.textures.shape(object, &self.settings)?;
             let bound = self.textures.of(object, shape);
             batch.textures = self.descriptors.textures(number, &bound);
-            let mut block = solid_block(
-                object,
-                &facts,
-                &batch.instances,
-                shape,
-                self.settings.solver,
-            );
-            if self.settings.solver == Solver::Quadric {
+            let mut block = solid_block(object, &facts, &batch.instances, shape, solver);
+            if let Some(tables) = searches.tables(number) {
                 let align = self.device.limits.min_uniform_buffer_offset_alignment;
                 let align = usize::try_from(align).unwrap_or(256).max(16) / 16;
-                block.pieces = self.contours[number].append(&object.offset, align, &mut pieces)?;
+                block.pieces = append(tables, align, &mut pieces);
                 let own = pieces.len() - block.pieces[0] as usize;
                 variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
                 batch.tables_offset = 16 * block.pieces[0];
@@ -269,6 +280,12 @@ impl Renderer {
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         self.textures.bytes()
+    }
+
+    /// What was done in another way than asked for, and why; each thing once.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     fn check_shadows(&self) -> Result<()> {

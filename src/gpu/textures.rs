@@ -172,6 +172,27 @@ impl Textures {
         Ok(())
     }
 
+    /// Makes an object's shape map where the search was to do without it.
+    pub fn demand_map(
+        &mut self,
+        device: &Arc<Shared>,
+        commands: &Commands,
+        object: &Object,
+        settings: &Settings,
+    ) -> Result<()> {
+        let (place, _) = self.shape(object, settings)?;
+        let shape = &mut self.shapes[place];
+        if shape.image.is_none() {
+            let (facts, image) = shape_map(device, commands, &shape.key, settings.map_format)?;
+            shape.facts = MapFacts {
+                arc_length: shape.facts.arc_length,
+                ..facts
+            };
+            shape.image = Some(image);
+        }
+        Ok(())
+    }
+
     /// Which of the shape maps is `object`'s, and what it is.
     pub fn shape(&self, object: &Object, settings: &Settings) -> Result<(usize, MapFacts)> {
         let profile = &object.profile;

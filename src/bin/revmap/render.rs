@@ -84,7 +84,7 @@ impl Render {
                 Some(gpu) => format!("{gpu:.2} ms on {}", report.name),
                 None => format!("{:.2} ms with {}", drawn.times.frame_ms, report.name),
             },
-            details: vec![
+            details: [
                 format!(
                     "{:.2} ms from submission to completion",
                     drawn.times.frame_ms
@@ -94,7 +94,10 @@ impl Render {
                     drawn.map_bytes[0] as f64 / 1e6,
                     drawn.map_bytes[1] as f64 / 1e6
                 ),
-            ],
+            ]
+            .into_iter()
+            .chain(drawn.notes)
+            .collect(),
             frame: drawn.frame,
         })
     }
