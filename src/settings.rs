@@ -27,17 +27,20 @@ pub enum Solver {
     /// Ours for parameters that change from frame to frame: conservative steps under every offset, a last secant, no fixed count
     /// of steps; on the map alone.
     Live,
+    /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r <= f(z)`); others are an error.
+    Cone,
     /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
 }
 
 impl Solver {
     /// Every search, in the order in which reports list them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Linear,
         Self::Relief,
         Self::Secant,
         Self::Circle,
+        Self::Cone,
         Self::Live,
         Self::Quadric,
     ];
@@ -53,9 +56,16 @@ impl Solver {
             Self::Relief => "relief",
             Self::Secant => "secant",
             Self::Circle => "circle",
+            Self::Cone => "cone",
             Self::Live => "live",
             Self::Quadric => "quadric",
         }
+    }
+
+    /// Whether it reads the shape map. The others search tables made from the boundary itself.
+    #[must_use]
+    pub const fn reads_map(self) -> bool {
+        !matches!(self, Self::Cone | Self::Quadric)
     }
 
     /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
@@ -66,7 +76,7 @@ impl Solver {
     }
 
     /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `quadric` has none to bound.
+    /// than any ray of a sound map takes. `cone` and `quadric` have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -74,7 +84,7 @@ impl Solver {
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,
-            Self::Quadric => 1,
+            Self::Cone | Self::Quadric => 1,
         }
     }
 }

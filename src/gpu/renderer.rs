@@ -5,7 +5,7 @@ use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, ShadowBlock, SolidBlock};
 use super::clock::Clock;
 use super::commands::Commands;
-use super::contours::{Contours, Searches, append};
+use super::contours::{Contours, Searches};
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::memory::Buffer;
@@ -15,7 +15,7 @@ use super::textures::Textures;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Scene, Shadow};
-use crate::settings::{DrawStage, Settings, Solver};
+use crate::settings::{DrawStage, Settings};
 use crate::shader::Variant;
 use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS, MAX_SHADOW_BATCHES, PIECE_VECTORS};
 use ash::vk;
@@ -41,7 +41,7 @@ pub struct Renderer {
     descriptors: Descriptors,
     batches: Vec<Batch>,
     textures: Textures,
-    /// What the quadric search's tables are built from, one an object; empty for other searches.
+    /// What the searches' tables are built from, one an object; empty for other searches.
     contours: Vec<Contours>,
     notes: Vec<String>,
     frame_buffer: Buffer,
@@ -102,10 +102,10 @@ impl Renderer {
             instances = end;
         }
 
-        let contours = if settings.solver == Solver::Quadric {
-            Contours::of(scene)?
-        } else {
+        let contours = if settings.solver.reads_map() {
             Vec::new()
+        } else {
+            Contours::of(scene)?
         };
         let uniform = |name, bytes| {
             Buffer::new(
@@ -172,7 +172,7 @@ impl Renderer {
             shadows.shadow_batches[0] = u32::try_from(self.batches.len()).unwrap_or(0);
         }
         let asked = self.settings.solver;
-        let searches = Searches::new(&self.contours, scene, asked, &mut self.notes);
+        let searches = Searches::new(&self.contours, scene, &self.settings, &mut self.notes)?;
         // All maps before the first set of textures is written: shadows read those of other objects.
         for (number, object) in scene.objects.iter().enumerate() {
             if searches.solver(number) != asked {
@@ -194,10 +194,10 @@ impl Renderer {
             let bound = self.textures.of(object, shape);
             batch.textures = self.descriptors.textures(number, &bound);
             let mut block = solid_block(object, &facts, &batch.instances, shape, solver);
-            if let Some(tables) = searches.tables(number) {
+            if let Some(table) = searches.table(number) {
                 let align = self.device.limits.min_uniform_buffer_offset_alignment;
                 let align = usize::try_from(align).unwrap_or(256).max(16) / 16;
-                block.pieces = append(tables, align, &mut pieces);
+                block.pieces = table.append(align, &mut pieces);
                 let own = pieces.len() - block.pieces[0] as usize;
                 variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
                 batch.tables_offset = 16 * block.pieces[0];

@@ -51,6 +51,7 @@ impl Variant {
         Self {
             solver: match settings.solver {
                 Solver::Circle => g::SOLVER_CIRCLE,
+                Solver::Cone => g::SOLVER_CONE,
                 Solver::Live => g::SOLVER_LIVE,
                 Solver::Quadric => g::SOLVER_QUADRIC,
                 Solver::Linear => g::SOLVER_LINEAR,
