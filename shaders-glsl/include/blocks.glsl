@@ -38,7 +38,7 @@ struct Solid {
     vec4 texturing;  // repetitions along xi and eta; bump depth a
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
-    uvec4 pieces;    // of the tables of cone and quadric: where they begin, rows; quadric: first record, topmost level
+    uvec4 pieces;    // of the tables of cone and quadric: where they begin, rows; bits of the largest radius, or first record and topmost level
     Instance single; // the batch's instance, where it has but one
 };
 

@@ -71,7 +71,7 @@ pub struct SolidBlock {
     pub cells: [u32; 4],
     /// First, number, index of the shape map among those of shadows.
     pub instances: [u32; 4],
-    /// Of the tables of `cone` and `quadric`: where they begin, rows; of the latter first record, topmost level.
+    /// Of the tables of `cone` and `quadric`: where they begin, rows; then largest radius (bits), or first record and topmost level.
     pub pieces: [u32; 4],
     /// The batch's instance, where it has but one.
     pub single: InstanceBlock,

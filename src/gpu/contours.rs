@@ -86,7 +86,12 @@ impl Table {
             Self::Quadric(tables) => tables,
             Self::Cone(cones) => {
                 out.extend(&cones.rows);
-                return [index(begin), index(cones.rows.len()), 0, 0];
+                return [
+                    index(begin),
+                    index(cones.rows.len()),
+                    cones.reach.to_bits(),
+                    0,
+                ];
             }
         };
         for (n, [low, high]) in tables.nodes.iter().enumerate() {
