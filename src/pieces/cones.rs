@@ -414,10 +414,9 @@ mod tests {
         ];
         for (row, wanted) in cones.rows.iter().zip(expected) {
             for (a, b) in row.iter().zip(wanted) {
-                assert!(
-                    (a - b).abs() < 1e-4 * b.abs().max(1.0),
-                    "{row:?} is not {wanted:?}"
-                );
+                // The face's height is kept to 1 / 2047 of the row.
+                let tolerance = if b < 0.0 { 0.0 } else { 1e-3 * b.max(1.0) };
+                assert!((a - b).abs() <= tolerance, "{row:?} is not {wanted:?}");
             }
         }
         assert_eq!((cones.rows[9][2], cones.reach), (0.2, 0.3));
