@@ -20,7 +20,7 @@
 
 mod bitmap;
 mod chain;
-mod cones;
+pub mod cones;
 mod contour;
 mod fit;
 pub mod hull;
