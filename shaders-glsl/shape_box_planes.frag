@@ -16,6 +16,9 @@ void main()
     Hit hit;
     bool found = trace_box(pixel, hit);
     atomicAdd(pixel_words[second_word(pixel)], hit.steps);
+    if (hit.exhausted) {
+        atomicOr(pixel_words[second_word(pixel)], EXHAUSTED_BIT);
+    }
     if (!found) {
         discard;
     }

@@ -18,7 +18,7 @@ void main()
     }
     Nearest nearest;
     bool found = nearest_hit(bin, pixel, nearest);
-    pixel_words[second_word(pixel)] += nearest.steps;
+    pixel_words[second_word(pixel)] = (pixel_words[second_word(pixel)] + nearest.steps) | (nearest.exhausted ? EXHAUSTED_BIT : 0u);
     if (found) {
         Shaded s = shade_nearest(pixel, nearest);
         keep_depth(pixel, nearest);

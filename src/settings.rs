@@ -27,6 +27,8 @@ pub enum Solver {
     /// Ours for parameters that change from frame to frame: conservative steps under every offset, a last secant, no fixed count
     /// of steps; on the map alone.
     Live,
+    /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r <= f(z)`); others are an error.
+    Cone,
     /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
     /// The same pieces in shells of triangles, so that the rasteriser finds which a ray may meet. In the fragment stage, for objects
@@ -36,11 +38,12 @@ pub enum Solver {
 
 impl Solver {
     /// Every search, in the order in which reports list them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Linear,
         Self::Relief,
         Self::Secant,
         Self::Circle,
+        Self::Cone,
         Self::Live,
         Self::Quadric,
         Self::Hull,
@@ -57,20 +60,28 @@ impl Solver {
             Self::Relief => "relief",
             Self::Secant => "secant",
             Self::Circle => "circle",
+            Self::Cone => "cone",
             Self::Live => "live",
             Self::Quadric => "quadric",
             Self::Hull => "hull",
         }
     }
 
-    /// Whether it meets pieces of quadrics, not the map.
+    /// Whether it reads the shape map. The others search tables made from the boundary itself.
     #[must_use]
-    pub const fn takes_pieces(self) -> bool {
-        matches!(self, Self::Quadric | Self::Hull)
+    pub const fn reads_map(self) -> bool {
+        !matches!(self, Self::Cone | Self::Quadric | Self::Hull)
+    }
+
+    /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
+    /// number, and pieces are solved without any.
+    #[must_use]
+    pub const fn may_run_out(self) -> bool {
+        matches!(self, Self::Circle | Self::Live)
     }
 
     /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `quadric` and `hull` have none to bound.
+    /// than any ray of a sound map takes. `cone`, `quadric` and `hull` have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -78,7 +89,7 @@ impl Solver {
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,
-            Self::Quadric | Self::Hull => 1,
+            Self::Cone | Self::Quadric | Self::Hull => 1,
         }
     }
 }

@@ -77,7 +77,12 @@ fn fragment_and_compute_agree_bit_for_bit() {
     let all: Vec<_> = scenes().into_iter().enumerate().collect();
     // Every search once over all, so that each scene meets two or more; the default meets every scene.
     let pairs = all.iter().flat_map(|(n, scene)| {
-        let second = Solver::ALL[n % Solver::ALL.len()];
+        // Cone maps hold only some of these solids; they have a test of their own.
+        let others: Vec<_> = Solver::ALL
+            .into_iter()
+            .filter(|s| *s != Solver::Cone)
+            .collect();
+        let second = others[n % others.len()];
         [(*n, scene, Solver::DEFAULT), (*n, scene, second)]
     });
     for (n, (name, scene), solver) in pairs {

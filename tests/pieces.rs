@@ -389,12 +389,12 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
             );
             println!("{words}");
             // Binary pixels do not say where within a texel a level face lies, and along flat rays that is most of the depth; and the
-            // papers' loop loses the rays that would be its worst, so its own p99 is a mild one. The column is all ridges: a ray
-            // that passes one by a hair meets the next, twenty texels on.
+            // papers' loop loses the rays that would be its worst, so its own p99 is a mild one (tests/bitmaps.rs has pixels in place
+            // of random rays). The column is all ridges: a ray that passes one by a hair meets the next, twenty texels on.
             let depth = match (kind, name.as_str()) {
-                ("grey", "column") => 3.0,
+                ("grey", "column") => 2.3,
                 ("grey", _) => 1.0,
-                _ => 4.0,
+                _ => 3.1,
             };
             if wrong > limits.0 || p99 > depth * limits.1 {
                 failures.push(words);

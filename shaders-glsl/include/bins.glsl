@@ -65,6 +65,7 @@ struct Nearest {
     uint instance;
     float depth;
     uint steps; // of all searches
+    bool exhausted; // one of them ran out of steps
 };
 
 // The bin's instances in order; of equal depths the first stays, as under the depth test "less".
@@ -73,6 +74,7 @@ bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
     bool found = false;
     nearest.depth = DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
     nearest.steps = 0u;
+    nearest.exhausted = false;
     for (uint n = 0u; n < (SINGLE != 0u ? 1u : bin.count); ++n) {
         uint index = SINGLE != 0u ? 0u : bin_words[bin.first + n];
         PixelRays rays = SINGLE != 0u ? single_rays : pixel_rays(instances[index]);
@@ -84,6 +86,7 @@ bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
             met = trace(rays.eye, ray_direction(rays, pixel), hit);
         }
         nearest.steps += hit.steps;
+        nearest.exhausted = nearest.exhausted || hit.exhausted;
         if (met && depth_of(hit.t) < nearest.depth) {
             found = true;
             nearest.depth = depth_of(hit.t);

@@ -46,7 +46,8 @@ struct Solid {
     vec4 texturing;  // repetitions along xi and eta; bump depth a
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
-    uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, unit of r^2
+    uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
+                     // of the cone search's: where they begin, rows, bits of the largest radius
     uvec4 hull;      // first band
     Instance single; // the batch's instance, where it has but one
 };

@@ -49,7 +49,7 @@ uint search_circle(Meridian m, float side, float f, inout float s, inout uint st
         ++steps;
     }
     // Out of steps: the papers show what has come near.
-    return f < solid.map.z ? FOUND : EXHAUSTED;
+    return f < solid.map.z ? NEARLY : EXHAUSTED;
 }
 
 #endif

@@ -53,7 +53,7 @@ uint search_live(Meridian m, float side, float f, float t_pixel, inout float s, 
             return LEFT;
         }
     }
-    return f < solid.map.z ? FOUND : EXHAUSTED;
+    return f < solid.map.z ? NEARLY : EXHAUSTED;
 }
 
 #endif

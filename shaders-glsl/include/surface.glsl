@@ -49,5 +49,6 @@ vec3 surface_normal(Meridian m, float s, float side)
 const uint FOUND = 0u;
 const uint LEFT = 1u;      // out of the far side, nothing met
 const uint EXHAUSTED = 2u; // the steps were used up
+const uint NEARLY = 3u;    // likewise, within a texel of the surface: taken for a hit
 
 #endif

@@ -5,6 +5,7 @@
 #include "search_linear.glsl"
 #include "search_live.glsl"
 #include "search_quadric.glsl"
+#include "search_cone.glsl"
 
 struct Hit {
     float t;
@@ -14,6 +15,9 @@ struct Hit {
     uint steps;  // look-ups of the search
     bool exhausted; // the search ran out of steps
 };
+
+// Searches of tables made from the boundary itself; the others read the map.
+const bool TABLES = SOLVER == SOLVER_QUADRIC || SOLVER == SOLVER_CONE;
 
 // `pixel` is the width of a pixel in t: what the search need not tell apart.
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
@@ -67,11 +71,15 @@ bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
     float s = 0.0;
     float f = 0.0;
     bool within;
-    if (SOLVER == SOLVER_QUADRIC) {
+    if (TABLES) {
         // Floor and ceiling are pieces. Through the sides one enters the solid only where it reaches past them.
         float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
         bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
-        within = (m.from_eye || open_side) && starts_within(m);
+        if (SOLVER == SOLVER_CONE) {
+            within = starts_within_cones(m);
+        } else {
+            within = (m.from_eye || open_side) && starts_within(m);
+        }
     } else {
         f = field(point_rz(m, 0.0));
         ++hit.steps;
@@ -85,12 +93,14 @@ bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
         return true;
     }
     // From within the solid its boundary is seen from behind; unsigned distances know no inside.
-    bool unsigned_map = SOLVER != SOLVER_QUADRIC && MAP_FORMAT == FORMAT_RGBA8;
+    bool unsigned_map = !TABLES && MAP_FORMAT == FORMAT_RGBA8;
     float side = within && m.from_eye && !unsigned_map ? -1.0 : 1.0;
     vec4 quadric;
     uint end;
     if (SOLVER == SOLVER_QUADRIC) {
         end = search_quadric(m, side, s, hit.steps, quadric);
+    } else if (SOLVER == SOLVER_CONE) {
+        end = search_cone(m, side, s, hit.steps, quadric);
     } else {
         end = search(m, side, max(side * f, 0.0), frame.dir_00.w * m.t_start, s, hit.steps);
     }
@@ -100,12 +110,12 @@ bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
         hit.point = m.o + m.s_end * v;
         return true;
     }
-    hit.exhausted = hit.exhausted || end == EXHAUSTED;
-    if (end != FOUND) {
+    hit.exhausted = hit.exhausted || end >= EXHAUSTED;
+    if (end != FOUND && end != NEARLY) {
         return false;
     }
     hit.t = m.t_start + s;
-    hit.normal = SOLVER == SOLVER_QUADRIC ? quadric_normal(m, s, quadric) : surface_normal(m, s, side);
+    hit.normal = TABLES ? quadric_normal(m, s, quadric) : surface_normal(m, s, side);
     hit.point = m.o + s * v;
     return true;
 }

@@ -28,6 +28,8 @@ const uint SOLVER_LINEAR = 3u; // equal steps
 const uint SOLVER_RELIEF = 4u; // equal steps, then halvings
 const uint SOLVER_SECANT = 5u; // equal steps, then secants
 
+const uint SOLVER_CONE = 6u; // empty cones on each row, for solids that are single-valued in z
+
 const uint FORMAT_RGBA8 = 0u; // the papers' texture, unsigned distance
 const uint FORMAT_SIGNED = 1u; // one channel of signed distance, 16 or 32 bits
 
@@ -47,6 +49,8 @@ const uint BUMP_PAPERS = 2u;
 const uint SHADOW_OFF = 0u;
 const uint SHADOW_HARD = 1u;
 const uint SHADOW_SOFT = 2u;
+
+const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
 
 const uint MAX_LIGHTS = 8u;
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold

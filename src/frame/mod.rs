@@ -49,6 +49,9 @@ pub struct Frame {
     pub uv: Vec<[f32; 2]>,
     /// Look-ups that the search made.
     pub steps: Vec<f32>,
+    /// Number of pixels in which a search that has a bound on its steps used them up: what is seen there is a guess. Files do not
+    /// hold it; 0 where it was not counted ([`Planes::Color`](crate::settings::Planes::Color), the reference).
+    pub exhausted: usize,
 }
 
 /// Where two frames first differ, in reading order of the pixels and, within a pixel, in the order of the channels.
@@ -112,6 +115,7 @@ impl Frame {
             albedo: plane(pixels, [0.0; 3])?,
             uv: plane(pixels, [0.0; 2])?,
             steps: plane(pixels, 0.0)?,
+            exhausted: 0,
         })
     }
 

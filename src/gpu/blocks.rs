@@ -71,7 +71,8 @@ pub struct SolidBlock {
     pub cells: [u32; 4],
     /// First, number, index of the shape map among those of shadows.
     pub instances: [u32; 4],
-    /// Of the quadric search's tables: where they begin, first record, first range, unit of `r^2`.
+    /// Of the quadric search's tables: where they begin, first record, first range, bits of the unit of `r^2`; of the cone search's: where
+    /// they begin, rows, bits of the largest radius.
     pub pieces: [u32; 4],
     /// Of the hull: its first band.
     pub hull: [u32; 4],

@@ -1,17 +1,22 @@
-//! The quadric search's tables, made anew whenever an offset moves.
+//! The tables of the searches that read no map, made anew whenever an offset moves.
 
 use crate::error::{Error, Result};
-use crate::pieces::{ContourSource, CutOptions, Piece, Tables, cut};
+use crate::pieces::{Cones, Contour, ContourSource, CutOptions, Piece, Tables, cut, outline_of};
 use crate::profile::{Profile, Shape};
-use crate::scene::{Object, Offset, Scene};
+use crate::scene::{Object, Offset, Scene, Shadow};
+use crate::settings::{Settings, Solver};
 use crate::shader::generated::PIECE_ROWS;
 use std::sync::Arc;
+
+/// The search of what has no contour: it reads the map alone.
+const FALLBACK: Solver = Solver::Live;
 
 /// What does not depend on the offset, of one object; objects of one profile share it.
 #[derive(Clone)]
 pub(crate) struct Contours {
     profile: Arc<Profile>,
     source: Arc<ContourSource>,
+    options: CutOptions,
 }
 
 impl Contours {
@@ -32,33 +37,83 @@ impl Contours {
     }
 
     fn new(object: &Object) -> Result<Self> {
-        let source = match &object.profile.shape {
-            Shape::Outline(outline) => ContourSource::new(outline),
-            Shape::Raster(raster) => ContourSource::new(&raster.outline()),
-        }?;
+        let (source, options) = match &object.profile.shape {
+            Shape::Outline(outline) => (ContourSource::new(outline)?, CutOptions::default()),
+            Shape::Raster(raster) => {
+                // The curve that the picture was drawn from, as well as its pixels tell.
+                let traced = outline_of(raster);
+                let tolerance = traced.tolerance;
+                (
+                    ContourSource::new(&traced.outline)?,
+                    CutOptions { tolerance },
+                )
+            }
+        };
         Ok(Self {
             profile: object.profile.clone(),
             source: Arc::new(source),
+            options,
         })
     }
 
-    /// The boundary under `offset`.
-    pub fn pieces(&self, offset: &Offset) -> Result<Vec<Piece>> {
-        let contour = self.source.contour(offset)?;
-        Ok(cut(&contour, &CutOptions::default()))
+    /// The contour under `offset`.
+    ///
+    /// # Errors
+    /// Where that of an odd profile cannot be closed.
+    fn contour(&self, offset: &Offset) -> Result<Contour> {
+        self.source.contour(offset)
     }
 }
 
-/// Tables in a buffer, in vectors of 16 bytes.
+/// One object's table, as the shader of its search reads it.
+pub(crate) enum Table {
+    /// What `search_quadric.glsl`'s tables and hulls are made from.
+    Pieces(Vec<Piece>),
+    /// `search_cone.glsl`'s.
+    Cone(Cones),
+}
+
+/// A table in a buffer, in vectors of 16 bytes.
 pub(crate) struct Placed {
     /// As `Solid.pieces` of `blocks.glsl` has it.
     pub block: [u32; 4],
-    /// What the search itself reads, from their beginning on.
+    /// What the search itself reads, from the beginning on.
     pub vectors: usize,
 }
 
-/// Appends the tables of these pieces to `out`, from the next multiple of `align` vectors on; their layout is `piece_tables.glsl`'s.
-pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[u32; 4]>) -> Placed {
+impl Table {
+    /// Appends the table to `out`, from the next multiple of `align` vectors on.
+    pub fn append(&self, align: usize, out: &mut Vec<[u32; 4]>) -> Placed {
+        out.resize(out.len().next_multiple_of(align), [0; 4]);
+        match self {
+            Self::Pieces(pieces) => append_pieces(pieces, out),
+            Self::Cone(cones) => {
+                let begin = out.len();
+                out.extend(cones.rows.iter().map(|row| row.map(f32::to_bits)));
+                let rows = cones.rows.len();
+                Placed {
+                    block: [index(begin), index(rows), cones.reach.to_bits(), 0],
+                    vectors: rows,
+                }
+            }
+        }
+    }
+
+    /// The pieces, if that is what it holds.
+    pub fn pieces(&self) -> Option<&[Piece]> {
+        match self {
+            Self::Pieces(pieces) => Some(pieces),
+            Self::Cone(_) => None,
+        }
+    }
+}
+
+fn index(n: usize) -> u32 {
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
+/// The layout of `piece_tables.glsl`.
+fn append_pieces(pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> Placed {
     let tables = Tables::new(pieces, PIECE_ROWS);
     let largest = tables.nodes.iter().fold(f32::MIN_POSITIVE, |m, n| m.max(n[1]));
     // A little more than what 16 bits hold, so that roundings of the product stay inside.
@@ -73,8 +128,6 @@ pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[u32; 
         })
         .chain(tables.rows.iter().copied())
         .collect();
-    let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    out.resize(out.len().next_multiple_of(align), [0; 4]);
     let begin = out.len();
     out.extend(words.chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]]));
     let first_record = out.len() - begin;
@@ -86,6 +139,72 @@ pub(crate) fn append_tables(pieces: &[Piece], align: usize, out: &mut Vec<[u32; 
     Placed {
         block: [index(begin), index(first_record), index(vectors), unit.to_bits()],
         vectors,
+    }
+}
+
+/// What a frame's objects are searched by.
+pub(crate) struct Searches {
+    /// The table of each object; none where its contour does not close, or a map is searched.
+    tables: Vec<Option<Table>>,
+    asked: Solver,
+}
+
+impl Searches {
+    /// `contours` are empty, or one for each object. What is done in another way is told in `notes`, once.
+    ///
+    /// # Errors
+    /// Where the search asked for cannot draw an object, and another must be asked for.
+    pub fn new(
+        contours: &[Contours],
+        scene: &Scene,
+        settings: &Settings,
+        notes: &mut Vec<String>,
+    ) -> Result<Self> {
+        let asked = settings.solver;
+        let mut tables = Vec::new();
+        for (number, (contours, object)) in contours.iter().zip(&scene.objects).enumerate() {
+            let found = contours.contour(&object.offset);
+            if asked == Solver::Cone {
+                let rows = settings.map_rows.unwrap_or(object.map_rows);
+                let cones = found
+                    .and_then(|contour| Cones::new(&contour, rows))
+                    .map_err(|e| named(e, number, object))?;
+                tables.push(Some(Table::Cone(cones)));
+                continue;
+            }
+            if let Err(error) = &found {
+                let note = format!(
+                    "object.{number} ({}) is drawn by the search {} in place of {}: {}",
+                    object.name,
+                    FALLBACK.name(),
+                    asked.name(),
+                    error.message
+                );
+                if !notes.contains(&note) {
+                    notes.push(note);
+                }
+            }
+            let table = |contour| Table::Pieces(cut(&contour, &contours.options));
+            tables.push(found.ok().map(table));
+        }
+        // A shadow's ray meets every solid by one search.
+        if scene.shadow != Shadow::Off && tables.iter().any(Option::is_none) {
+            tables.clear();
+        }
+        Ok(Self { tables, asked })
+    }
+
+    /// The search of object `number`.
+    pub fn solver(&self, number: usize) -> Solver {
+        match self.asked {
+            Solver::Quadric | Solver::Hull if self.table(number).is_none() => FALLBACK,
+            asked => asked,
+        }
+    }
+
+    /// Its table, where it has one.
+    pub fn table(&self, number: usize) -> Option<&Table> {
+        self.tables.get(number)?.as_ref()
     }
 }
 

@@ -9,6 +9,9 @@ use glam::{DVec2, DVec3};
 /// By how much an eye has to stand clear of a shell, and a shell of the near plane, object units.
 const CLEARANCE: f64 = 1e-3;
 
+/// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
+pub(crate) const COMPONENTS: u32 = 4 * (10 + 2 * HULL_TESTS);
+
 /// How far a band may lie from the surface, object units: fewer triangles against fewer fragments that meet nothing.
 const GAP: f64 = 0.03;
 

@@ -45,6 +45,8 @@ pub struct Drawn {
     pub times: Times,
     /// Bytes on the device: of shape maps, of colour and displacement maps.
     pub map_bytes: [u64; 2],
+    /// [`Renderer::notes`].
+    pub notes: Vec<String>,
 }
 
 /// Draws a scene once: bakes its maps, uploads, draws, reads back.
@@ -59,6 +61,7 @@ pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn
         frame: renderer.read()?,
         times,
         map_bytes: renderer.map_bytes(),
+        notes: renderer.notes().to_vec(),
     };
     drop(renderer);
     device.check()?;

@@ -4,6 +4,7 @@ use super::srgb::linear_from_srgb;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::settings::{DrawStage, Planes, Settings};
+use crate::shader::generated::EXHAUSTED_BIT;
 
 /// `planes` as [`Target::read`](super::target::Target::read) gives them: images, then words.
 pub(crate) fn frame(
@@ -46,7 +47,9 @@ pub(crate) fn frame(
                 let [r, g, b, v] = vec4(albedo, i);
                 frame.albedo[i] = [r, g, b];
                 frame.uv[i] = [u, v];
-                let count: u32 = bytemuck::pod_read_unaligned(&steps[4 * i..4 * i + 4]);
+                let word: u32 = bytemuck::pod_read_unaligned(&steps[4 * i..4 * i + 4]);
+                frame.exhausted += usize::from(word & EXHAUSTED_BIT != 0);
+                let count = word & !EXHAUSTED_BIT;
                 #[allow(clippy::cast_precision_loss)] // look-ups of a pixel stay far below 2^24
                 {
                     frame.steps[i] = count as f32;

@@ -5,7 +5,7 @@ use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, ShadowBlock, SolidBlock};
 use super::clock::Clock;
 use super::commands::Commands;
-use super::contours::{Contours, append_tables};
+use super::contours::{Contours, Searches, Table};
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::hulls;
@@ -45,8 +45,9 @@ pub struct Renderer {
     descriptors: Descriptors,
     batches: Vec<Batch>,
     textures: Textures,
-    /// What the quadric search's tables are built from, one an object; empty for other searches.
+    /// What the searches' tables are built from, one an object; empty for other searches.
     contours: Vec<Contours>,
+    notes: Vec<String>,
     frame_buffer: Buffer,
     batch_buffer: Buffer,
     instance_buffer: Buffer,
@@ -113,10 +114,10 @@ impl Renderer {
             instances = end;
         }
 
-        let contours = if settings.solver.takes_pieces() {
-            Contours::of(scene)?
-        } else {
+        let contours = if settings.solver.reads_map() {
             Vec::new()
+        } else {
+            Contours::of(scene)?
         };
         let uniform = |name, bytes| {
             Buffer::new(
@@ -142,6 +143,7 @@ impl Renderer {
             batches,
             textures,
             contours,
+            notes: Vec::new(),
             frame_buffer,
             batch_buffer,
             instance_buffer,
@@ -157,7 +159,7 @@ impl Renderer {
     }
 
     /// Takes over camera, lights, placements and parameters of `scene`, whose objects must be those the renderer was made with.
-    /// No map is computed again.
+    /// No map is computed again, but for a solid whose contour no longer closes under its offset ([`Renderer::notes`]).
     ///
     /// # Errors
     /// Of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
@@ -178,6 +180,9 @@ impl Renderer {
         let mut pieces: Vec<[u32; 4]> = Vec::new();
         let mut bands = 0;
         let near = f64::from(frame.eye[3]);
+        let limits = &self.device.limits;
+        let wraps = limits.max_fragment_input_components >= hulls::COMPONENTS
+            && limits.max_vertex_output_components >= hulls::COMPONENTS + 4;
         let most_groups = self.device.limits.max_compute_work_group_count[0];
         let mut shadows: ShadowBlock = bytemuck::Zeroable::zeroed();
         let casts = scene.shadow != Shadow::Off;
@@ -187,20 +192,29 @@ impl Renderer {
         }
         let count = self.batches.len();
         let mut tiles = Vec::new();
+        let asked = self.settings.solver;
+        let searches = Searches::new(&self.contours, scene, &self.settings, &mut self.notes)?;
+        // All maps before the first set of textures is written: shadows read those of other objects.
+        for (number, object) in scene.objects.iter().enumerate() {
+            if searches.solver(number) != asked {
+                let (device, commands) = (&self.device, &self.commands);
+                self.textures
+                    .demand_map(device, commands, object, &self.settings)?;
+            }
+        }
         for (number, (batch, object)) in self.batches.iter_mut().zip(&scene.objects).enumerate() {
-            check_format(number, object, &self.settings)?;
-            let mut variant = Variant::new(&self.settings, scene, object);
+            let solver = searches.solver(number);
+            let settings = Settings {
+                solver,
+                ..self.settings
+            };
+            check_format(number, object, &settings)?;
+            let mut variant = Variant::new(&settings, scene, object);
             variant.single = u32::from(batch.instances.len() == 1);
             let (shape, facts) = self.textures.shape(object, &self.settings)?;
             let bound = self.textures.of(object, shape);
             batch.textures = self.descriptors.textures(number, &bound);
-            let mut block = solid_block(
-                object,
-                &facts,
-                &batch.instances,
-                shape,
-                self.settings.solver,
-            );
+            let mut block = solid_block(object, &facts, &batch.instances, shape, solver);
             let mut kind = match self.settings.stage {
                 DrawStage::Compute => Kind::Compute,
                 _ => Kind::Box,
@@ -209,27 +223,31 @@ impl Renderer {
             batch.beam = None;
             variant.depth_test = u32::from(number > 0);
             variant.depth_keep = u32::from(number + 1 < count);
-            let mut cut = Vec::new();
-            if self.settings.solver.takes_pieces() {
-                cut = self.contours[number].pieces(&object.offset)?;
-                if self.settings.solver == Solver::Hull
-                    && kind == Kind::Box
-                    && let Some(hull) = hulls::of(object, &cut, &camera, near)
-                {
-                    kind = Kind::Hull;
-                    block.hull[0] = hulls::append(&hull, &cut, &mut pieces) as u32;
-                    batch.hull_indices = Some(6 * HULL_SIDES * hull.bands.len() as u32);
-                    bands = bands.max(hull.bands.len());
-                }
+            let table = searches.table(number);
+            let wrapped = match solver {
+                Solver::Hull => table.and_then(Table::pieces),
+                _ => None,
+            };
+            if let Some(cut) = wrapped
+                && kind == Kind::Box
+                && wraps
+                && let Some(hull) = hulls::of(object, cut, &camera, near)
+            {
+                kind = Kind::Hull;
+                block.hull[0] = hulls::append(&hull, cut, &mut pieces) as u32;
+                batch.hull_indices = Some(6 * HULL_SIDES * hull.bands.len() as u32);
+                bands = bands.max(hull.bands.len());
+            }
+            // A hull's own fragments read none of the tree; shadows' rays do.
+            if let Some(table) = table
+                && (kind != Kind::Hull || casts)
+            {
                 let align = self.device.limits.min_uniform_buffer_offset_alignment;
                 let align = usize::try_from(align).unwrap_or(256).max(16) / 16;
-                // A hull's own fragments read none of the tree; shadows' rays do.
-                if kind != Kind::Hull || casts {
-                    let tables = append_tables(&cut, align, &mut pieces);
-                    block.pieces = tables.block;
-                    variant.own_tables = u32::from(tables.vectors <= PIECE_VECTORS as usize);
-                    batch.tables_offset = 16 * block.pieces[0];
-                }
+                let placed = table.append(align, &mut pieces);
+                block.pieces = placed.block;
+                variant.own_tables = u32::from(placed.vectors <= PIECE_VECTORS as usize);
+                batch.tables_offset = 16 * block.pieces[0];
             }
             if self.settings.stage == DrawStage::Compute {
                 let radius = object.profile.radius;
@@ -240,9 +258,8 @@ impl Renderer {
                     batch.bins = bins.add(&camera, size, radius, first, object.placements());
                 }
             }
-            if let Some(rectangle) = batch.groups
-                && self.settings.solver == Solver::Hull
-                && hulls::takes_beams(object, &cut, &camera)
+            if let (Some(rectangle), Some(cut)) = (batch.groups, wrapped)
+                && hulls::takes_beams(object, cut, &camera)
                 && rectangle.padded() <= most_groups
             {
                 variant.beam = 1;
@@ -334,6 +351,12 @@ impl Renderer {
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         self.textures.bytes()
+    }
+
+    /// What was done in another way than asked for, and why; each thing once.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     fn check_shadows(&self) -> Result<()> {

@@ -72,8 +72,8 @@ impl Textures {
                 Sampler::new(device, Wrap::SurfaceAround)?,
             ],
         };
-        // Quadrics need no map; a soft shadow is measured in one.
-        let mapped = !settings.solver.takes_pieces() || scene.shadow == Shadow::Soft;
+        // Tables need no map; a soft shadow is measured in one.
+        let mapped = settings.solver.reads_map() || scene.shadow == Shadow::Soft;
         for (number, object) in scene.objects.iter().enumerate() {
             all.add(device, commands, object, settings, mapped)
                 .map_err(|e| {
@@ -168,6 +168,27 @@ impl Textures {
                 &levels,
             )?;
             self.displacements.push((map.clone(), image));
+        }
+        Ok(())
+    }
+
+    /// Makes an object's shape map where the search was to do without it.
+    pub fn demand_map(
+        &mut self,
+        device: &Arc<Shared>,
+        commands: &Commands,
+        object: &Object,
+        settings: &Settings,
+    ) -> Result<()> {
+        let (place, _) = self.shape(object, settings)?;
+        let shape = &mut self.shapes[place];
+        if shape.image.is_none() {
+            let (facts, image) = shape_map(device, commands, &shape.key, settings.map_format)?;
+            shape.facts = MapFacts {
+                arc_length: shape.facts.arc_length,
+                ..facts
+            };
+            shape.image = Some(image);
         }
         Ok(())
     }

@@ -11,6 +11,8 @@
 //! a piece a parabola or a horizontal line: their meeting is one quadratic in `t`, the same for cylinders, cones, spheres,
 //! paraboloids, hyperboloids and planes.
 //!
+//! For solids that are single-valued in z a row of empty cones does as well ([`Cones`]).
+//!
 //! For the rasteriser the pieces are wrapped in shells ([`hull`]); pictures become outlines first ([`outline_of`]).
 //!
 //! Data flows one way: outline → contour → pieces → rows and hull. All of it is cheap enough to be made anew whenever the
@@ -18,6 +20,7 @@
 
 mod bitmap;
 mod chain;
+pub mod cones;
 mod contour;
 mod fit;
 pub mod hull;
@@ -29,6 +32,7 @@ pub mod walk;
 
 pub use bitmap::{Traced, outline_of};
 pub use chain::Chain;
+pub use cones::Cones;
 pub use contour::{Contour, ContourSource};
 pub use fit::{CutOptions, cut};
 pub use hull::{Band, Hull, HullOptions};

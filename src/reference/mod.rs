@@ -64,6 +64,11 @@ pub struct Ray {
     pub direction: DVec3,
 }
 
+/// Whether these are a ray: finite numbers, and a direction whose length a double can hold. All else hits nothing.
+fn is_ray(origin: DVec3, direction: DVec3) -> bool {
+    origin.is_finite() && direction.length_squared().is_normal()
+}
+
 /// The first boundary point along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -149,7 +154,7 @@ impl Reference {
     #[must_use]
     pub fn trace(&self, ray: Ray) -> Trace {
         let mut all = Trace::default();
-        if !(ray.origin.is_finite() && ray.direction.is_finite()) || ray.direction == DVec3::ZERO {
+        if !is_ray(ray.origin, ray.direction) {
             return all;
         }
         self.parts.along(ray.origin, ray.direction, |part| {
@@ -197,7 +202,7 @@ impl Reference {
     /// inside.
     ///
     /// It tells a pixel that is wrong for a reason from one that a rounding decides: at a silhouette both signs are right
-    /// as long as this is small.
+    /// as long as this is small. A ray that is none comes near nothing: `+inf`.
     #[must_use]
     pub fn clearance(&self, ray: Ray, tolerance: f64) -> f64 {
         self.clearance_within(ray, [0.0, f64::INFINITY], tolerance)
@@ -207,6 +212,9 @@ impl Reference {
     /// surface a drawn hit lies; up to a drawn hit, whether the drawing has passed something on its way.
     #[must_use]
     pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
+        if !is_ray(ray.origin, ray.direction) {
+            return f64::INFINITY;
+        }
         let [from, to] = [part[0].max(0.0), part[1].max(part[0].max(0.0))];
         self.parts.list().iter().fold(f64::INFINITY, |least, one| {
             let (origin, direction) = one.local(ray.origin, ray.direction);

@@ -2,6 +2,7 @@
 
 use super::bracket::{Search, first_zero};
 use super::field::{Field, Nearest};
+use super::is_ray;
 use crate::scene::{Object, Offset};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -77,6 +78,10 @@ impl Solid {
     /// border by the states of the two sides. Outside the box is out.
     pub fn trace(&self, origin: DVec3, direction: DVec3) -> LocalTrace {
         let mut trace = LocalTrace::default();
+        // In the space of a very large or very small solid a ray's numbers may overflow.
+        if !is_ray(origin, direction) {
+            return trace;
+        }
         let Some(clip) = Clip::new(self.radius, origin, direction, &mut trace.grazes) else {
             return trace;
         };
@@ -132,6 +137,9 @@ impl Solid {
     /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of box and cell, to within
     /// `tolerance`.
     pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
+        if !is_ray(origin, direction) {
+            return f64::INFINITY;
+        }
         let speed = direction.length();
         let middle = DVec3::new(0.0, 0.0, 0.5);
         let half = DVec3::new(self.radius, self.radius, 0.5);

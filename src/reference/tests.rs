@@ -99,12 +99,38 @@ fn a_cylinder_from_all_sides() {
 #[test]
 fn rays_that_are_none_hit_nothing() {
     let c = || object(samples::cylinder(0.25, 0.2, 0.8), 0.5);
+    let nan = f64::NAN;
+    let far = f64::MAX;
     for (origin, direction) in [
         ([0.0, 0.0, 0.5], [0.0; 3]),
-        ([0.0, f64::NAN, 0.5], [1.0, 0.0, 0.0]),
+        ([0.0, 0.0, 0.5], [1e-200, 0.0, 0.0]),
+        ([0.0, nan, 0.5], [1.0, 0.0, 0.0]),
+        ([2.0, 0.0, 0.5], [-1.0, nan, 0.0]),
+        ([2.0, 0.0, 0.5], [nan; 3]),
         ([2.0, 0.0, 0.5], [f64::NEG_INFINITY, 0.0, 0.0]),
+        ([2.0, 0.0, 0.5], [-far, 0.0, 0.0]),
+        ([f64::INFINITY, 0.0, 0.5], [-1.0, 0.0, 0.0]),
     ] {
         assert_eq!(shoot(c(), origin, direction), Trace::default());
+        let ray = Ray {
+            origin: origin.into(),
+            direction: direction.into(),
+        };
+        let scene = scene(vec![c()]);
+        assert_eq!(
+            Analytic::new(&scene).unwrap().trace(ray),
+            Trace::default(),
+            "{ray:?}"
+        );
+        let reference = Reference::new(&scene).unwrap();
+        for part in [[0.0, f64::INFINITY], [0.5, 0.5], [nan, nan]] {
+            let least = reference.clearance_within(ray, part, 1e-6);
+            assert_eq!(least, f64::INFINITY, "{ray:?}");
+        }
+        // However the solid stands.
+        let mut turned = c();
+        turned.placement.scale = DVec3::new(1e-200, 1e200, 1.0);
+        assert!(shoot(turned, origin, direction).hit.is_none());
     }
     // Straight down the axis, and within a face's own plane: numbers all the way.
     assert!(

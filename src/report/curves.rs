@@ -16,7 +16,7 @@ use super::pictures::Album;
 use super::plan::{Labels, Plan, is_papers_loop, variant};
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::Row;
-use super::sweep::has_budget;
+use super::sweep::{has_budget, has_rows};
 use super::text::percent;
 use crate::error::Result;
 use crate::maps::MapSource;
@@ -75,10 +75,23 @@ impl Measure {
     }
 }
 
-/// Whether a row takes part in the sweep over steps: all of the map left as drawing takes it.
-fn over_steps(row: &Row, base: &Settings) -> bool {
-    let s = &row.settings;
-    s.map_rows.is_none() && s.map_source.is_none() && s.map_format == base.map_format
+/// Whether settings take part in the sweep over budgets: all of the map left as drawing takes it.
+fn over_budgets(s: &Settings, base: &Settings) -> bool {
+    (s.map_rows.is_none() || has_rows(s.solver))
+        && s.map_source.is_none()
+        && s.map_format == base.map_format
+}
+
+/// What a marker is called: its bound on steps, or the rows of its table.
+fn budget(s: &Settings) -> Option<String> {
+    if is_papers_loop(s) {
+        return None;
+    }
+    if has_rows(s.solver) {
+        return s.map_rows.map(|rows| rows.to_string());
+    }
+    let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
+    has_budget(s.solver).then(|| steps.to_string())
 }
 
 /// A search in a stage looks the same in all charts.
@@ -104,7 +117,7 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
     let mut places = Vec::new();
     for row in rows {
         let papers = is_papers_loop(&row.settings);
-        if !(papers || over_steps(row, base)) {
+        if !(papers || over_budgets(&row.settings, base)) {
             continue;
         }
         let (Some(time), Some(error)) = (row.time(), measure.of(row)) else {
@@ -123,7 +136,7 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
                 style(s.solver, s.stage),
             )
         };
-        let label = (!papers && has_budget(s.solver)).then(|| row.max_steps().to_string());
+        let label = budget(s);
         let point = Point {
             x: time.value,
             y: error,
@@ -311,7 +324,7 @@ pub fn resolution(
 pub fn most_exact(rows: &[&Row]) -> Option<Solver> {
     let worst = |solver: Solver| {
         rows.iter()
-            .filter(|r| r.settings.solver == solver && r.settings.map_rows.is_some())
+            .filter(|r| r.settings.solver == solver && r.settings.map_source.is_some())
             .filter_map(|r| Measure::Depth.of(r))
             .reduce(f64::min)
             .map(|p99| (solver, p99))
@@ -359,7 +372,7 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage, its bound on steps growing from marker to marker (numbers on the front); nothing beats what lies on the dashed line \
+                "Each line is a search in one stage, its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front); nothing beats what lies on the dashed line \
                  in both time and error.",
             );
         }
@@ -455,8 +468,7 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
     for ratio in ratios {
         let s = &ratio.settings;
         let papers = is_papers_loop(s);
-        let plain =
-            s.map_rows.is_none() && s.map_source.is_none() && s.map_format == base.map_format;
+        let plain = over_budgets(s, base);
         let error = match measure {
             Measure::Depth => ratio.depth_p99,
             Measure::Wrong => Some(100.0 * ratio.wrong),
@@ -479,11 +491,7 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
                 style(s.solver, s.stage),
             )
         };
-        let label = (!papers && has_budget(s.solver)).then(|| {
-            s.max_steps
-                .unwrap_or_else(|| s.solver.default_steps(false))
-                .to_string()
-        });
+        let label = budget(s);
         let point = Point { x, y, label };
         match series.iter_mut().find(|known| known.name == name) {
             Some(known) => known.points.push(point),

@@ -300,6 +300,11 @@ pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
                 num(Some(r.steps.mean)),
                 num(Some(r.steps.p99)),
                 num(Some(r.steps.max)),
+                if r.settings.solver.may_run_out() {
+                    r.steps.exhausted.to_string()
+                } else {
+                    "–".into()
+                },
                 e.missed.to_string(),
                 e.ghost.to_string(),
                 num(e.depth.map(|d| d.rms)),
@@ -323,6 +328,7 @@ pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
             "steps mean",
             "p99",
             "max",
+            "out of steps",
             "missed",
             "ghost",
             "depth rms (texels)",

@@ -57,6 +57,8 @@ pub struct Steps {
     pub p99: f64,
     /// Most.
     pub max: f64,
+    /// Pixels in which a search ran out of steps.
+    pub exhausted: usize,
 }
 
 impl Steps {
@@ -73,6 +75,7 @@ impl Steps {
             mean: steps.iter().sum::<f64>() / steps.len().max(1) as f64,
             p99: stats::quantile(&steps, 0.99).unwrap_or(0.0),
             max: steps.iter().copied().fold(0.0, f64::max),
+            exhausted: frame.exhausted,
         }
     }
 }
@@ -368,12 +371,14 @@ pub(crate) mod tests {
         for k in 0..100 {
             frame.steps[k] = (k + 1) as f32;
         }
+        frame.exhausted = 7;
         assert_eq!(
             Steps::of(&frame),
             Steps {
                 mean: 50.5,
                 p99: 99.0,
-                max: 100.0
+                max: 100.0,
+                exhausted: 7,
             }
         );
     }

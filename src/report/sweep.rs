@@ -79,15 +79,24 @@ impl Sweep {
                         .unwrap_or_default()
                 };
                 for &solver in &self.solvers {
-                    for max_steps in budgets(solver, &self.steps) {
-                        plan.add(
-                            view,
-                            Settings {
-                                solver,
-                                max_steps,
-                                ..base
-                            },
-                        );
+                    let steps = |max_steps| Settings {
+                        solver,
+                        max_steps,
+                        ..base
+                    };
+                    let rows = |&rows: &u32| Settings {
+                        solver,
+                        map_rows: Some(rows),
+                        ..base
+                    };
+                    let ways: Vec<_> = if has_rows(solver) {
+                        self.rows.iter().map(rows).collect()
+                    } else {
+                        let budgets = budgets(solver, &self.steps);
+                        budgets.into_iter().map(steps).collect()
+                    };
+                    for settings in ways {
+                        plan.add(view, settings);
                     }
                     if number > 0 || !sweeps_maps(solver, &self.solvers) {
                         continue;
@@ -146,6 +155,12 @@ pub fn budgets(solver: Solver, steps: &[u32]) -> Vec<Option<u32>> {
 #[must_use]
 pub fn has_budget(solver: Solver) -> bool {
     solver.default_steps(false) > 1
+}
+
+/// Whether a search has a table of as many rows as a map has, made from the boundary itself: these rows are its budget.
+#[must_use]
+pub fn has_rows(solver: Solver) -> bool {
+    solver == Solver::Cone
 }
 
 /// Maps are swept with the papers' search and with the default one, or with what is named in place of both: the others read the same
@@ -210,6 +225,23 @@ mod tests {
             2
         );
         assert_eq!(plan.groups().len(), 1);
+    }
+
+    #[test]
+    fn rows_of_cones_are_swept_in_every_stage() {
+        let sweep = Sweep {
+            solvers: vec![Solver::Cone],
+            ..Sweep::new()
+        };
+        let plan = sweep.plan(vec![spindle()]);
+        let cones = plan.cases.iter().map(|c| c.settings);
+        let cones: Vec<_> = cones.filter(|s| s.solver == Solver::Cone).collect();
+        assert_eq!(cones.len(), 2 * sweep.rows.len());
+        assert!(
+            cones
+                .iter()
+                .all(|s| s.map_source.is_none() && s.max_steps.is_none())
+        );
     }
 
     #[test]

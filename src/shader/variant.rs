@@ -44,11 +44,20 @@ impl Variant {
     /// The variant that draws `object` of `scene` as `settings` ask.
     #[must_use]
     pub fn new(settings: &Settings, scene: &Scene, object: &Object) -> Self {
-        let beveled = object.offset.bevel != 0.0 && object.offset.chamfer > 0.0;
+        let beveled = is_beveled(object);
+        // A ray towards a light meets every solid of the scene by the code of the one that it left: that code must do for all of
+        // them. The general forms are right for plain solids too.
+        let met = if scene.shadow == Shadow::Off {
+            std::slice::from_ref(object)
+        } else {
+            &scene.objects
+        };
+        let general = |of: fn(&Object) -> u32| met.iter().chain([object]).map(of).max();
         let texturing = &object.texturing;
         Self {
             solver: match settings.solver {
                 Solver::Circle => g::SOLVER_CIRCLE,
+                Solver::Cone => g::SOLVER_CONE,
                 Solver::Live => g::SOLVER_LIVE,
                 Solver::Quadric | Solver::Hull => g::SOLVER_QUADRIC,
                 Solver::Linear => g::SOLVER_LINEAR,
@@ -63,14 +72,8 @@ impl Variant {
                 .max_steps
                 .unwrap_or_else(|| settings.solver.default_steps(beveled))
                 .max(1),
-            offset: if beveled {
-                g::OFFSET_BEVELED
-            } else if object.offset.extend != 0.0 {
-                g::OFFSET_EXTENDED
-            } else {
-                g::OFFSET_NONE
-            },
-            cells: u32::from(object.repeat != [1; 3]),
+            offset: general(offset_of).unwrap_or(g::OFFSET_BEVELED),
+            cells: general(|o| u32::from(o.repeat != [1; 3])).unwrap_or(1),
             projection: match texturing.projection {
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
@@ -117,5 +120,21 @@ impl Variant {
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
         ]
+    }
+}
+
+fn is_beveled(object: &Object) -> bool {
+    object.offset.bevel != 0.0 && object.offset.chamfer > 0.0
+}
+
+/// The least general form of `w` that `object` has; each is a case of the next.
+fn offset_of(object: &Object) -> u32 {
+    const { assert!(g::OFFSET_NONE < g::OFFSET_EXTENDED && g::OFFSET_EXTENDED < g::OFFSET_BEVELED) };
+    if is_beveled(object) {
+        g::OFFSET_BEVELED
+    } else if object.offset.extend != 0.0 {
+        g::OFFSET_EXTENDED
+    } else {
+        g::OFFSET_NONE
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
 use revmap::scene::{Scene, file};
-use revmap::settings::{DrawStage, Planes, Settings};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap::{gpu, reference};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -42,7 +42,9 @@ impl Render {
             .output
             .iter()
             .any(|file| output::has_ending(file, "exr"));
-        let planes = if floats || self.drawing.verbose {
+        // What a search leaves undone is counted beside the planes; that is worth a warning.
+        let counted = self.drawing.solver.may_run_out() && !self.drawing.quiet;
+        let planes = if floats || self.drawing.verbose || counted {
             Planes::All
         } else {
             Planes::Color
@@ -82,7 +84,7 @@ impl Render {
                 Some(gpu) => format!("{gpu:.2} ms on {}", report.name),
                 None => format!("{:.2} ms with {}", drawn.times.frame_ms, report.name),
             },
-            details: vec![
+            details: [
                 format!(
                     "{:.2} ms from submission to completion",
                     drawn.times.frame_ms
@@ -92,7 +94,10 @@ impl Render {
                     drawn.map_bytes[0] as f64 / 1e6,
                     drawn.map_bytes[1] as f64 / 1e6
                 ),
-            ],
+            ]
+            .into_iter()
+            .chain(drawn.notes)
+            .collect(),
             frame: drawn.frame,
         })
     }
@@ -130,6 +135,9 @@ impl Render {
             if let Some(line) = steps(&picture.frame) {
                 output::note(&line);
             }
+        }
+        if let Some(line) = exhausted(settings, &picture.frame, self.drawing.verbose) {
+            output::note(&line);
         }
         let stage = options::name_of(&options::STAGES, &settings.stage);
         let solver = options::name_of(&options::SOLVERS, &settings.solver);
@@ -179,6 +187,19 @@ fn steps(frame: &Frame) -> Option<String> {
         "{} pixels hit ({share:.1} %), {mean:.2} steps each, {most} at most",
         hits.len()
     ))
+}
+
+/// In how many pixels the search ran out of steps, and what helps; without `always`, only where there are any.
+fn exhausted(settings: &Settings, frame: &Frame, always: bool) -> Option<String> {
+    let drawn = settings.stage != DrawStage::Reference && settings.solver.may_run_out();
+    match frame.exhausted {
+        0 if drawn && always => Some("no pixel ran out of steps".to_owned()),
+        0 => None,
+        count => Some(format!(
+            "warning: {count} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",
+            Solver::DEFAULT.name()
+        )),
+    }
 }
 
 fn milliseconds(since: Instant) -> f64 {

@@ -12,7 +12,7 @@
 mod path;
 mod roots;
 
-use super::{Hit, Ray, Surface, Trace};
+use super::{Hit, Ray, Surface, Trace, is_ray};
 use crate::error::{Error, Result, Stage};
 use crate::profile::{Outline, Shape};
 use crate::scene::{Object, Offset, Scene};
@@ -292,8 +292,11 @@ struct Inside {
 }
 
 impl Inside {
-    /// `None` when the ray misses the box, or has left it.
+    /// `None` when the ray misses the box, or has left it, or is none.
     fn new(radius: f64, ray: Ray) -> Option<Self> {
+        if !is_ray(ray.origin, ray.direction) {
+            return None;
+        }
         let mut inside = Self {
             enter: f64::NEG_INFINITY,
             enter_axis: 0,

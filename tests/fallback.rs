@@ -1,0 +1,86 @@
+//! A profile that has no contour is drawn by the search on the map, and the renderer says so.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{device, draw, eye, scene_of, shapes};
+use glam::DVec2;
+use revmap::gpu::{self, Renderer};
+use revmap::profile::{Outline, Profile, Shape};
+use revmap::scene::{Object, Shadow};
+use revmap::settings::{DrawStage, Settings, Solver};
+use std::sync::Arc;
+
+/// Two cylinders, one in the other, each by a loop of its own: twice solid in the middle.
+fn crossing() -> Profile {
+    let rectangle = |r0: f64, r1: f64, z1: f64| {
+        [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
+            .map(DVec2::from)
+            .to_vec()
+    };
+    Profile {
+        shape: Shape::Outline(Outline {
+            loops: vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)],
+        }),
+        radius: 0.5,
+    }
+}
+
+#[test]
+fn what_has_no_contour_is_drawn_from_the_map() {
+    let mut scene = scene_of(crossing(), eye(20.0, 2.2));
+    let mut ball = Object::new("ball", Arc::new(shapes::sphere()));
+    ball.placement.position.x = -0.6;
+    scene.objects.push(ball);
+    for (stage, shadow) in [
+        (DrawStage::Fragment, Shadow::Off),
+        (DrawStage::Compute, Shadow::Off),
+        (DrawStage::Fragment, Shadow::Hard),
+    ] {
+        scene.shadow = shadow;
+        let settings = Settings {
+            width: 200,
+            height: 150,
+            stage,
+            ..Settings::default()
+        };
+        let live = Settings {
+            solver: Solver::Live,
+            ..settings
+        };
+        let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+        let note = &drawn.notes[0];
+        assert!(drawn.notes.len() == 1, "{:?}", drawn.notes);
+        assert!(
+            note.contains("object.0 (test)") && note.contains("live"),
+            "{note}"
+        );
+        let wanted = draw(&scene, &live);
+        let hits = (0..wanted.pixels()).filter(|&i| wanted.hits(i)).count();
+        assert!(hits > 3000, "{hits}");
+        let differ = (0..wanted.pixels())
+            .filter(|&i| wanted.pixel(i) != drawn.frame.pixel(i))
+            .count();
+        if shadow == Shadow::Off {
+            // The ball keeps its own search.
+            assert!(differ > 1000 && differ < hits, "{differ} of {hits}");
+        } else {
+            assert_eq!(wanted.first_difference(&drawn.frame), None);
+        }
+    }
+    // Once, however often it is drawn.
+    let settings = Settings::default();
+    let mut renderer = Renderer::new(device(), &scene, &settings).unwrap();
+    scene.camera.eye.x += 0.1;
+    renderer.update(&scene).unwrap();
+    renderer.draw().unwrap();
+    assert_eq!(renderer.notes().len(), 1);
+    // What has a contour has nothing to say.
+    scene.objects.remove(0);
+    assert!(
+        gpu::draw(device(), &scene, &settings)
+            .unwrap()
+            .notes
+            .is_empty()
+    );
+}
