@@ -78,8 +78,7 @@ fn reach(object: &Object, margin: f64) -> f64 {
 
 /// Fails where a map's format cannot show what the object asks for.
 pub(crate) fn check_format(number: usize, object: &Object, settings: &Settings) -> Result<()> {
-    let reads = settings.solver != Solver::Quadric;
-    if reads && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
+    if settings.solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
         return Err(Error::new(
             Stage::Scene,
             "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric",
@@ -122,9 +121,10 @@ pub(crate) fn solid_block(
     let grow = width.max(0.0) + texel;
     let [x, y] = axis_offset(object);
     // Where the map ends, what is read from it ends.
-    let reach = match solver {
-        Solver::Quadric => f64::INFINITY,
-        _ => f64::from(map.columns) * texel,
+    let reach = if solver.reads_map() {
+        f64::from(map.columns) * texel
+    } else {
+        f64::INFINITY
     };
     let clip = (map.bounds.r_max + grow)
         .min(farthest_corner(object) + texel)

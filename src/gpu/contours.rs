@@ -1,7 +1,7 @@
-//! The quadric search's tables, made anew whenever an offset moves.
+//! Contours of a scene's objects, and the quadric search's tables of them, made anew whenever an offset moves.
 
 use crate::error::{Error, Result};
-use crate::pieces::{ContourSource, CutOptions, Tables, cut};
+use crate::pieces::{Contour, ContourSource, CutOptions, Tables, cut};
 use crate::profile::{Profile, Shape};
 use crate::scene::{Object, Offset, Scene};
 use std::sync::Arc;
@@ -44,6 +44,16 @@ impl Contours {
         })
     }
 
+    /// Equal for objects of one profile.
+    pub fn key(&self) -> usize {
+        Arc::as_ptr(&self.source) as usize
+    }
+
+    /// The contour under `offset`.
+    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
+        self.source.contour(offset)
+    }
+
     /// Appends the tables under `offset` to `out`, from the next multiple of `align` vectors on (their layout is
     /// `search_quadric.glsl`'s); returns where they stand: first vector, rows, first record from there, topmost level.
     pub fn append(
@@ -52,7 +62,7 @@ impl Contours {
         align: usize,
         out: &mut Vec<[f32; 4]>,
     ) -> Result<[u32; 4]> {
-        let contour = self.source.contour(offset)?;
+        let contour = self.contour(offset)?;
         let tables = Tables::new(&cut(&contour, &CutOptions::default()), ROWS);
         let index = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         out.resize(out.len().next_multiple_of(align), [0.0; 4]);

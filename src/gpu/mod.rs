@@ -15,6 +15,7 @@ mod descriptors;
 mod device;
 mod instance;
 mod memory;
+mod meshes;
 mod messages;
 mod pipelines;
 mod read_back;

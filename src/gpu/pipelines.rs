@@ -3,6 +3,7 @@
 use super::call::Call;
 use super::device::Shared;
 use crate::error::Result;
+use crate::mesh::Vertex;
 use crate::settings::{DrawStage, Planes};
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{Variant, generated as spirv};
@@ -20,6 +21,17 @@ pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
 
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
+/// What a pipeline is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Use {
+    /// Shape boxes, traced in the fragment shader.
+    Boxes,
+    /// Bins, traced in a compute shader.
+    Bins,
+    /// Meshes; `both_sides`: an eye may be inside.
+    Mesh { both_sides: bool },
+}
+
 /// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
 pub(crate) struct Pipelines {
     /// By frequency: 0 buffers of a frame, 1 textures of a batch, 2 the target of a compute pass.
@@ -28,7 +40,7 @@ pub(crate) struct Pipelines {
     pub render_pass: vk::RenderPass,
     planes: Planes,
     cache: vk::PipelineCache,
-    made: HashMap<(Variant, bool), vk::Pipeline>,
+    made: HashMap<(Variant, Use), vk::Pipeline>,
     device: Arc<Shared>,
 }
 
@@ -105,7 +117,18 @@ impl Pipelines {
 
     /// The pipeline of `variant` in `stage`, made now if it is new.
     pub fn get(&mut self, variant: Variant, stage: DrawStage) -> Result<vk::Pipeline> {
-        let key = (variant, stage == DrawStage::Compute);
+        self.get_for(
+            variant,
+            match stage {
+                DrawStage::Compute => Use::Bins,
+                _ => Use::Boxes,
+            },
+        )
+    }
+
+    /// The pipeline of `variant` for `wanted`, made now if it is new.
+    pub fn get_for(&mut self, variant: Variant, wanted: Use) -> Result<vk::Pipeline> {
+        let key = (variant, wanted);
         if let Some(made) = self.made.get(&key) {
             return Ok(*made);
         }
@@ -128,10 +151,9 @@ impl Pipelines {
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
-        let pipeline = if stage == DrawStage::Compute {
-            self.compute(&specialization)?
-        } else {
-            self.graphics(&specialization)?
+        let pipeline = match wanted {
+            Use::Bins => self.compute(&specialization)?,
+            Use::Boxes | Use::Mesh { .. } => self.graphics(&specialization, wanted)?,
         };
         self.made.insert(key, pipeline);
         Ok(pipeline)
@@ -165,25 +187,66 @@ impl Pipelines {
         first(made, "vkCreateComputePipelines")
     }
 
-    fn graphics(&self, specialization: &vk::SpecializationInfo<'_>) -> Result<vk::Pipeline> {
-        let vertex = self.module(spirv::SHAPE_BOX_VERT)?;
-        let fragment = self.module(match self.planes {
-            Planes::Color => spirv::SHAPE_BOX_COLOR_FRAG,
-            Planes::All => spirv::SHAPE_BOX_PLANES_FRAG,
-        })?;
+    fn graphics(
+        &self,
+        specialization: &vk::SpecializationInfo<'_>,
+        wanted: Use,
+    ) -> Result<vk::Pipeline> {
+        let mesh = matches!(wanted, Use::Mesh { .. });
+        let [vertex, fragment] = match (mesh, self.planes) {
+            (false, Planes::Color) => [spirv::SHAPE_BOX_VERT, spirv::SHAPE_BOX_COLOR_FRAG],
+            (false, Planes::All) => [spirv::SHAPE_BOX_VERT, spirv::SHAPE_BOX_PLANES_FRAG],
+            (true, Planes::Color) => [spirv::MESH_VERT, spirv::MESH_COLOR_FRAG],
+            (true, Planes::All) => [spirv::MESH_VERT, spirv::MESH_PLANES_FRAG],
+        };
+        let (vertex, fragment) = (self.module(vertex)?, self.module(fragment)?);
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
-        let no_vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let strip = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_STRIP);
+        // Boxes have no vertices: their corners are made from numbers.
+        let binding = [vk::VertexInputBindingDescription::default()
+            .stride(const { size_of::<Vertex>() as u32 })];
+        let attribute = |location, format, offset| {
+            vk::VertexInputAttributeDescription::default()
+                .location(location)
+                .format(format)
+                .offset(offset)
+        };
+        let attributes = [
+            attribute(
+                0,
+                vk::Format::R32G32B32_SFLOAT,
+                const { std::mem::offset_of!(Vertex, position) as u32 },
+            ),
+            attribute(
+                1,
+                vk::Format::R16G16_SNORM,
+                const { std::mem::offset_of!(Vertex, normal) as u32 },
+            ),
+        ];
+        let mut vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        if mesh {
+            vertices = vertices
+                .vertex_binding_descriptions(&binding)
+                .vertex_attribute_descriptions(&attributes);
+        }
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(if mesh {
+            vk::PrimitiveTopology::TRIANGLE_LIST
+        } else {
+            vk::PrimitiveTopology::TRIANGLE_STRIP
+        });
+        let culled = if wanted == (Use::Mesh { both_sides: true }) {
+            vk::CullModeFlags::NONE
+        } else {
+            vk::CullModeFlags::BACK
+        };
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(vk::CullModeFlags::BACK)
+            .cull_mode(culled)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
@@ -202,8 +265,8 @@ impl Pipelines {
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
         let info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
-            .vertex_input_state(&no_vertices)
-            .input_assembly_state(&strip)
+            .vertex_input_state(&vertices)
+            .input_assembly_state(&assembly)
             .viewport_state(&viewport)
             .rasterization_state(&raster)
             .multisample_state(&samples)

@@ -9,7 +9,8 @@ use super::contours::Contours;
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::memory::Buffer;
-use super::pipelines::Pipelines;
+use super::meshes::Meshes;
+use super::pipelines::{Pipelines, Use};
 use super::target::Target;
 use super::textures::Textures;
 use crate::error::{Error, Result, Stage};
@@ -41,8 +42,10 @@ pub struct Renderer {
     descriptors: Descriptors,
     batches: Vec<Batch>,
     textures: Textures,
-    /// What the quadric search's tables are built from, one an object; empty for other searches.
+    /// What the quadric search's tables, or meshes, are built from, one an object; empty for other searches.
     contours: Vec<Contours>,
+    /// None where there is a search.
+    meshes: Option<Meshes>,
     frame_buffer: Buffer,
     batch_buffer: Buffer,
     instance_buffer: Buffer,
@@ -75,6 +78,7 @@ impl Renderer {
     /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         let device = device.shared.clone();
+        let meshes = Meshes::new(&device, scene, settings)?;
         let commands = Commands::new(&device)?;
         let size = (settings.width, settings.height);
         let pipelines = Pipelines::new(&device, settings.planes)?;
@@ -101,7 +105,7 @@ impl Renderer {
             instances = end;
         }
 
-        let contours = if settings.solver == Solver::Quadric {
+        let contours = if settings.solver == Solver::Quadric || meshes.is_some() {
             Contours::of(scene)?
         } else {
             Vec::new()
@@ -129,6 +133,7 @@ impl Renderer {
             batches,
             textures,
             contours,
+            meshes,
             frame_buffer,
             batch_buffer,
             instance_buffer,
@@ -191,12 +196,25 @@ impl Renderer {
                 variant.own_tables = u32::from(own <= PIECE_VECTORS as usize);
                 batch.tables_offset = 16 * block.pieces[0];
             }
-            batch.pipeline = self.pipelines.get(variant, self.settings.stage)?;
+            let mut near_first = Vec::new();
+            if let Some(meshes) = &mut self.meshes {
+                let contours = &self.contours[number];
+                let both_sides;
+                (near_first, both_sides) =
+                    meshes.update(number, scene, contours, &camera, &self.commands)?;
+                let mesh = Use::Mesh { both_sides };
+                batch.pipeline = self.pipelines.get_for(variant, mesh)?;
+            } else {
+                batch.pipeline = self.pipelines.get(variant, self.settings.stage)?;
+            }
             write(&mut self.batch_buffer, batch.block_offset as usize, &block)?;
             if casts {
                 shadows.shadow_solids[number] = block;
             }
-            let all = object.placements();
+            let all = match near_first.as_slice() {
+                [] => object.placements(),
+                sorted => sorted,
+            };
             if all.len() != batch.instances.len() {
                 return Err(Error::new(
                     Stage::Draw,
@@ -265,10 +283,12 @@ impl Renderer {
         })
     }
 
-    /// Bytes that the scene's maps take on the device: shape maps, and colour and displacement maps.
+    /// Bytes that the scene's maps take on the device: shape maps (or meshes), and colour and displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
-        self.textures.bytes()
+        let [shapes, surfaces] = self.textures.bytes();
+        let meshes = self.meshes.as_ref().map_or(0, Meshes::bytes);
+        [shapes + meshes, surfaces]
     }
 
     fn check_shadows(&self) -> Result<()> {
@@ -307,8 +327,16 @@ impl Renderer {
         self.clock.stop(cmd);
     }
 
-    /// Draws every batch's boxes, within a render pass.
+    /// Draws every batch's boxes or meshes, within a render pass.
     fn record_fragment(&self, cmd: vk::CommandBuffer) {
+        if let Some(meshes) = &self.meshes {
+            for &number in meshes.order() {
+                let batch = &self.batches[number];
+                self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
+                meshes.draw(cmd, number, &batch.instances);
+            }
+            return;
+        }
         for batch in &self.batches {
             self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
             let count = batch.instances.end - batch.instances.start;

@@ -10,7 +10,7 @@ use crate::maps::{
     ArcLength, BakeOptions, Bounds, ColorMap, DisplacementMap, MapFormat, Projection, ShapeMap,
 };
 use crate::scene::{Object, Scene, Shadow};
-use crate::settings::{Settings, Solver};
+use crate::settings::Settings;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use ash::vk;
 use std::sync::Arc;
@@ -72,8 +72,8 @@ impl Textures {
                 Sampler::new(device, Wrap::SurfaceAround)?,
             ],
         };
-        // Quadrics need no map; a soft shadow is measured in one.
-        let mapped = settings.solver != Solver::Quadric || scene.shadow == Shadow::Soft;
+        // Not every search needs a map; a soft shadow is measured in one.
+        let mapped = settings.solver.reads_map() || scene.shadow == Shadow::Soft;
         for (number, object) in scene.objects.iter().enumerate() {
             all.add(device, commands, object, settings, mapped)
                 .map_err(|e| {

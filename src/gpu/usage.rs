@@ -20,6 +20,8 @@ pub(crate) enum Usage {
     ComputeWrite,
     /// Added to by fragment shaders.
     FragmentAtomic,
+    /// Vertices and indices.
+    VertexInput,
     /// Read by the host.
     HostRead,
 }
@@ -33,6 +35,7 @@ impl Usage {
             Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::ComputeWrite => S::COMPUTE_SHADER,
             Self::FragmentAtomic => S::FRAGMENT_SHADER,
+            Self::VertexInput => S::VERTEX_INPUT,
             Self::HostRead => S::HOST,
         }
     }
@@ -45,6 +48,7 @@ impl Usage {
             Self::TransferRead => A::TRANSFER_READ,
             Self::Sampled => A::SHADER_READ,
             Self::ComputeWrite | Self::FragmentAtomic => A::SHADER_READ | A::SHADER_WRITE,
+            Self::VertexInput => A::VERTEX_ATTRIBUTE_READ | A::INDEX_READ,
             Self::HostRead => A::HOST_READ,
         }
     }
@@ -56,7 +60,9 @@ impl Usage {
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
             Self::TransferRead => L::TRANSFER_SRC_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite | Self::FragmentAtomic | Self::HostRead => L::GENERAL,
+            Self::ComputeWrite | Self::FragmentAtomic | Self::VertexInput | Self::HostRead => {
+                L::GENERAL
+            }
         }
     }
 }

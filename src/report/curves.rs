@@ -84,7 +84,10 @@ fn over_steps(row: &Row, base: &Settings) -> bool {
 /// A search in a stage looks the same in all charts.
 fn style(solver: Solver, stage: DrawStage) -> Style {
     Style {
-        index: Solver::ALL.iter().position(|s| *s == solver).unwrap_or(0),
+        index: Solver::ALL
+            .iter()
+            .position(|s| *s == solver)
+            .unwrap_or(Solver::ALL.len() + 1), // of meshes, after the papers' loop
         filled: stage != DrawStage::Compute,
     }
 }
@@ -123,7 +126,10 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
                 style(s.solver, s.stage),
             )
         };
-        let label = (!papers && has_budget(s.solver)).then(|| row.max_steps().to_string());
+        let label = match s.solver {
+            Solver::Mesh { segments, rings } => Some(format!("{segments}x{rings}")),
+            _ => (!papers && has_budget(s.solver)).then(|| row.max_steps().to_string()),
+        };
         let point = Point {
             x: time.value,
             y: error,

@@ -140,11 +140,16 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
             height,
             ..*s
         };
+        // A mesh is not drawn by compute, and has no map.
+        ways.retain(|w| !w.solver.is_mesh() || stage == DrawStage::Fragment);
         for way in &ways {
             for &size in SIZES.iter().take(ranges.sizes) {
                 plan.add(0, sized(way, size));
             }
             for &rows in ROWS.iter().take(ranges.rows) {
+                if way.solver.is_mesh() {
+                    continue;
+                }
                 plan.add(
                     0,
                     Settings {
