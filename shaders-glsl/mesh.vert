@@ -14,5 +14,7 @@ void main()
     vec3 p = position + vec3(batch_solid.axis.xy, 0.0);
     gl_Position = frame.clip_from_world * vec4(point_to_world(i, p), 1.0);
     surface = vec4(position.xy, normal);
-    instance_index = gl_InstanceIndex;
+    if (SINGLE == 0u) {
+        instance_index = gl_InstanceIndex; // what is not written is not interpolated
+    }
 }

@@ -78,7 +78,10 @@ fn reach(object: &Object, margin: f64) -> f64 {
 
 /// Fails where a map's format cannot show what the object asks for.
 pub(crate) fn check_format(number: usize, object: &Object, settings: &Settings) -> Result<()> {
-    if settings.solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
+    if settings.solver.reads_map()
+        && settings.map_format == MapFormat::Rgba8
+        && object.offset.extend < 0.0
+    {
         return Err(Error::new(
             Stage::Scene,
             "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric",

@@ -87,7 +87,9 @@ impl Meshes {
         }
         let key = |key: &str| format!("object.{number}.{key}");
         if object.repeat != [1; 3] {
-            return Err(refused("draws one cell; give [1, 1, 1], and instances").at_key(key("repeat")));
+            return Err(
+                refused("draws one cell; give [1, 1, 1], and instances").at_key(key("repeat"))
+            );
         }
         let known = contours.key();
         let fits = |u: &Uploaded| u.profile == known && u.offset == object.offset;
@@ -101,7 +103,10 @@ impl Meshes {
         let mut placements = object.placements().to_vec();
         let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
         placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-        let eyes: Vec<DVec3> = placements.iter().map(|p| eye_in(object, p, camera)).collect();
+        let eyes: Vec<DVec3> = placements
+            .iter()
+            .map(|p| eye_in(object, p, camera))
+            .collect();
         let azimuth = eyes.first().map_or(0.0, |e| e.y.atan2(e.x));
         let both_sides = eyes.iter().any(|eye| may_hold(&shared.mesh, *eye));
         // Of many instances all would have to be gone through twice.
@@ -117,15 +122,19 @@ impl Meshes {
         Ok((placements, both_sides))
     }
 
-    fn upload(&self, object: &Object, contours: &Contours, commands: &Commands) -> Result<Uploaded> {
+    fn upload(
+        &self,
+        object: &Object,
+        contours: &Contours,
+        commands: &Commands,
+    ) -> Result<Uploaded> {
         let mesh = Mesh::new(
             &contours.contour(&object.offset)?,
             self.segments,
             self.rings,
         );
-        let upload = |name, usage, bytes: &[u8]| {
-            upload_buffer(&self.device, commands, name, usage, bytes)
-        };
+        let upload =
+            |name, usage, bytes: &[u8]| upload_buffer(&self.device, commands, name, usage, bytes);
         let vertices = upload(
             "vertices",
             vk::BufferUsageFlags::VERTEX_BUFFER,
@@ -200,13 +209,25 @@ fn check_box(object: &Object, widest: f64) -> std::result::Result<(), (&'static 
         return Ok(());
     }
     let (key, what) = if off != [0.0; 2] {
-        ("axis", "is not cut by its box, past which the axis moves it; give [0.5, 0.5]")
+        (
+            "axis",
+            "is not cut by its box, past which the axis moves it; give [0.5, 0.5]",
+        )
     } else if object.offset.extend > 0.0 {
-        ("extend", "is not cut by its box, past which it reaches; give less")
+        (
+            "extend",
+            "is not cut by its box, past which it reaches; give less",
+        )
     } else if object.offset.bevel > 0.0 {
-        ("bevel", "is not cut by its box, past which it reaches; give less")
+        (
+            "bevel",
+            "is not cut by its box, past which it reaches; give less",
+        )
     } else {
-        ("radius", "is not cut by its box, past which it reaches; give more")
+        (
+            "radius",
+            "is not cut by its box, past which it reaches; give more",
+        )
     };
     Err((key, refused(what)))
 }
@@ -223,6 +244,5 @@ fn eye_in(object: &Object, placement: &Placement, camera: &CameraFrame) -> DVec3
 fn may_hold(mesh: &Mesh, eye: DVec3) -> bool {
     let [r_max, z_min, z_max] = mesh.extent;
     let margin = 0.01;
-    eye.truncate().length() <= r_max + margin
-        && (z_min - margin..=z_max + margin).contains(&eye.z)
+    eye.truncate().length() <= r_max + margin && (z_min - margin..=z_max + margin).contains(&eye.z)
 }

@@ -26,9 +26,8 @@ const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 /// All chains, in at most `most` chords together if corners allow.
 pub(super) fn meridian(contour: &Contour, most: usize) -> Vec<Strand> {
     let lines: Vec<Line> = contour.chains.iter().filter_map(Line::new).collect();
-    let count = |tolerance: f64| -> usize {
-        lines.iter().map(|l| l.thinned(tolerance).len() - 1).sum()
-    };
+    let count =
+        |tolerance: f64| -> usize { lines.iter().map(|l| l.thinned(tolerance).len() - 1).sum() };
     let [mut low, mut high] = TOLERANCES;
     if count(low) <= most {
         high = low;
@@ -157,7 +156,10 @@ impl Line {
         self.points[a..b]
             .iter()
             .map(|p| (p - start).dot(outward))
-            .fold(0.0, |most, d| if d.abs() > f64::abs(most) { d } else { most })
+            .fold(
+                0.0,
+                |most, d| if d.abs() > f64::abs(most) { d } else { most },
+            )
     }
 
     fn normals_at(&self, k: usize) -> [DVec2; 2] {

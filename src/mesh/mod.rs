@@ -148,7 +148,10 @@ impl Builder {
             });
         }
         // A smooth closed strand ends on the vertices that it begins with. What is then nobody's is dropped by `in_order_of_use`.
-        let smooth = strand.rings.first().is_some_and(|r| r.normals[0] == r.normals[1]);
+        let smooth = strand
+            .rings
+            .first()
+            .is_some_and(|r| r.normals[0] == r.normals[1]);
         if let (true, [first, .., last]) = (strand.closed && smooth, pairs.as_mut_slice()) {
             last[1] = first[0];
         }

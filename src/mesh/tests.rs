@@ -79,7 +79,11 @@ fn meshes_are_closed_and_hold_the_volume() {
         let mesh = Mesh::new(&torus, segments, rings);
         assert!(is_closed(&mesh));
         assert_eq!(mesh.segments, segments);
-        assert!(mesh.rings <= rings && 2 * mesh.rings > rings, "{}", mesh.rings);
+        assert!(
+            mesh.rings <= rings && 2 * mesh.rings > rings,
+            "{}",
+            mesh.rings
+        );
         let off = volume(&mesh) / pappus - 1.0;
         assert!(off.abs() < within, "{segments}x{rings}: {off}");
     }
@@ -111,13 +115,18 @@ fn errors_are_even_on_both_sides() {
             if (a.z - 0.9).abs() < 1e-6 && (b.z - 0.9).abs() < 1e-6 {
                 let m: DVec3 = 0.5 * (a + b);
                 corner = corner.max(a.truncate().length());
-                if (a.truncate().length() - b.truncate().length()).abs() < 1e-6 && a.x.hypot(a.y) > 0.29 {
+                if (a.truncate().length() - b.truncate().length()).abs() < 1e-6
+                    && a.x.hypot(a.y) > 0.29
+                {
                     middle = middle.min(m.truncate().length());
                 }
             }
         }
     }
-    assert!((corner - 0.3 - (0.3 - middle)).abs() < 1e-6, "{corner} {middle}");
+    assert!(
+        (corner - 0.3 - (0.3 - middle)).abs() < 1e-6,
+        "{corner} {middle}"
+    );
 }
 
 #[test]

@@ -100,6 +100,14 @@ fn papers_style(stage: DrawStage) -> Style {
     }
 }
 
+/// What a marker on the front is told by: a bound on steps, or a tessellation.
+fn marked(s: &Settings, steps: u32) -> Option<String> {
+    match s.solver {
+        Solver::Mesh { segments, rings } => Some(format!("{segments}x{rings}")),
+        _ => (!is_papers_loop(s) && has_budget(s.solver)).then(|| steps.to_string()),
+    }
+}
+
 /// Error against time of every search swept over its steps, in both stages, with the front over all of them.
 #[must_use]
 pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -> Figure {
@@ -126,10 +134,7 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
                 style(s.solver, s.stage),
             )
         };
-        let label = match s.solver {
-            Solver::Mesh { segments, rings } => Some(format!("{segments}x{rings}")),
-            _ => (!papers && has_budget(s.solver)).then(|| row.max_steps().to_string()),
-        };
+        let label = marked(s, row.max_steps());
         let point = Point {
             x: time.value,
             y: error,
@@ -365,7 +370,7 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage, its bound on steps growing from marker to marker (numbers on the front); nothing beats what lies on the dashed line \
+                "Each line is a search in one stage, its bound on steps growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
                  in both time and error.",
             );
         }
@@ -438,7 +443,7 @@ fn summary(
         )?;
         page.figure(
             &figure,
-            "Each line is a search in one stage over its bound on steps (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
+            "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
              in both.",
         );
     }
@@ -485,11 +490,8 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
                 style(s.solver, s.stage),
             )
         };
-        let label = (!papers && has_budget(s.solver)).then(|| {
-            s.max_steps
-                .unwrap_or_else(|| s.solver.default_steps(false))
-                .to_string()
-        });
+        let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
+        let label = marked(s, steps);
         let point = Point { x, y, label };
         match series.iter_mut().find(|known| known.name == name) {
             Some(known) => known.points.push(point),

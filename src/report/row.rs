@@ -230,7 +230,11 @@ impl Row {
         let whole = |n: usize| n.to_string();
         let s = &self.settings;
         // A mesh has no search, whose columns these are.
-        let search = |text: String| Some(text).filter(|_| !s.solver.is_mesh()).unwrap_or_default();
+        let search = |text: String| {
+            Some(text)
+                .filter(|_| !s.solver.is_mesh())
+                .unwrap_or_default()
+        };
         vec![
             self.scene.clone(),
             self.technique.name().into(),
