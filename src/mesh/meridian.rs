@@ -20,6 +20,10 @@ pub(super) struct Strand {
 
 /// Joints that turn more are creases: twice what a circle of 48 corners turns at each.
 const CREASE: f64 = 15.0 * std::f64::consts::PI / 180.0;
+/// Object units over which a corner is still one: three pixels of an image of 512 rows.
+const AROUND: f64 = 3.0 / 512.0;
+/// Vertices are shared where the normals on both sides differ by less: half of that is the error it makes.
+const SHARED: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// The least and the largest tolerance, object units: points nearer to a line are on it, and what is farther is another shape.
 const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 
@@ -58,9 +62,7 @@ impl Line {
         let mut points = chain.points.clone();
         points.dedup();
         if chain.closed {
-            let n = points.len();
-            let way = |k: usize| points[(k + 1) % n] - points[k % n];
-            let corner = (0..n).find(|&k| turns(way(k + n - 1), way(k)));
+            let corner = (0..points.len()).find(|&k| is_corner(&points, true, k));
             points.rotate_left(corner.unwrap_or(0));
             let first = *points.first()?;
             points.push(first);
@@ -77,7 +79,7 @@ impl Line {
             .collect();
         let last = points.len() - 1;
         let mut fixed = vec![0];
-        fixed.extend((1..last).filter(|&k| turns(normals[k - 1], normals[k])));
+        fixed.extend((1..last).filter(|&k| is_corner(&points, false, k)));
         fixed.push(last);
         Some(Self {
             points,
@@ -132,13 +134,32 @@ impl Line {
 
     fn strand(&self, tolerance: f64) -> Strand {
         let kept = self.thinned(tolerance);
-        let bulges: Vec<f64> = kept.windows(2).map(|k| self.bulge(k[0], k[1])).collect();
-        let last = kept.len() - 1;
+        let chords: Vec<Chord> = kept.windows(2).map(|k| self.chord(k[0], k[1])).collect();
+        let last = chords.len();
         let rings = kept.iter().enumerate().map(|(n, &k)| {
-            let normals = self.normals_at(k);
+            let neighbours = match n {
+                0 if !self.closed => None,
+                _ if n == last && !self.closed => None,
+                0 => Some([last - 1, 0]),
+                _ if n == last => Some([last - 1, 0]),
+                _ => Some([n - 1, n]),
+            };
             let mut point = self.points[k];
-            if self.fixed.binary_search(&k).is_err() && n > 0 && n < last {
-                point += normals[0] * (0.25 * (bulges[n - 1] + bulges[n]));
+            let Some([before, after]) = neighbours.map(|c| c.map(|c| chords[c])) else {
+                let end = if n == 0 {
+                    chords[0].normals[0]
+                } else {
+                    chords[last - 1].normals[1]
+                };
+                return Ring {
+                    point,
+                    normals: [pole(end); 2],
+                };
+            };
+            let normals = joined(before, after);
+            if self.fixed.binary_search(&k).is_err() {
+                let outward = (normals[0] + normals[1]).normalize_or_zero();
+                point += outward * (0.25 * (before.bulge + after.bulge));
                 point.x = point.x.max(0.0);
             }
             Ring { point, normals }
@@ -146,6 +167,30 @@ impl Line {
         Strand {
             rings: rings.collect(),
             closed: self.closed,
+        }
+    }
+
+    /// The chord between two points, with the normals that are nearest to the contour's if they turn evenly along it: least squares of
+    /// the angle over the length.
+    fn chord(&self, a: usize, b: usize) -> Chord {
+        let first = self.normals[a];
+        let (mut length, mut moments, mut angle) = (0.0, [0.0; 2], 0.0);
+        for k in a..b {
+            if k > a {
+                angle += self.normals[k - 1].angle_to(self.normals[k]);
+            }
+            let step = self.points[k].distance(self.points[k + 1]);
+            moments[0] += angle * step;
+            moments[1] += angle * step * (length + 0.5 * step);
+            length += step;
+        }
+        let mean = moments[0] / length;
+        let half_turn = 6.0 * (moments[1] / length - 0.5 * moments[0]) / length;
+        Chord {
+            normals: [mean - half_turn, mean + half_turn]
+                .map(|angle| DVec2::from_angle(angle).rotate(first)),
+            turn: 2.0 * half_turn,
+            bulge: self.bulge(a, b),
         }
     }
 
@@ -161,35 +206,66 @@ impl Line {
                 |most, d| if d.abs() > f64::abs(most) { d } else { most },
             )
     }
+}
 
-    fn normals_at(&self, k: usize) -> [DVec2; 2] {
-        let last = self.points.len() - 1;
-        let (before, after) = match k {
-            0 if self.closed => (last - 1, 0),
-            _ if k == last && self.closed => (last - 1, 0),
-            0 => return [self.pole(0); 2],
-            _ if k == last => return [self.pole(last - 1); 2],
-            _ => (k - 1, k),
-        };
-        let [m, n] = [self.normals[before], self.normals[after]];
-        if turns(m, n) {
-            return [m, n];
-        }
-        // The nearer neighbour's direction tells more of the tangent.
-        let length = |k: usize| self.points[k].distance(self.points[k + 1]);
-        let smooth = (m * length(after) + n * length(before)).normalize_or(n);
-        [smooth; 2]
-    }
+/// Between two rings.
+#[derive(Clone, Copy)]
+struct Chord {
+    /// At its beginning and its end.
+    normals: [DVec2; 2],
+    /// Between them, radians.
+    turn: f64,
+    bulge: f64,
+}
 
-    /// On the axis, where segment `k` ends: along it where the surface is smooth, else a cone's.
-    fn pole(&self, k: usize) -> DVec2 {
-        let n = self.normals[k];
-        if turns(n, DVec2::new(-n.x, n.y)) {
-            n
-        } else {
-            DVec2::new(0.0, n.y.signum())
-        }
+/// The normals where two chords meet: one, if they are near enough for what the chords turn, and each its own where a shared one would be
+/// wrong along all of a straight chord.
+fn joined(before: Chord, after: Chord) -> [DVec2; 2] {
+    let [m, n] = [before.normals[1], after.normals[0]];
+    let turn = before.turn.abs() + after.turn.abs();
+    if m.angle_to(n).abs() > SHARED.max(0.25 * turn).min(CREASE) {
+        [m, n]
+    } else {
+        [(m + n).normalize_or(n); 2]
     }
+}
+
+/// The normal of a chord that ends on the axis: along it where the surface is smooth there, else a cone's.
+fn pole(normal: DVec2) -> DVec2 {
+    if turns(normal, DVec2::new(-normal.x, normal.y)) {
+        normal
+    } else {
+        DVec2::new(0.0, normal.y.signum())
+    }
+}
+
+/// Whether point `k` is a corner: the contour turns there, and still does seen from [`AROUND`], as the outline of a picture does not
+/// that is jagged by less than its pixels.
+fn is_corner(points: &[DVec2], closed: bool, k: usize) -> bool {
+    let n = points.len();
+    let neighbour = |p: usize, forward: bool| match (closed, forward) {
+        (true, true) => (p + 1) % n,
+        (true, false) => (p + n - 1) % n,
+        (false, true) => (p + 1).min(n - 1),
+        (false, false) => p.saturating_sub(1),
+    };
+    let [back, ahead] = [false, true].map(|forward| neighbour(k, forward));
+    if !turns(points[k] - points[back], points[ahead] - points[k]) {
+        return false;
+    }
+    let far = |forward| {
+        let (mut p, mut length) = (k, 0.0);
+        for _ in 0..n {
+            let next = neighbour(p, forward);
+            length += points[p].distance(points[next]);
+            p = next;
+            if length >= AROUND || next == neighbour(next, forward) {
+                break;
+            }
+        }
+        points[p]
+    };
+    turns(points[k] - far(false), far(true) - points[k])
 }
 
 /// Whether two directions are a crease apart.

@@ -8,8 +8,9 @@
 //! * A chord lies on one side of its arc. Vertices are moved out by half of that, so that the surface is as much before as
 //!   behind the true one: around the axis by the factor `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. The largest
 //!   error is half of what vertices on the surface would give, and so is the silhouette's.
-//! * Normals are those of the contour, not of the facets, split at creases; only their part in the half-plane is stored, as the azimuth
-//!   is the point's own, exactly and in every pixel.
+//! * Normals are those of the contour, not of the facets: of each chord the two between which they turn as evenly as possible; neighbours that
+//!   all but agree share vertices, others are creases. Only the part in the half-plane is stored, as the azimuth is the point's
+//!   own, exactly and in every pixel.
 //! * Vertices are 16 bytes, shared by all facets on their side of a crease; indices run in bands of [`BAND`] segments, so that a ring of a band
 //!   is still in the vertex cache when the next one is drawn, and vertices stand in the order in which they are first named.
 

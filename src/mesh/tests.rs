@@ -138,3 +138,31 @@ fn drawing_starts_before_the_eye() {
     assert_eq!(mesh.start(0.0), 48 * per_segment);
     assert_eq!(Mesh::default().start(1.0), 0);
 }
+
+/// A bend of 8 degrees between straight walls: a shared normal would be wrong all along both.
+#[test]
+fn straight_walls_keep_their_normals() {
+    let bend = [
+        [0.0, 0.1],
+        [0.2, 0.1],
+        [0.2, 0.5],
+        [0.25, 0.86],
+        [0.0, 0.86],
+    ];
+    let mesh = Mesh::new(&contour(&bend, &Offset::default()), 16, 64);
+    assert_eq!(mesh.rings, 4);
+    let upright = mesh.vertices.iter().filter(|v| v.normal == [i16::MAX, 0]);
+    assert_eq!(upright.count(), 2 * 16);
+}
+
+/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing on them.
+#[test]
+fn jags_are_no_corners() {
+    let mut jagged = vec![[0.0, 0.1], [0.2, 0.1]];
+    let jag = |k: u32| 0.2 + 0.1 / 512.0 * f64::from(k % 2);
+    jagged.extend((1..600).map(|k| [jag(k), 0.1 + f64::from(k) / 2.0 / 512.0]));
+    jagged.extend([[0.2, 0.7], [0.0, 0.7]]);
+    let mesh = Mesh::new(&contour(&jagged, &Offset::default()), 16, 8);
+    assert!(mesh.rings <= 8, "{}", mesh.rings);
+    assert!(is_closed(&mesh));
+}

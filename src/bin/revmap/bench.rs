@@ -10,7 +10,7 @@ use revmap::gpu::Device;
 use revmap::report::machine::Machine;
 use revmap::report::measure::{Limits, Measured, Watch, measure};
 use revmap::report::pictures::Album;
-use revmap::report::plan::{Axes, Labels, MESHES, Plan, is_papers_loop};
+use revmap::report::plan::{Axes, Labels, Plan, is_papers_loop};
 use revmap::report::scaling::Ranges;
 use revmap::report::suite::Extent;
 use revmap::report::{DeviceBench, against, folder, overview, papers, scaling, text};
@@ -107,7 +107,7 @@ impl Bench {
     fn scaling(&self) -> Result<()> {
         let mut axes = self.axes(&[]);
         if self.lists.solver.is_empty() {
-            let rival = MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+            let rival = scaling::MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
             axes.solvers.extend(rival);
         }
         let (limits, ranges) = if self.quick {
