@@ -54,6 +54,7 @@
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | [`mesh`] | the rival: the same boundary as triangles, for measurements |
 //! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
 //! | [`mod@reference`] | the truth: the first hit of every ray, in double precision, on the CPU |
 //! | [`gpu`] | device, renderer, timestamps |
@@ -66,6 +67,7 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod maps;
+pub mod mesh;
 pub mod pieces;
 pub mod profile;
 pub mod reference;

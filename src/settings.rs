@@ -1,6 +1,9 @@
 //! *How* a scene is drawn; *what* is drawn is the [`Scene`](crate::scene::Scene).
 
+use crate::error::{Error, Result, Stage};
 use crate::maps::{MapFormat, MapSource};
+use std::fmt;
+use std::str::FromStr;
 
 /// Where rays are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,6 +37,13 @@ pub enum Solver {
     /// The same pieces in shells of triangles, so that the rasteriser finds which a ray may meet. In the fragment stage, for objects
     /// that it can wrap; others, and compute, are searched as by [`Quadric`](Self::Quadric).
     Hull,
+    /// The rival: nothing is searched, the same solid is tessellated and rasterised. In the fragment stage alone.
+    Mesh {
+        /// Steps around the axis.
+        segments: u32,
+        /// Most steps along the meridian; fewer where fewer follow it exactly.
+        rings: u32,
+    },
 }
 
 impl Solver {
@@ -52,7 +62,34 @@ impl Solver {
     /// What is taken where none is named.
     pub const DEFAULT: Self = Self::Hull;
 
-    /// Its name in options and results.
+    /// A mesh of so many segments around the axis and rings along the meridian.
+    ///
+    /// # Errors
+    /// [`Stage::Usage`] below 3 segments or 2 rings, or beyond [`Solver::MOST_QUADS`] of both together.
+    pub fn mesh(segments: u32, rings: u32) -> Result<Self> {
+        let quads = u64::from(segments) * u64::from(rings);
+        if segments < 3 || rings < 2 || quads > Self::MOST_QUADS {
+            return Err(Error::new(
+                Stage::Usage,
+                format!(
+                    "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 rings, and at most {} of both together",
+                    Self::MOST_QUADS
+                ),
+            ));
+        }
+        Ok(Self::Mesh { segments, rings })
+    }
+
+    /// Most quads of a mesh.
+    pub const MOST_QUADS: u64 = 1 << 22;
+
+    /// Whether it is a mesh.
+    #[must_use]
+    pub const fn is_mesh(self) -> bool {
+        matches!(self, Self::Mesh { .. })
+    }
+
+    /// Its name in options and results; of a mesh the first part, [`Display`](fmt::Display) gives the whole: `mesh:64x128`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -64,13 +101,17 @@ impl Solver {
             Self::Live => "live",
             Self::Quadric => "quadric",
             Self::Hull => "hull",
+            Self::Mesh { .. } => "mesh",
         }
     }
 
     /// Whether it reads the shape map. The others search tables made from the boundary itself.
     #[must_use]
     pub const fn reads_map(self) -> bool {
-        !matches!(self, Self::Cone | Self::Quadric | Self::Hull)
+        !matches!(
+            self,
+            Self::Cone | Self::Quadric | Self::Hull | Self::Mesh { .. }
+        )
     }
 
     /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
@@ -81,7 +122,7 @@ impl Solver {
     }
 
     /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `cone`, `quadric` and `hull` have none to bound.
+    /// than any ray of a sound map takes. `cone`, `quadric`, `hull` and meshes have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -89,7 +130,47 @@ impl Solver {
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,
-            Self::Cone | Self::Quadric | Self::Hull => 1,
+            Self::Cone | Self::Quadric | Self::Hull | Self::Mesh { .. } => 1,
+        }
+    }
+}
+
+impl fmt::Display for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mesh { segments, rings } => write!(f, "{}:{segments}x{rings}", self.name()),
+            _ => f.write_str(self.name()),
+        }
+    }
+}
+
+/// The inverse of [`Display`](fmt::Display).
+///
+/// ```
+/// use revmap::settings::Solver;
+/// assert_eq!("mesh:64x128".parse(), Solver::mesh(64, 128));
+/// assert!("mesh:64".parse::<Solver>().is_err());
+/// ```
+impl FromStr for Solver {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if let Some(known) = Self::ALL.into_iter().find(|s| s.name() == text) {
+            return Ok(known);
+        }
+        let numbers = text
+            .strip_prefix("mesh:")
+            .and_then(|rest| rest.split_once('x'))
+            .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+        match numbers {
+            Some((segments, rings)) => Self::mesh(segments, rings),
+            None => Err(Error::new(
+                Stage::Usage,
+                format!(
+                    "{text:?} is no search; give one of {}, or a mesh as mesh:64x128",
+                    Self::ALL.map(Self::name).join(", ")
+                ),
+            )),
         }
     }
 }

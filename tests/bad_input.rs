@@ -312,6 +312,18 @@ fn wrong_usage() {
             ["--solver", "circle"],
         ),
         (
+            "render scene.toml -o a.png --solver mesh:2x1",
+            ["--solver", "3 segments"],
+        ),
+        (
+            "render scene.toml -o a.png --solver mesh:99999999x9",
+            ["--solver", "at most"],
+        ),
+        (
+            "render scene.toml -o a.png --solver mesh:axb",
+            ["--solver", "mesh:64x128"],
+        ),
+        (
             "render scene.toml -o a.png --map-format r8",
             ["--map-format", "rgba8"],
         ),

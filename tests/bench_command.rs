@@ -118,6 +118,45 @@ fn a_brief_run_measures_every_combination() {
     );
 }
 
+/// A mesh has neither a budget nor a map, and no place in compute.
+#[test]
+fn a_mesh_stands_beside_the_searches() {
+    let folder = tempfile::tempdir().unwrap();
+    let solvers = "circle,mesh:16x32";
+    let arguments = [
+        "bench", SCENE, "--quick", "--size", "64x48", "--solver", solvers, "--out", "m",
+    ];
+    let out = run(folder.path(), &arguments);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let made = folder.path().join("m");
+    let results = Table::load(&made.join("results.csv")).unwrap();
+    let rows: Vec<_> = results
+        .records
+        .iter()
+        .filter(|r| r[results.column("solver").unwrap()] == "mesh:16x32")
+        .collect();
+    assert_eq!(rows.len(), 1);
+    for (column, empty) in [
+        ("max_steps", true),
+        ("map_rows", true),
+        ("map_source", true),
+        ("map_format", true),
+        ("steps_mean", true),
+        ("steps_max", true),
+        ("frame_ms_median", false),
+        ("depth_p99_texels", false),
+        ("missed", false),
+    ] {
+        let field = &rows[0][results.column(column).unwrap()];
+        assert_eq!(field.is_empty(), empty, "{column}: {field:?}");
+    }
+    let out = Table::load(&made.join("left-out.csv")).unwrap();
+    // The row that was drawn may be there too: frames this small are easily timed wrongly.
+    let compute = |r: &&Vec<String>| r[3] == "mesh:16x32" && r[2] == "compute";
+    let reason = out.records.iter().find(compute).unwrap();
+    assert!(reason[4].contains("give the stage fragment"), "{reason:?}");
+}
+
 #[test]
 fn a_brief_chart_has_its_pages() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,6 +193,7 @@ fn wrong_usage_is_told_in_one_line() {
             "--stage: reference is what all others are compared with",
         ),
         (&["bench", "--solver", "circle,nothing"], 2, "nothing"),
+        (&["bench", "--solver", "circle,mesh:0x0"], 2, "mesh:0x0"),
         (&["bench", "--size", "64x48,0x3"], 2, "0x3"),
         (&["bench", "--elevation", "100"], 2, "-90 to 90"),
         (&["bench", "--quick", "--full"], 2, "--full"),

@@ -29,6 +29,7 @@ const uint SOLVER_RELIEF = 4u; // equal steps, then halvings
 const uint SOLVER_SECANT = 5u; // equal steps, then secants
 
 const uint SOLVER_CONE = 6u; // empty cones on each row, for solids that are single-valued in z
+const uint SOLVER_MESH = 15u; // triangles: nothing is searched
 
 const uint FORMAT_RGBA8 = 0u; // the papers' texture, unsigned distance
 const uint FORMAT_SIGNED = 1u; // one channel of signed distance, 16 or 32 bits

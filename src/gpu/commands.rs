@@ -3,7 +3,7 @@
 use super::call::Call;
 use super::device::Shared;
 use super::memory::{Buffer, Image};
-use super::usage::{Usage, image_barrier};
+use super::usage::{Usage, buffer_barrier, image_barrier};
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -177,4 +177,38 @@ pub(crate) fn upload_texture(
         image_barrier(device, cmd, &image, Usage::TransferWrite, Usage::Sampled);
     })?;
     Ok(image)
+}
+
+/// Makes a buffer of vertices or indices in the device's own memory.
+pub(crate) fn upload_buffer(
+    device: &Arc<Shared>,
+    commands: &Commands,
+    name: &str,
+    usage: vk::BufferUsageFlags,
+    bytes: &[u8],
+) -> Result<Buffer> {
+    let size = bytes.len() as u64;
+    let buffer = |name, usage, location| Buffer::new(device, name, size, usage, location);
+    let mut staging = buffer(
+        "staging",
+        vk::BufferUsageFlags::TRANSFER_SRC,
+        MemoryLocation::CpuToGpu,
+    )?;
+    staging.mapped()?[..bytes.len()].copy_from_slice(bytes);
+    let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+    let made = buffer(name, usage, MemoryLocation::GpuOnly)?;
+    if size > 0 {
+        commands.run(|cmd| {
+            let region = vk::BufferCopy::default().size(size);
+            // SAFETY: the region lies within both buffers, alive until `run` returns.
+            unsafe {
+                device
+                    .raw
+                    .cmd_copy_buffer(cmd, staging.raw, made.raw, &[region]);
+            }
+            let (from, to) = (Usage::TransferWrite, Usage::VertexInput);
+            buffer_barrier(device, cmd, &made, from, to);
+        })?;
+    }
+    Ok(made)
 }

@@ -56,11 +56,16 @@ impl Contours {
         })
     }
 
+    /// Equal for objects of one profile.
+    pub fn key(&self) -> usize {
+        Arc::as_ptr(&self.source) as usize
+    }
+
     /// The contour under `offset`.
     ///
     /// # Errors
     /// Where that of an odd profile cannot be closed.
-    fn contour(&self, offset: &Offset) -> Result<Contour> {
+    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
         self.source.contour(offset)
     }
 }
@@ -115,7 +120,10 @@ fn index(n: usize) -> u32 {
 /// The layout of `piece_tables.glsl`.
 fn append_pieces(pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> Placed {
     let tables = Tables::new(pieces, PIECE_ROWS);
-    let largest = tables.nodes.iter().fold(f32::MIN_POSITIVE, |m, n| m.max(n[1]));
+    let largest = tables
+        .nodes
+        .iter()
+        .fold(f32::MIN_POSITIVE, |m, n| m.max(n[1]));
     // A little more than what 16 bits hold, so that roundings of the product stay inside.
     let unit = largest * (1.0 + 1e-6) / 65535.0;
     let words: Vec<u32> = tables
@@ -137,7 +145,12 @@ fn append_pieces(pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> Placed {
     let vectors = out.len() - begin;
     out.extend(tables.records.iter().map(|r| r.range.map(f32::to_bits)));
     Placed {
-        block: [index(begin), index(first_record), index(vectors), unit.to_bits()],
+        block: [
+            index(begin),
+            index(first_record),
+            index(vectors),
+            unit.to_bits(),
+        ],
         vectors,
     }
 }
@@ -162,6 +175,9 @@ impl Searches {
     ) -> Result<Self> {
         let asked = settings.solver;
         let mut tables = Vec::new();
+        if asked.is_mesh() {
+            return Ok(Self { tables, asked });
+        }
         for (number, (contours, object)) in contours.iter().zip(&scene.objects).enumerate() {
             let found = contours.contour(&object.offset);
             if asked == Solver::Cone {

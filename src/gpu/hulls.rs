@@ -31,9 +31,11 @@ pub(crate) fn takes_beams(object: &Object, pieces: &[Piece], camera: &CameraFram
     };
     let (eye, _) = seen_from(object, placement, camera);
     let eye = DVec2::new(eye.truncate().length(), eye.z);
-    let whole = pieces.iter().fold([0.0f64, f64::INFINITY, f64::NEG_INFINITY], |m, p| {
-        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-    });
+    let whole = pieces
+        .iter()
+        .fold([0.0f64, f64::INFINITY, f64::NEG_INFINITY], |m, p| {
+            [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+        });
     let apart = eye.x > whole[0] + CLEARANCE
         || eye.y < whole[1] - CLEARANCE
         || eye.y > whole[2] + CLEARANCE;

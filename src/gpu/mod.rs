@@ -16,6 +16,7 @@ mod device;
 mod hulls;
 mod instance;
 mod memory;
+mod meshes;
 mod messages;
 mod pipelines;
 mod read_back;

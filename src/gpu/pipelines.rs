@@ -3,6 +3,7 @@
 use super::call::Call;
 use super::device::Shared;
 use crate::error::Result;
+use crate::mesh::Vertex;
 use crate::settings::Planes;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{Variant, generated as spirv};
@@ -31,6 +32,11 @@ pub(crate) enum Kind {
     Compute,
     /// The list of tiles that a batch's rays may meet.
     Beam,
+    /// Meshes, rasterised; `both_sides`: an eye may be inside.
+    Mesh {
+        /// Whether back faces show.
+        both_sides: bool,
+    },
 }
 
 /// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
@@ -143,7 +149,7 @@ impl Pipelines {
             .data(bytemuck::cast_slice(&values));
         let pipeline = match kind {
             Kind::Compute | Kind::Beam => self.compute(kind, &specialization)?,
-            Kind::Box | Kind::Hull => self.graphics(kind, &specialization)?,
+            Kind::Box | Kind::Hull | Kind::Mesh { .. } => self.graphics(kind, &specialization)?,
         };
         self.made.insert(key, pipeline);
         Ok(pipeline)
@@ -187,35 +193,77 @@ impl Pipelines {
         kind: Kind,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let hull = kind == Kind::Hull;
-        let vertex = self.module(if hull {
-            spirv::HULL_VERT
-        } else {
-            spirv::SHAPE_BOX_VERT
-        })?;
-        let fragment = self.module(match (hull, self.planes) {
-            (false, Planes::Color) => spirv::SHAPE_BOX_COLOR_FRAG,
-            (false, Planes::All) => spirv::SHAPE_BOX_PLANES_FRAG,
-            (true, Planes::Color) => spirv::HULL_COLOR_FRAG,
-            (true, Planes::All) => spirv::HULL_PLANES_FRAG,
+        let mesh = matches!(kind, Kind::Mesh { .. });
+        let (vertex, color, planes) = match kind {
+            Kind::Mesh { .. } => (
+                spirv::MESH_VERT,
+                spirv::MESH_COLOR_FRAG,
+                spirv::MESH_PLANES_FRAG,
+            ),
+            Kind::Hull => (
+                spirv::HULL_VERT,
+                spirv::HULL_COLOR_FRAG,
+                spirv::HULL_PLANES_FRAG,
+            ),
+            _ => (
+                spirv::SHAPE_BOX_VERT,
+                spirv::SHAPE_BOX_COLOR_FRAG,
+                spirv::SHAPE_BOX_PLANES_FRAG,
+            ),
+        };
+        let vertex = self.module(vertex)?;
+        let fragment = self.module(match self.planes {
+            Planes::Color => color,
+            Planes::All => planes,
         })?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
-        let no_vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        // Boxes and hulls have no vertices: their corners are made from numbers.
+        let binding = [vk::VertexInputBindingDescription::default()
+            .stride(const { size_of::<Vertex>() as u32 })];
+        let attribute = |location, format, offset| {
+            vk::VertexInputAttributeDescription::default()
+                .location(location)
+                .format(format)
+                .offset(offset)
+        };
+        let attributes = [
+            attribute(
+                0,
+                vk::Format::R32G32B32_SFLOAT,
+                const { std::mem::offset_of!(Vertex, position) as u32 },
+            ),
+            attribute(
+                1,
+                vk::Format::R16G16_SNORM,
+                const { std::mem::offset_of!(Vertex, normal) as u32 },
+            ),
+        ];
+        let mut vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        if mesh {
+            vertices = vertices
+                .vertex_binding_descriptions(&binding)
+                .vertex_attribute_descriptions(&attributes);
+        }
         let assembly =
-            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if hull {
+            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if kind != Kind::Box {
                 vk::PrimitiveTopology::TRIANGLE_LIST
             } else {
                 vk::PrimitiveTopology::TRIANGLE_STRIP
             });
+        let culled = if kind == (Kind::Mesh { both_sides: true }) {
+            vk::CullModeFlags::NONE
+        } else {
+            vk::CullModeFlags::BACK
+        };
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(vk::CullModeFlags::BACK)
+            .cull_mode(culled)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
@@ -234,7 +282,7 @@ impl Pipelines {
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
         let info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
-            .vertex_input_state(&no_vertices)
+            .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
             .viewport_state(&viewport)
             .rasterization_state(&raster)

@@ -10,6 +10,7 @@ use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::hulls;
 use super::memory::Buffer;
+use super::meshes::Meshes;
 use super::pipelines::{Kind, Pipelines};
 use super::target::Target;
 use super::textures::Textures;
@@ -45,8 +46,10 @@ pub struct Renderer {
     descriptors: Descriptors,
     batches: Vec<Batch>,
     textures: Textures,
-    /// What the searches' tables are built from, one an object; empty for other searches.
+    /// What the searches' tables, or meshes, are built from, one an object; empty for other searches.
     contours: Vec<Contours>,
+    /// None where there is a search.
+    meshes: Option<Meshes>,
     notes: Vec<String>,
     frame_buffer: Buffer,
     batch_buffer: Buffer,
@@ -86,6 +89,7 @@ impl Renderer {
     /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         let device = device.shared.clone();
+        let meshes = Meshes::new(&device, scene, settings)?;
         let commands = Commands::new(&device)?;
         let size = (settings.width, settings.height);
         let pipelines = Pipelines::new(&device, settings.planes)?;
@@ -143,6 +147,7 @@ impl Renderer {
             batches,
             textures,
             contours,
+            meshes,
             notes: Vec::new(),
             frame_buffer,
             batch_buffer,
@@ -266,12 +271,23 @@ impl Renderer {
                 batch.beam = Some((self.pipelines.get(variant, Kind::Beam)?, 0));
                 tiles.push((number, rectangle.padded()));
             }
+            let mut near_first = Vec::new();
+            if let Some(meshes) = &mut self.meshes {
+                let contours = &self.contours[number];
+                let both_sides;
+                (near_first, both_sides) =
+                    meshes.update(number, scene, contours, &camera, &self.commands)?;
+                kind = Kind::Mesh { both_sides };
+            }
             batch.pipeline = self.pipelines.get(variant, kind)?;
             write(&mut self.batch_buffer, batch.block_offset as usize, &block)?;
             if casts {
                 shadows.shadow_solids[number] = block;
             }
-            let all = object.placements();
+            let all = match near_first.as_slice() {
+                [] => object.placements(),
+                sorted => sorted,
+            };
             if all.len() != batch.instances.len() {
                 return Err(Error::new(
                     Stage::Draw,
@@ -347,10 +363,12 @@ impl Renderer {
         })
     }
 
-    /// Bytes that the scene's maps take on the device: shape maps, and colour and displacement maps.
+    /// Bytes that the scene's maps take on the device: shape maps (or meshes), and colour and displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
-        self.textures.bytes()
+        let [shapes, surfaces] = self.textures.bytes();
+        let meshes = self.meshes.as_ref().map_or(0, Meshes::bytes);
+        [shapes + meshes, surfaces]
     }
 
     /// What was done in another way than asked for, and why; each thing once.
@@ -382,7 +400,8 @@ impl Renderer {
 
     fn record(&self, cmd: vk::CommandBuffer) {
         self.clock.start(cmd);
-        self.target.clear(cmd, self.background, self.batches.len() > 1);
+        self.target
+            .clear(cmd, self.background, self.batches.len() > 1);
         if self.settings.stage == DrawStage::Compute {
             self.record_compute(cmd);
         } else {
@@ -395,8 +414,16 @@ impl Renderer {
         self.clock.stop(cmd);
     }
 
-    /// Draws every batch's boxes, within a render pass.
+    /// Draws every batch's boxes or meshes, within a render pass.
     fn record_fragment(&self, cmd: vk::CommandBuffer) {
+        if let Some(meshes) = &self.meshes {
+            for &number in meshes.order() {
+                let batch = &self.batches[number];
+                self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
+                meshes.draw(cmd, number, &batch.instances);
+            }
+            return;
+        }
         for batch in &self.batches {
             self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
             let count = batch.instances.end - batch.instances.start;
@@ -467,18 +494,39 @@ impl Renderer {
         let none: [u32; 4] = [0, 1, 1, 0];
         let pushed = [at, low.0 | low.1 << 16];
         let groups = |a: u32, b: u32| (b - a + 1).div_ceil(GROUP_PIXELS);
-        let (point, stage) = (vk::PipelineBindPoint::COMPUTE, vk::ShaderStageFlags::COMPUTE);
-        buffer_barrier(&self.device, cmd, words, Usage::TileRead, Usage::TransferWrite);
+        let (point, stage) = (
+            vk::PipelineBindPoint::COMPUTE,
+            vk::ShaderStageFlags::COMPUTE,
+        );
+        buffer_barrier(
+            &self.device,
+            cmd,
+            words,
+            Usage::TileRead,
+            Usage::TransferWrite,
+        );
         // SAFETY: `cmd` is recording, outside a render pass; the list's words lie within the buffer; all that is bound lives as
         // long as `self`, and both pipelines have one layout.
         unsafe {
             raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(at), bytemuck::bytes_of(&none));
-            buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, Usage::ComputeWrite);
+            buffer_barrier(
+                &self.device,
+                cmd,
+                words,
+                Usage::TransferWrite,
+                Usage::ComputeWrite,
+            );
             raw.cmd_bind_pipeline(cmd, point, list);
             let bytes = bytemuck::bytes_of(&pushed);
             raw.cmd_push_constants(cmd, self.pipelines.layout, stage, 0, bytes);
             raw.cmd_dispatch(cmd, groups(low.0, high.0), groups(low.1, high.1), 1);
-            buffer_barrier(&self.device, cmd, words, Usage::ComputeWrite, Usage::TileRead);
+            buffer_barrier(
+                &self.device,
+                cmd,
+                words,
+                Usage::ComputeWrite,
+                Usage::TileRead,
+            );
             raw.cmd_bind_pipeline(cmd, point, batch.pipeline);
             raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
         }
@@ -538,7 +586,13 @@ fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
 
 fn indices(device: &Arc<Shared>, bytes: usize) -> Result<Buffer> {
     let usage = vk::BufferUsageFlags::INDEX_BUFFER;
-    Buffer::new(device, "corners of hulls", bytes as u64, usage, MemoryLocation::CpuToGpu)
+    Buffer::new(
+        device,
+        "corners of hulls",
+        bytes as u64,
+        usage,
+        MemoryLocation::CpuToGpu,
+    )
 }
 
 /// Makes `buffer` anew where it is too small.

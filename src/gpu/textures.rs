@@ -72,7 +72,7 @@ impl Textures {
                 Sampler::new(device, Wrap::SurfaceAround)?,
             ],
         };
-        // Tables need no map; a soft shadow is measured in one.
+        // Not every search needs a map; a soft shadow is measured in one.
         let mapped = settings.solver.reads_map() || scene.shadow == Shadow::Soft;
         for (number, object) in scene.objects.iter().enumerate() {
             all.add(device, commands, object, settings, mapped)

@@ -82,8 +82,11 @@ fn over_budgets(s: &Settings, base: &Settings) -> bool {
         && s.map_format == base.map_format
 }
 
-/// What a marker is called: its bound on steps, or the rows of its table.
+/// What a marker is called: its bound on steps, the rows of its table, or its tessellation.
 fn budget(s: &Settings) -> Option<String> {
+    if let Solver::Mesh { segments, rings } = s.solver {
+        return Some(format!("{segments}x{rings}"));
+    }
     if is_papers_loop(s) {
         return None;
     }
@@ -97,7 +100,10 @@ fn budget(s: &Settings) -> Option<String> {
 /// A search in a stage looks the same in all charts.
 fn style(solver: Solver, stage: DrawStage) -> Style {
     Style {
-        index: Solver::ALL.iter().position(|s| *s == solver).unwrap_or(0),
+        index: Solver::ALL
+            .iter()
+            .position(|s| *s == solver)
+            .unwrap_or(Solver::ALL.len() + 1), // of meshes, after the papers' loop
         filled: stage != DrawStage::Compute,
     }
 }
@@ -372,7 +378,7 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage, its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front); nothing beats what lies on the dashed line \
+                "Each line is a search in one stage, its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
                  in both time and error.",
             );
         }
@@ -445,7 +451,7 @@ fn summary(
         )?;
         page.figure(
             &figure,
-            "Each line is a search in one stage over its bound on steps (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
+            "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
              in both.",
         );
     }

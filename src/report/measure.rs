@@ -275,7 +275,7 @@ impl Run<'_> {
             let case = &self.plan.cases[index];
             self.tell(
                 watch,
-                &format!("{}: errors of {}", view.name, case.settings.solver.name()),
+                &format!("{}: errors of {}", view.name, case.settings.solver),
             );
             let settings = Settings {
                 planes: Planes::All,

@@ -289,6 +289,7 @@ pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
             let e = &r.errors;
             let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
             let time = r.time();
+            let steps = Some(r.steps).filter(|_| !r.settings.solver.is_mesh());
             vec![
                 r.scene.clone(),
                 looks.way(&r.settings),
@@ -297,9 +298,9 @@ pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
                 time.map(|t| interval(&t, 3))
                     .unwrap_or_else(|| "clocks disagree".into()),
                 num(time.map(|t| 1e3 / t.value)),
-                num(Some(r.steps.mean)),
-                num(Some(r.steps.p99)),
-                num(Some(r.steps.max)),
+                num(steps.map(|s| s.mean)),
+                num(steps.map(|s| s.p99)),
+                num(steps.map(|s| s.max)),
                 if r.settings.solver.may_run_out() {
                     r.steps.exhausted.to_string()
                 } else {
@@ -337,7 +338,7 @@ pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
             "normal rms (°)",
             "silhouette (px)",
             "FLIP",
-            "maps",
+            "maps, mesh",
         ],
         &records,
         &[0, 1, 2],

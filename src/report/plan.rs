@@ -127,6 +127,18 @@ impl Plan {
         }
     }
 
+    /// Adds, for every view and size that is measured in the fragment stage, the rival: [`MESHES`].
+    pub fn add_meshes(&mut self) {
+        for case in self.cases.clone() {
+            if case.settings.stage == DrawStage::Fragment {
+                for (segments, rings) in MESHES {
+                    let solver = Solver::Mesh { segments, rings };
+                    self.add(case.view, plain(&case.settings, solver));
+                }
+            }
+        }
+    }
+
     /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size in a mixed plan.
     #[must_use]
     pub fn groups(&self) -> Vec<Vec<usize>> {
@@ -162,6 +174,22 @@ impl Plan {
 pub fn together(a: &Case, b: &Case) -> bool {
     let key = |c: &Case| (c.view, c.settings.width, c.settings.height);
     key(a) == key(b)
+}
+
+/// The tessellations that are measured where none is named, segments and rings.
+pub const MESHES: [(u32, u32); 2] = [(64, 128), (128, 256)];
+
+/// `solver` at the stage and size of `settings`, all else as drawing takes it.
+#[must_use]
+pub fn plain(settings: &Settings, solver: Solver) -> Settings {
+    Settings {
+        width: settings.width,
+        height: settings.height,
+        stage: settings.stage,
+        planes: settings.planes,
+        solver,
+        ..Settings::default()
+    }
 }
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a bevel of 25 and 10
@@ -203,10 +231,11 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Labels for these ways; the loop of the papers has its own name and does not count.
+    /// Labels for these ways; the loop of the papers and meshes have their own names and do not count.
     #[must_use]
     pub fn new<'a>(ways: impl IntoIterator<Item = &'a Settings>) -> Self {
-        let ways: Vec<_> = ways.into_iter().filter(|s| !is_papers_loop(s)).collect();
+        let counts = |s: &&Settings| !is_papers_loop(s) && !s.solver.is_mesh();
+        let ways: Vec<_> = ways.into_iter().filter(counts).collect();
         fn differs<T: PartialEq>(ways: &[&Settings], of: impl Fn(&Settings) -> T) -> bool {
             ways.windows(2).any(|w| of(w[0]) != of(w[1]))
         }
@@ -224,7 +253,10 @@ impl Labels {
         if is_papers_loop(s) {
             return PAPERS_LOOP.to_owned();
         }
-        let mut name = s.solver.name().to_owned();
+        let mut name = s.solver.to_string();
+        if s.solver.is_mesh() {
+            return name; // which has neither steps nor a map
+        }
         // A search without a loop has no bound to tell.
         if self.steps && s.solver.default_steps(false) > 1 {
             let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));

@@ -131,6 +131,7 @@ impl Row {
     pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
         let objects = &view.scene.objects;
         let settings = case.settings;
+        let searched = !settings.solver.is_mesh();
         Self {
             view: case.view,
             scene: view.name.clone(),
@@ -139,10 +140,12 @@ impl Row {
             settings,
             map_rows: settings
                 .map_rows
-                .or_else(|| one(objects.iter().map(|o| o.map_rows))),
+                .or_else(|| one(objects.iter().map(|o| o.map_rows)))
+                .filter(|_| searched),
             source: settings
                 .map_source
-                .or_else(|| one(objects.iter().map(|o| MapSource::best_for(&o.profile)))),
+                .or_else(|| one(objects.iter().map(|o| MapSource::best_for(&o.profile))))
+                .filter(|_| searched),
             solids: view.solids(),
             errors,
             steps,
@@ -229,6 +232,12 @@ impl Row {
         let e = &self.errors;
         let whole = |n: usize| n.to_string();
         let s = &self.settings;
+        // A mesh has no search, whose columns these are.
+        let search = |text: String| {
+            Some(text)
+                .filter(|_| !s.solver.is_mesh())
+                .unwrap_or_default()
+        };
         vec![
             self.scene.clone(),
             self.technique.name().into(),
@@ -236,21 +245,21 @@ impl Row {
             offset(|o| o.bevel),
             offset(|o| o.chamfer),
             names::stage(s.stage).into(),
-            s.solver.name().into(),
-            self.max_steps().to_string(),
+            s.solver.to_string(),
+            search(self.max_steps().to_string()),
             s.width.to_string(),
             s.height.to_string(),
             self.map_rows.map(|r| r.to_string()).unwrap_or_default(),
             self.source.map(names::source).unwrap_or_default().into(),
-            names::format(s.map_format).into(),
+            search(names::format(s.map_format).into()),
             whole(self.solids),
             num(stats::median(&gpu)),
             num(stats::quantile(&gpu, 0.95)),
             num(frame),
             num(frame.map(|ms| 1e3 / ms)),
-            num(Some(self.steps.mean)),
-            num(Some(self.steps.p99)),
-            num(Some(self.steps.max)),
+            search(num(Some(self.steps.mean))),
+            search(num(Some(self.steps.p99))),
+            search(num(Some(self.steps.max))),
             whole(e.missed),
             whole(e.ghost),
             num(e.depth.map(|d| d.rms)),

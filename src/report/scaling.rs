@@ -54,7 +54,7 @@ impl Quantity {
             }
             Self::Solids => {
                 "A square field of copies at 800x600, seen from above so that the field always fills the picture: the pixels covered stay about the same while the copies grow smaller \
-                 and more."
+                 and more. Meshes keep their tessellation, and are drawn as long as all copies together have at most 8 million quads."
             }
             Self::Rows => "One solid at 800x600, its map of 64 to 4096 rows.",
         }
@@ -73,6 +73,10 @@ const SIZES: [(u32, u32); 5] = [
 const COPIES: [u32; 5] = [1, 10, 100, 1000, 10_000];
 /// Rows of maps.
 const ROWS: [u32; 7] = [64, 128, 256, 512, 1024, 2048, 4096];
+/// Meshes measured where none is named: one for solids that fill the picture, one for solids of some ten pixels.
+pub const MESHES: [(u32, u32); 2] = [(16, 32), (64, 128)];
+/// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
+const MOST_QUADS: u64 = 1 << 23;
 /// The size at which solids and rows grow.
 const STILL: (u32, u32) = (800, 600);
 
@@ -140,11 +144,16 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
             height,
             ..*s
         };
+        // A mesh is not drawn by compute, and has no map.
+        ways.retain(|w| !w.solver.is_mesh() || stage == DrawStage::Fragment);
         for way in &ways {
             for &size in SIZES.iter().take(ranges.sizes) {
                 plan.add(0, sized(way, size));
             }
             for &rows in ROWS.iter().take(ranges.rows) {
+                if way.solver.is_mesh() {
+                    continue;
+                }
                 plan.add(
                     0,
                     Settings {
@@ -153,12 +162,22 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
                     },
                 );
             }
-            for view in 0..copies.len() {
-                plan.add(view + 1, sized(way, STILL));
+            for (view, &count) in copies.iter().enumerate() {
+                if quads(way.solver) * u64::from(count) <= MOST_QUADS {
+                    plan.add(view + 1, sized(way, STILL));
+                }
             }
         }
     }
     Ok(plan)
+}
+
+/// Of a mesh; of a search none.
+fn quads(solver: Solver) -> u64 {
+    match solver {
+        Solver::Mesh { segments, rings } => u64::from(segments) * u64::from(rings),
+        _ => 0,
+    }
 }
 
 /// `count` copies on a square field one unit wide, seen whole.
@@ -423,6 +442,24 @@ mod tests {
                 all.iter()
                     .all(|p| p.position.max_element() <= 1.0 - width / 2.0 + 1e-9)
             );
+        }
+    }
+
+    #[test]
+    fn meshes_grow_with_pixels_and_solids_alone() {
+        let solvers = MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+        let stages = [DrawStage::Fragment, DrawStage::Compute];
+        let plan = plan(&stages, &solvers, Ranges::ALL).unwrap();
+        let of = |solver| {
+            plan.cases
+                .iter()
+                .filter(move |c| c.settings.solver == solver)
+        };
+        for (solver, copies) in solvers.into_iter().zip([5, 4]) {
+            assert!(of(solver).all(|c| c.settings.stage == DrawStage::Fragment));
+            assert!(of(solver).all(|c| c.settings.map_rows.is_none()));
+            assert_eq!(of(solver).filter(|c| c.view == 0).count(), SIZES.len());
+            assert_eq!(of(solver).filter(|c| c.view > 0).count(), copies);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Which budgets, maps and searches a chart of speed against accuracy sweeps over.
 
-use super::plan::{Axes, Plan, papers_loop};
+use super::plan::{Axes, Plan, papers_loop, plain};
 use super::view::View;
 use crate::maps::{MapFormat, MapSource};
 use crate::profile::Shape;
@@ -19,6 +19,8 @@ pub struct Sweep {
     pub steps: Vec<u32>,
     /// Rows of maps.
     pub rows: Vec<u32>,
+    /// Segments and rings of meshes, in the fragment stage.
+    pub meshes: Vec<(u32, u32)>,
 }
 
 impl Sweep {
@@ -31,6 +33,7 @@ impl Sweep {
             size: (800, 600),
             steps: vec![8, 16, 32, 64, 128, 256],
             rows: vec![64, 128, 256, 512, 1024],
+            meshes: doubled(16, 512),
         }
     }
 
@@ -42,6 +45,7 @@ impl Sweep {
             size: (400, 300),
             steps: vec![16, 64, 256],
             rows: vec![128, 512],
+            meshes: doubled(32, 128),
             ..Self::new()
         }
     }
@@ -52,11 +56,12 @@ impl Sweep {
         Self {
             steps: vec![4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 512],
             rows: vec![32, 64, 128, 256, 512, 1024, 2048],
+            meshes: doubled(8, 1024),
             ..Self::new()
         }
     }
 
-    /// The plan over these views: for each view the sweeps over steps, over rows with every source, and over formats, and the
+    /// The plan over these views: for each view the sweeps over steps, over rows with every source, and over formats, over meshes, and the
     /// papers' loop.
     #[must_use]
     pub fn plan(&self, views: Vec<View>) -> Plan {
@@ -126,6 +131,11 @@ impl Sweep {
                         );
                     }
                 }
+                for &(segments, rings) in &self.meshes {
+                    if stage == DrawStage::Fragment {
+                        plan.add(view, plain(&base, Solver::Mesh { segments, rings }));
+                    }
+                }
                 let papers = papers_loop(&plan.views[view], &base);
                 plan.add(view, papers);
             }
@@ -138,6 +148,14 @@ impl Default for Sweep {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Meshes of `from` segments to `to`, each twice as fine as the one before; twice as many rings.
+fn doubled(from: u32, to: u32) -> Vec<(u32, u32)> {
+    std::iter::successors(Some(from), |n| Some(2 * n))
+        .take_while(|n| *n <= to)
+        .map(|n| (n, 2 * n))
+        .collect()
 }
 
 /// The bounds on steps worth trying: a search without a loop has none, one that ends by itself is cut short to see what the cut
@@ -225,6 +243,13 @@ mod tests {
             2
         );
         assert_eq!(plan.groups().len(), 1);
+        let meshes = plan.cases.iter().filter(|c| c.settings.solver.is_mesh());
+        assert!(
+            meshes
+                .clone()
+                .all(|c| c.settings.stage == DrawStage::Fragment)
+        );
+        assert_eq!(meshes.count(), 6);
     }
 
     #[test]

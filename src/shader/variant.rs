@@ -63,6 +63,7 @@ impl Variant {
                 Solver::Linear => g::SOLVER_LINEAR,
                 Solver::Relief => g::SOLVER_RELIEF,
                 Solver::Secant => g::SOLVER_SECANT,
+                Solver::Mesh { .. } => g::SOLVER_MESH,
             },
             map_format: match settings.map_format {
                 MapFormat::Rgba8 => g::FORMAT_RGBA8,

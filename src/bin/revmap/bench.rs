@@ -14,7 +14,7 @@ use revmap::report::plan::{Axes, Labels, Plan, is_papers_loop};
 use revmap::report::scaling::Ranges;
 use revmap::report::suite::Extent;
 use revmap::report::{DeviceBench, against, folder, overview, papers, scaling, text};
-use revmap::settings::Settings;
+use revmap::settings::{Settings, Solver};
 use std::path::{Path, PathBuf};
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
@@ -67,6 +67,9 @@ impl Bench {
         };
         let views = self.lists.views(extent, elevations)?;
         let mut plan = Plan::new(views, &self.axes(sizes).combinations());
+        if self.lists.solver.is_empty() {
+            plan.add_meshes();
+        }
         plan.add_papers_loop();
         let session = Session::open(&self.lists)?;
         let (measured, album) = session.measure(&plan, &limits, |_| true)?;
@@ -102,7 +105,11 @@ impl Bench {
     }
 
     fn scaling(&self) -> Result<()> {
-        let axes = self.axes(&[]);
+        let mut axes = self.axes(&[]);
+        if self.lists.solver.is_empty() {
+            let rival = scaling::MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+            axes.solvers.extend(rival);
+        }
         let (limits, ranges) = if self.quick {
             (Limits::QUICK, Ranges::QUICK)
         } else {

@@ -58,6 +58,9 @@ impl Chart {
         } else {
             sweep.stages = axes.stages;
             sweep.solvers = axes.solvers;
+            if !lists.solver.is_empty() {
+                sweep.meshes.clear();
+            }
             let mut all = Plan {
                 views,
                 cases: Vec::new(),

@@ -1,6 +1,6 @@
 //! Options that take several values, of which every combination is measured.
 
-use super::options::{FORMATS, SOLVERS, SOURCES, STAGES, name_of, named, size};
+use super::options::{FORMATS, SOURCES, STAGES, SolverParser, name_of, named, size};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
@@ -24,7 +24,7 @@ pub struct Lists {
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<DrawStage>,
     /// The searches [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = SolverParser)]
     pub solver: Vec<Solver>,
     /// Bounds on the searches' steps [default: each solver's own]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=65536))]

@@ -1,7 +1,7 @@
 //! Options that every drawing command takes.
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 
@@ -50,7 +50,7 @@ pub struct Drawing {
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
     pub stage: DrawStage,
     /// How the first hit along a ray is found
-    #[arg(long, value_name = "NAME", default_value = "default", value_parser = named(&SOLVERS))]
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = SolverParser)]
     pub solver: Solver,
     /// Bound on the search's steps [default: the solver's own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
@@ -103,6 +103,33 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
         let found = names.iter().find(|(known, _)| *known == name);
         found.map(|&(_, value)| value).ok_or("not known")
     })
+}
+
+/// A parser of a search's name, or of a mesh's tessellation.
+#[derive(Clone)]
+pub struct SolverParser;
+
+impl TypedValueParser for SolverParser {
+    type Value = Solver;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<Solver, clap::Error> {
+        if value.to_str().is_some_and(|text| text.starts_with("mesh")) {
+            let mesh = |text: &str| text.parse::<Solver>();
+            return mesh.parse_ref(command, argument, value);
+        }
+        named(&SOLVERS).parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let names = SOLVERS.iter().map(|(name, _)| *name);
+        let all = names.chain(["mesh:SEGMENTSxRINGS"]);
+        Some(Box::new(all.map(PossibleValue::new)))
+    }
 }
 
 /// The name of a value of [`named`]: the last, so that `default` gives its own name.

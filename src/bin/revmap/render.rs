@@ -90,7 +90,7 @@ impl Render {
                     drawn.times.frame_ms
                 ),
                 format!(
-                    "on the device: shape maps {:.2} MB, colour and displacement maps {:.2} MB",
+                    "on the device: shape maps (or meshes) {:.2} MB, colour and displacement maps {:.2} MB",
                     drawn.map_bytes[0] as f64 / 1e6,
                     drawn.map_bytes[1] as f64 / 1e6
                 ),
@@ -140,7 +140,7 @@ impl Render {
             output::note(&line);
         }
         let stage = options::name_of(&options::STAGES, &settings.stage);
-        let solver = options::name_of(&options::SOLVERS, &settings.solver);
+        let solver = settings.solver;
         let how = match settings.stage {
             DrawStage::Reference => stage.to_owned(),
             _ => format!("{stage}, {solver}"),
