@@ -1,0 +1,186 @@
+//! The default: hulls in the fragment stage, beams in compute. What they draw is what box and tree draw, in every case that they take and in
+//! every case that they have to leave to the box.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::{draw, eye, placement, scene_of, shapes};
+use glam::DVec3;
+use revmap::frame::{CompareOptions, Frame, compare};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Object, Offset, Scene};
+use revmap::settings::{DrawStage, Settings, Solver};
+use std::sync::Arc;
+
+const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+
+fn settings(solver: Solver, stage: DrawStage) -> Settings {
+    Settings {
+        width: 320,
+        height: 240,
+        solver,
+        stage,
+        ..Settings::default()
+    }
+}
+
+/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart than half a texel of 512 rows.
+fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
+    let both = || a.distance.iter().zip(&b.distance);
+    let hits = both().filter(|(a, _)| a.is_finite()).count();
+    let edge = both()
+        .filter(|(a, b)| a.is_finite() != b.is_finite())
+        .count();
+    let far = both()
+        .filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 0.5 / 512.0)
+        .count();
+    (hits, edge, far)
+}
+
+/// Both stages against the box: at most `tolerated` of the pixels hit differ, silhouettes of grazing rays.
+fn assert_same(name: &str, scene: &Scene, tolerated: f64) {
+    let truth = draw(scene, &settings(Solver::Quadric, DrawStage::Fragment));
+    for stage in STAGES {
+        let frame = draw(scene, &settings(Solver::Hull, stage));
+        let (hits, edge, far) = apart(&truth, &frame);
+        assert!(hits > 500, "{name}: only {hits} pixels are hit");
+        assert!(
+            (edge + far) as f64 <= tolerated * hits as f64 + 2.0,
+            "{name}, {stage:?}: of {hits} pixels {edge} are hit by one alone, {far} seen elsewhere"
+        );
+        let compared = compare(&truth, &frame, &CompareOptions::default()).unwrap();
+        let normal = compared.normal.unwrap();
+        assert!(normal.rms < 1.0, "{name}, {stage:?}: normals {normal:?}");
+    }
+}
+
+/// Undercuts, cavities, a torus, ridges: from below, level, above, and from straight above into what is open.
+#[test]
+fn every_shape_from_all_sides() {
+    for (name, profile) in shapes::all() {
+        for elevation in [-50.0, 0.0, 25.0, 60.0, 89.5] {
+            let scene = scene_of(profile.clone(), eye(elevation, 2.2));
+            assert_same(&format!("{name} at {elevation}"), &scene, 0.0005);
+        }
+    }
+}
+
+/// A slider: the offset moves from frame to frame.
+#[test]
+fn offsets_in_motion() {
+    for (name, profile) in shapes::all() {
+        for (extend, bevel, chamfer) in [
+            (-0.02, 0.0, 1.0),
+            (0.03, 0.0, 1.0),
+            (0.0, 0.12, 1.0),
+            (0.01, 0.2, 0.4),
+        ] {
+            let mut scene = scene_of(profile.clone(), eye(20.0, 2.3));
+            scene.objects[0].offset = Offset {
+                extend,
+                bevel,
+                chamfer,
+            };
+            let name = format!("{name} with {extend} {bevel} {chamfer}");
+            assert_same(&name, &scene, 0.001);
+        }
+    }
+}
+
+/// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it; solids that the box cuts; replicas: the box draws these.
+#[test]
+fn what_a_hull_cannot_wrap() {
+    let mut all: Vec<(String, Scene)> = Vec::new();
+    for (name, profile) in [
+        ("sphere", shapes::sphere()),
+        ("glass", shapes::glass()),
+        ("torus", shapes::torus()),
+    ] {
+        for (place, at) in [
+            ("the middle", DVec3::new(0.02, 0.01, 0.5)),
+            ("the axis", DVec3::new(0.0, 0.0, 0.9)),
+            ("close to the surface", DVec3::new(0.505, 0.0, 0.5)),
+            ("the rim", DVec3::new(0.3, 0.2, 0.98)),
+        ] {
+            let mut scene = scene_of(profile.clone(), at);
+            scene.camera.target = DVec3::new(-0.3, 0.1, 0.45);
+            all.push((format!("{name} from {place}"), scene));
+        }
+    }
+    let mut cut = scene_of(shapes::vase(), eye(25.0, 2.4));
+    cut.objects[0].axis = [0.8, 0.5];
+    all.push(("cut by its box".into(), cut));
+    let mut repeated = scene_of(shapes::vase(), eye(25.0, 2.4));
+    repeated.objects[0].repeat = [2, 2, 2];
+    all.push(("replicas".into(), repeated));
+    for (name, scene) in all {
+        assert_same(&name, &scene, 0.001);
+    }
+}
+
+/// Several objects, some copied, through one another in one depth buffer: hulls beside boxes.
+#[test]
+fn a_crowd_in_one_depth_buffer() {
+    let mut crowd = Scene::new(Camera::new(
+        DVec3::new(2.6, 1.9, 1.7),
+        DVec3::new(0.0, 0.0, 0.3),
+    ));
+    for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
+        let mut object = Object::new(name, Arc::new(profile));
+        let turn = n as f64 * 0.8;
+        let place = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
+        object.placement = placement(place, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
+        if n % 3 == 1 {
+            object.instances = vec![
+                object.placement,
+                placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]),
+            ];
+        }
+        if n % 3 == 2 {
+            object.repeat = [2, 1, 1];
+        }
+        crowd.objects.push(object);
+    }
+    assert_same("crowd", &crowd, 0.001);
+}
+
+/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100 pixels.
+#[test]
+fn the_reference_is_met() {
+    for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
+        let scene = scene_of(profile, eye(25.0, 2.2));
+        for stage in STAGES {
+            let wanted = settings(Solver::Hull, stage);
+            let truth = common::reference(&scene, &wanted);
+            let options = CompareOptions {
+                texel: 1.0 / 512.0,
+                ..CompareOptions::default()
+            };
+            let found = compare(&truth, &draw(&scene, &wanted), &options).unwrap();
+            let p99 = found.depth.unwrap().p99;
+            assert!(p99 <= 0.02, "{name}, {stage:?}: p99 {p99}");
+            let wrong = found.missed + found.ghost;
+            assert!(wrong <= 2, "{name}, {stage:?}: {wrong} wrong pixels");
+        }
+    }
+}
+
+/// The comparison notices a solid that is a fiftieth larger.
+#[test]
+fn a_wrong_solid_is_noticed() {
+    let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));
+    let mut larger = scene.clone();
+    larger.objects[0].offset.extend = 0.01;
+    let quadric = draw(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
+    let hull = draw(&larger, &settings(Solver::Hull, DrawStage::Fragment));
+    let (hits, edge, far) = apart(&quadric, &hull);
+    assert!(edge + far > hits / 2, "{edge} + {far} of {hits}");
+}
+
+/// Nothing to wrap, and a sliver of a solid.
+#[test]
+fn slivers() {
+    let sliver = Profile::polygon(&[[0.0, 0.5], [0.45, 0.501], [0.0, 0.502]], 0.5).unwrap();
+    let scene = scene_of(sliver, eye(35.0, 2.0));
+    assert_same("sliver", &scene, 0.002);
+}
