@@ -25,11 +25,11 @@ pub struct CutOptions {
 }
 
 impl Default for CutOptions {
-    /// A 250th of a texel of a map of 512 rows: along grazing rays it becomes six times as much, and the 99th percentile of all
+    /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much, and the 99th percentile of all
     /// rays stays below a fiftieth.
     fn default() -> Self {
         Self {
-            tolerance: 0.004 / 512.0,
+            tolerance: 0.0035 / 512.0,
         }
     }
 }
