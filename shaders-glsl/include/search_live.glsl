@@ -17,7 +17,7 @@ float safe_step(Meridian m, float side, float s, vec2 rz, float f)
         slope = solid.offset.y * abs(m.v.z); // from within, the tangent bounds nothing: take the steepest
     }
     // Ball: the distance shrinks by at most `speed` for each unit of s.
-    float ball = f / max(speed + slope, 1e-3 * speed);
+    float ball = OFFSET == OFFSET_BEVELED ? f / max(speed + slope, 1e-3 * speed) : f * m.inverse_speed;
     // Torus: the disc of radius f about the sample, swept around the axis.
     float moment = m.a * s + m.b;
     float r = max(rz.x, 1e-6);

@@ -33,10 +33,10 @@ struct Cell {
 Cell shape_cell(vec2 rz)
 {
     vec2 size = solid.map.xy;
-    vec2 texel = vec2(rz.x, 1.0 - rz.y) / solid.map.z - 0.5;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) * solid.map.y - 0.5;
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     Cell cell;
-    cell.d = gather_map((base + 1.0) / size) * solid.map.w;
+    cell.d = gather_map((base + 1.0) * (1.0 / size)) * solid.map.w;
     // By the solid's symmetry the texel beyond the axis equals the first.
     cell.place = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
     cell.place = clamp(cell.place, vec2(0.0, -0.5), vec2(1.5));
@@ -54,7 +54,7 @@ vec2 cell_gradient(Cell cell)
 {
     float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.place.y);
     float dj = mix(cell.d.x - cell.d.w, cell.d.y - cell.d.z, cell.place.x);
-    return vec2(dr, -dj) / solid.map.z;
+    return vec2(dr, -dj) * solid.map.y;
 }
 
 vec2 papers_coordinates(vec2 rz)
