@@ -20,8 +20,9 @@
 //!
 //! # What holds
 //!
-//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are equal to the last bit.
-//! * The default search, [`Solver::Quadric`](settings::Solver::Quadric), meets the exact boundary: what it draws differs from the
+//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are equal to the last bit, but for those of
+//!   the default, which each stage finds in its own way.
+//! * The default search, [`Solver::Hull`](settings::Solver::Hull), meets the exact boundary: what it draws differs from the
 //!   [`mod@reference`] in double precision by hundredths of a texel of a map of 512 rows.
 //! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand anywhere.
 //! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is left half written.

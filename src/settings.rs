@@ -34,8 +34,8 @@ pub enum Solver {
     Cone,
     /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
-    /// The same pieces in shells of triangles, so that the rasteriser finds which a ray may meet. In the fragment stage, for objects
-    /// that it can wrap; others, and compute, are searched as by [`Quadric`](Self::Quadric).
+    /// The same pieces, found by what the stage does best: in the fragment stage the rasteriser finds them in shells of triangles, in compute
+    /// tiles of pixels are first asked as a whole. Objects for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
     Hull,
     /// The rival: nothing is searched, the same solid is tessellated and rasterised. In the fragment stage alone.
     Mesh {
