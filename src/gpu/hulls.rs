@@ -12,9 +12,6 @@ const CLEARANCE: f64 = 1e-3;
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
 pub(crate) const COMPONENTS: u32 = 4 * (10 + 2 * HULL_TESTS);
 
-/// How far a band may lie from the surface, object units: fewer triangles against fewer fragments that meet nothing.
-const GAP: f64 = 0.03;
-
 /// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
 fn is_whole(object: &Object, pieces: &[Piece]) -> bool {
     let radius = object.profile.radius;
@@ -66,7 +63,6 @@ pub(crate) fn of(
         &HullOptions {
             sides: HULL_SIDES,
             tests: HULL_TESTS,
-            gap: GAP,
             ..HullOptions::default()
         },
     );

@@ -53,12 +53,12 @@ pub struct HullOptions {
 }
 
 impl Default for HullOptions {
-    /// 24 sides, 3 pieces a cell, a gap about that of the polygons themselves.
+    /// What charted best (docs/searches.md): few triangles, at the price of fragments that meet nothing.
     fn default() -> Self {
         Self {
-            sides: 24,
-            tests: 3,
-            gap: 0.003,
+            sides: 12,
+            tests: 8,
+            gap: 0.03,
             margin: 1e-4,
         }
     }
@@ -302,8 +302,11 @@ impl Shell<'_> {
         };
         let (a, b) = (first.from, last.to);
         let outward = outward(a, b);
+        let along = (b - a).normalize_or_zero();
         let mut extent = [0.0f64; 2];
         let mut farthest = (0.0, 1);
+        // By how much a joint lies beyond the chord's ends: a rim that turns back within the gap.
+        let mut beyond = (self.options.margin, None);
         for (k, s) in spans.iter().enumerate() {
             for (height, _) in extremes(&cell[s.piece], s, a, outward) {
                 extent = [extent[0].min(height), extent[1].max(height)];
@@ -312,6 +315,17 @@ impl Shell<'_> {
             if k > 0 && height >= farthest.0 {
                 farthest = (height, k);
             }
+            let place = (s.from - a).dot(along);
+            let over = (-place).max(place - a.distance(b));
+            if k > 0 && over > beyond.0 {
+                beyond = (over, Some(k));
+            }
+        }
+        if let (_, Some(turn)) = beyond {
+            let (left, right) = spans.split_at(turn);
+            self.follow(cell, left, depth + 1, out);
+            self.follow(cell, right, depth + 1, out);
+            return;
         }
         if extent[1] - extent[0] <= self.options.gap || depth > 40 {
             out.push(self.band(&cell[first.piece], a, b, outward * extent[1]));
