@@ -89,6 +89,15 @@ impl Solver {
         matches!(self, Self::Mesh { .. })
     }
 
+    /// Most quads of a copy: of a mesh the product of its numbers, of a search none.
+    #[must_use]
+    pub const fn quads(self) -> u64 {
+        match self {
+            Self::Mesh { segments, rings } => segments as u64 * rings as u64,
+            _ => 0,
+        }
+    }
+
     /// Its name in options and results; of a mesh the first part, [`Display`](fmt::Display) gives the whole: `mesh:64x128`.
     #[must_use]
     pub const fn name(self) -> &'static str {

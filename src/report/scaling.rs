@@ -163,21 +163,13 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
                 );
             }
             for (view, &count) in copies.iter().enumerate() {
-                if quads(way.solver) * u64::from(count) <= MOST_QUADS {
+                if way.solver.quads() * u64::from(count) <= MOST_QUADS {
                     plan.add(view + 1, sized(way, STILL));
                 }
             }
         }
     }
     Ok(plan)
-}
-
-/// Of a mesh; of a search none.
-fn quads(solver: Solver) -> u64 {
-    match solver {
-        Solver::Mesh { segments, rings } => u64::from(segments) * u64::from(rings),
-        _ => 0,
-    }
 }
 
 /// `count` copies on a square field one unit wide, seen whole.
