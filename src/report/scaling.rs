@@ -335,6 +335,11 @@ fn looks(rows: &[Row]) -> Looks {
 }
 
 fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
+    let (unit, label) = match quantity {
+        Quantity::Pixels => (1e6, "pixels (millions)"),
+        Quantity::Solids => (1.0, "solids (number)"),
+        Quantity::Rows => (1.0, "rows of the map (number)"),
+    };
     let series = all
         .iter()
         .map(|g| Series {
@@ -343,7 +348,11 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             points: g
                 .points
                 .iter()
-                .map(|&(x, y)| Point { x, y, label: None })
+                .map(|&(x, y)| Point {
+                    x: x / unit,
+                    y,
+                    label: None,
+                })
                 .collect(),
             joined: false,
         })
@@ -355,7 +364,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             let ends = [g.points.first()?, g.points.last()?];
             Some(Guide {
                 name: String::new(),
-                points: ends.map(|p| (p.0, law.at(p.0))).to_vec(),
+                points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
                 color: looks.style(&g.way).color(),
                 dashed: g.way.stage == DrawStage::Compute,
             })
@@ -367,7 +376,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     };
     XyChart {
         title: format!("Time of a frame with {}", quantity.name()),
-        x: Axis::log(quantity.name()).at(ticks),
+        x: Axis::log(label).at(ticks),
         y: Axis::log("time of a frame (ms)"),
         series,
         guides,
