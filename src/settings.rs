@@ -89,6 +89,15 @@ impl Solver {
         matches!(self, Self::Mesh { .. })
     }
 
+    /// Most quads of a copy: of a mesh the product of its numbers, of a search none.
+    #[must_use]
+    pub const fn quads(self) -> u64 {
+        match self {
+            Self::Mesh { segments, rings } => segments as u64 * rings as u64,
+            _ => 0,
+        }
+    }
+
     /// Its name in options and results; of a mesh the first part, [`Display`](fmt::Display) gives the whole: `mesh:64x128`.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -205,6 +214,9 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
+    /// Pixels that an object's box covers for each band of its hull, from which on [`Solver::Hull`] draws the hull: triangles cost the same
+    /// however small they are.
+    pub hull_from: u32,
 }
 
 impl Default for Settings {
@@ -219,6 +231,7 @@ impl Default for Settings {
             map_source: None,
             map_format: MapFormat::R32,
             planes: Planes::All,
+            hull_from: 150,
         }
     }
 }

@@ -18,6 +18,7 @@ fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
         width: 320,
         height: 240,
+        hull_from: 0, // however small
         solver,
         stage,
         ..Settings::default()

@@ -30,6 +30,11 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
+    /// How many squares.
+    pub fn squares(self) -> u64 {
+        u64::from(self.high.0 - self.low.0 + 1) * u64::from(self.high.1 - self.low.1 + 1)
+    }
+
     /// The squares of as many whole groups of squares as hold it.
     pub fn padded(self) -> u32 {
         let groups = |low: u32, high: u32| (high - low + 1).next_multiple_of(GROUP_PIXELS);

@@ -1,6 +1,7 @@
 //! Hulls: what the vertex shader grows, and which objects can be drawn by theirs.
 
 use super::batch::axis_offset;
+use super::bins::{Rectangle, rectangle};
 use crate::pieces::{Hull, HullOptions, Piece, Record};
 use crate::scene::{CameraFrame, Object, Placement};
 use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
@@ -47,14 +48,22 @@ fn seen_from(object: &Object, placement: &Placement, camera: &CameraFrame) -> (D
     (eye, turn * camera.forward * placement.scale)
 }
 
-/// The hull of `object` whose boundary the pieces are, if it shows from this camera all that the box would: the eye is outside all shells,
-/// the near plane cuts none.
-pub(crate) fn of(
-    object: &Object,
-    pieces: &[Piece],
-    camera: &CameraFrame,
-    near: f64,
-) -> Option<Hull> {
+/// A frame, as far as the choice between hull and box depends on it.
+pub(crate) struct View<'a> {
+    pub camera: &'a CameraFrame,
+    pub size: (u32, u32),
+    /// Depth of the near plane.
+    pub near: f64,
+    /// As [`Settings::hull_from`](crate::settings::Settings::hull_from).
+    pub from: u32,
+}
+
+/// How many copies are looked at for what the whole batch's copies cover on the screen.
+const SAMPLES: usize = 64;
+
+/// The hull of `object` whose boundary the pieces are, if it shows from this camera all that the box would (the eye is outside all shells,
+/// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
+pub(crate) fn of(object: &Object, pieces: &[Piece], view: &View) -> Option<Hull> {
     if !is_whole(object, pieces) {
         return None;
     }
@@ -66,7 +75,17 @@ pub(crate) fn of(
             ..HullOptions::default()
         },
     );
-    let seen = |placement| is_in_front(&hull, seen_from(object, placement, camera), near);
+    let copies = object.placements();
+    let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));
+    let count = sampled.len().max(1);
+    let covered: u64 = sampled
+        .filter_map(|copy| rectangle(view.camera, view.size, 1, object.profile.radius, copy))
+        .map(Rectangle::squares)
+        .sum();
+    if covered < u64::from(view.from) * (hull.bands.len() * count) as u64 {
+        return None;
+    }
+    let seen = |copy| is_in_front(&hull, seen_from(object, copy, view.camera), view.near);
     object.placements().iter().all(seen).then_some(hull)
 }
 

@@ -184,7 +184,12 @@ impl Renderer {
         let mut bins = Bins::default();
         let mut pieces: Vec<[u32; 4]> = Vec::new();
         let mut bands = 0;
-        let near = f64::from(frame.eye[3]);
+        let view = hulls::View {
+            camera: &camera,
+            size,
+            near: f64::from(frame.eye[3]),
+            from: self.settings.hull_from,
+        };
         let limits = &self.device.limits;
         let wraps = limits.max_fragment_input_components >= hulls::COMPONENTS
             && limits.max_vertex_output_components >= hulls::COMPONENTS + 4;
@@ -236,7 +241,7 @@ impl Renderer {
             if let Some(cut) = wrapped
                 && kind == Kind::Box
                 && wraps
-                && let Some(hull) = hulls::of(object, cut, &camera, near)
+                && let Some(hull) = hulls::of(object, cut, &view)
             {
                 kind = Kind::Hull;
                 block.hull[0] = hulls::append(&hull, cut, &mut pieces) as u32;

@@ -55,8 +55,9 @@ impl Measure {
     #[must_use]
     pub fn axis(self) -> Axis {
         match self {
-            Self::Depth => Axis::log("depth error, 99th percentile (texels of 512 rows)")
-                .from(overview::LEAST_DEPTH),
+            Self::Depth => {
+                Axis::log("depth error, p99 (texels of 512 rows)").from(overview::LEAST_DEPTH)
+            }
             Self::Wrong => Axis::log("wrong pixels (% of pixels hit)").from(1e-4),
             Self::Normal => Axis::log("error of normals, rms (degrees)").from(1e-3),
             Self::Flip => Axis::log("FLIP, mean over the picture").from(1e-6),
@@ -517,7 +518,7 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
     }
     XyChart {
         title: format!("All views: {} against time", measure.name()),
-        x: Axis::log("time / time of the papers' loop in the same stage").with(1.0),
+        x: Axis::log("time / time of the papers' loop").with(1.0),
         y: measure.axis(),
         series,
         guides: vec![Guide {

@@ -70,15 +70,15 @@ pub struct Limits {
 impl Limits {
     /// The default: within two minutes.
     pub const DEFAULT: Self = Self {
-        time: Duration::from_secs(100),
-        passes: (5, 12),
+        time: Duration::from_secs(85),
+        passes: (5, 10),
         rounds: (3, 20),
         precision: 0.01,
-        warm_up: 2,
+        warm_up: 1,
     };
     /// A look: within 20 seconds.
     pub const QUICK: Self = Self {
-        time: Duration::from_secs(12),
+        time: Duration::from_secs(11),
         passes: (4, 8),
         rounds: (2, 5),
         ..Self::DEFAULT

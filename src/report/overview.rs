@@ -8,6 +8,7 @@ use super::chart::raster::raster;
 use super::chart::style::{PALE, Style};
 use super::chart::svg::svg;
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
+use super::curves::{self, Measure};
 use super::folder::{left_out, make, write_bytes, write_text};
 use super::machine::Machine;
 use super::measure::Measured;
@@ -17,7 +18,7 @@ use super::pictures::{Album, heat_key, png};
 use super::plan::{Labels, Plan, variant};
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::{CLOCKS_APART, Row};
-use super::text::{interval, percent};
+use super::text::{self, interval, percent};
 use crate::error::Result;
 use crate::settings::{DrawStage, Settings};
 use std::path::Path;
@@ -176,7 +177,7 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
     XyChart {
         title: title.to_owned(),
         x: Axis::log("time of a frame (ms)"),
-        y: Axis::log("depth error, 99th percentile (texels of 512 rows)").from(LEAST_DEPTH),
+        y: Axis::log("depth error, p99 (texels of 512 rows)").from(LEAST_DEPTH),
         series,
         guides: vec![Guide {
             name: "Pareto front".into(),
@@ -279,6 +280,22 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
         &records,
         &[0, 1],
     );
+}
+
+/// The default search against meshes, where both were measured.
+pub fn mesh_table(page: &mut Page, rows: &[Row]) {
+    let records = text::against_meshes(rows);
+    if records.is_empty() {
+        return;
+    }
+    page.chapter("Against meshes");
+    page.text(
+        "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
+         stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
+         (99th percentile) is no worse; the last column counts them. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
+         pictures without one.",
+    );
+    page.table(&text::AGAINST_MESHES, &records, &[0, 1]);
 }
 
 /// The table of all rows.
@@ -396,9 +413,19 @@ pub fn write(
         page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval; further left is faster.");
         ratio_table(&mut page, &ratios, &looks);
     }
+    mesh_table(&mut page, rows);
 
     page.chapter("Speed and error");
     let all: Vec<&Row> = rows.iter().collect();
+    if !ratios.is_empty() {
+        let figure = curves::summed(&ratios, Measure::Depth, &Settings::default());
+        keep_figure(folder, "summary", &figure)?;
+        page.figure(
+            &figure,
+            "All pictures together: the time of each search over that of the papers' loop in the same stage, and its depth error in the worst picture. Filled in the fragment stage, hollow in the \
+             compute stage; lower is more exact, further left is faster, and what lies on the dashed line is beaten by nothing in both.",
+        );
+    }
     for group in pictures_of(&all) {
         let Some(first) = group.first() else { continue };
         let size = format!("{}x{}", first.settings.width, first.settings.height);
@@ -415,7 +442,7 @@ pub fn write(
         page.figure(
             &figure,
             "Each marker is a search, filled in the fragment stage and hollow in the compute stage; lower is more exact, further left is faster, and what lies on the dashed \
-             line is beaten by nothing in both.",
+             line is beaten by nothing in both. Depth errors are the 99th percentile over the pixels hit, in texels of a map of 512 rows.",
         );
     }
     page.chapter("Times");

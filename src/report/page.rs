@@ -76,7 +76,7 @@ impl Page {
 
     /// A paragraph.
     pub fn text(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<p>{}</p>", escape(text));
+        let _ = writeln!(self.body, "<p>{}</p>", words(text));
     }
 
     /// A paragraph that must not be overlooked.
@@ -130,7 +130,7 @@ impl Page {
             "<figure>{}<figcaption><b>Figure {}.</b> {}</figcaption></figure>",
             svg(figure),
             self.figures,
-            escape(caption)
+            words(caption)
         );
     }
 
@@ -193,6 +193,21 @@ impl Page {
             self.body
         )
     }
+}
+
+/// Text for a page; what stands between backticks is code.
+fn words(text: &str) -> String {
+    let mut out = String::new();
+    for (i, part) in text.split('`').enumerate() {
+        if i > 0 {
+            out.push_str(if i % 2 == 1 { "<code>" } else { "</code>" });
+        }
+        out.push_str(&escape(part));
+    }
+    if text.matches('`').count() % 2 == 1 {
+        out.push_str("</code>");
+    }
+    out
 }
 
 /// Bytes as base64 (RFC 4648, section 4).

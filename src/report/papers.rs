@@ -1,7 +1,9 @@
 //! The papers' tables of frame rates (article of 2022, tables 1 to 3), measured again here, each search beside the print.
 
+use super::chart::Figure;
 use super::chart::axis::Axis;
-use super::chart::xy::{Point, Series, XyChart};
+use super::chart::style::PALE;
+use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
 use super::machine::Machine;
 use super::measure::Measured;
@@ -306,22 +308,14 @@ pub fn write(
         page.text("Frames per second; the print, and below it every search as measured here.");
         page.table(&header, &records, &[0, 1, 2, 7]);
         for size in SIZES {
-            let figure = chart(table, rows, index, size, &looks);
-            if figure.1 == 0 {
-                continue;
+            let name = format!("table{}-{}x{}", table.number, size.0, size.1);
+            for scale in [Scaled::Rate, Scaled::Trend] {
+                let Some(figure) = chart(table, index, rows, size, &looks, scale) else {
+                    continue;
+                };
+                keep_figure(folder, &format!("{name}-{}", scale.name()), &figure)?;
+                page.figure(&figure, &scale.caption(table.letter));
             }
-            keep_figure(
-                folder,
-                &format!("table{}-{}x{}", table.number, size.0, size.1),
-                &figure.0,
-            )?;
-            page.figure(
-                &figure.0,
-                &format!(
-                    "Each line is a search in one stage, filled for fragment and hollow for compute: its rate over its own rate at the smallest {}, so that lines that rise get faster.",
-                    table.letter
-                ),
-            );
         }
     }
     page.chapter("All rows");
@@ -331,61 +325,94 @@ pub fn write(
     write_text(&folder.join("report.html"), &page.html())
 }
 
-/// Rates over the first of each line, and how many lines there are.
+/// How a chart of a table shows rates.
+#[derive(Clone, Copy)]
+enum Scaled {
+    /// As frames per second, beside the print's.
+    Rate,
+    /// Over the first of each line: what can be compared with the print.
+    Trend,
+}
+
+impl Scaled {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Rate => "rates",
+            Self::Trend => "trend",
+        }
+    }
+
+    fn caption(self, letter: char) -> String {
+        match self {
+            Self::Rate => format!(
+                "Frames per second as {letter} grows; each line is a search in one stage, filled for fragment and hollow for compute. The dashed line is the print, a GeForce GT 630M on a solid that it \
+                 does not name: how high it lies against ours says something of that device and that picture, nothing of the searches."
+            ),
+            Self::Trend => format!(
+                "The same rates, each over its own at the smallest {letter}: lines that rise get faster. This is what can be compared with the print, the dashed line."
+            ),
+        }
+    }
+}
+
+/// A table as a chart; `None` where nothing of it was measured at this size.
 fn chart(
     table: &Printed,
-    rows: &[Row],
     index: usize,
+    rows: &[Row],
     size: (u32, u32),
     looks: &Looks,
-) -> (super::chart::Figure, usize) {
+    scale: Scaled,
+) -> Option<Figure> {
+    let over = |rates: [Option<f64>; 3]| -> Option<Vec<(f64, f64)>> {
+        let unit = match scale {
+            Scaled::Rate => 1.0,
+            Scaled::Trend => rates[0]?,
+        };
+        let points = table.values.iter().zip(rates);
+        Some(
+            points
+                .filter_map(|(x, rate)| Some((*x, rate? / unit)))
+                .collect(),
+        )
+    };
     let mut series = Vec::new();
     for line in lines(rows, index).iter().filter(|l| l.size == size) {
-        let Some(first) = line.rows[0].and_then(|r| r.time()) else {
+        let rates = line
+            .rows
+            .map(|row| Some(1e3 / row.and_then(|r| r.time())?.value));
+        let Some(points) = over(rates).filter(|p| !p.is_empty()) else {
             continue;
         };
-        let points = line
-            .rows
-            .iter()
-            .zip(table.values)
-            .filter_map(|(row, value)| {
-                let time = row.and_then(|r| r.time())?;
-                Some(Point {
-                    x: value,
-                    y: first.value / time.value,
-                    label: None,
-                })
-            });
+        let point = |(x, y)| Point { x, y, label: None };
         series.push(Series {
             name: looks.name(&line.way),
             style: looks.style(&line.way),
-            points: points.collect(),
+            points: points.into_iter().map(point).collect(),
             joined: true,
         });
     }
-    let count = series.len();
-    let print = SIZES
-        .iter()
-        .position(|s| *s == size)
-        .map(|k| table.rates[k]);
-    let guides = print
-        .map(|rates| super::chart::xy::Guide {
-            name: "print".into(),
-            points: table
-                .values
-                .iter()
-                .zip(rates)
-                .map(|(v, r)| (*v, r / rates[0]))
-                .collect(),
-            color: super::chart::style::PALE,
-            dashed: true,
-        })
-        .into_iter()
-        .collect();
-    let unit = if table.letter == 'c' {
-        "depth to which the bevel reaches"
-    } else {
-        "fraction of the map's largest distance"
+    let place = SIZES.iter().position(|s| *s == size)?;
+    if series.is_empty() {
+        return None;
+    }
+    let print = over(table.rates[place].map(Some))?;
+    let y = match scale {
+        // The print has to be in sight.
+        Scaled::Rate => table.rates[place]
+            .iter()
+            .fold(Axis::log("frames per second"), |axis, rate| {
+                axis.with(*rate)
+            }),
+        Scaled::Trend => print
+            .iter()
+            .fold(Axis::linear("rate / rate at the first value"), |a, p| {
+                a.with(p.1)
+            }),
+    };
+    let unit = match table.letter {
+        'c' => "share of the depth",
+        _ => "of the largest distance",
     };
     let figure = XyChart {
         title: format!(
@@ -393,12 +420,16 @@ fn chart(
             table.number, table.title, size.0, size.1
         ),
         x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
-        y: Axis::linear("rate / rate at the first value").with(1.0),
+        y,
         series,
-        guides,
-    }
-    .figure();
-    (figure, count)
+        guides: vec![Guide {
+            name: "print, GeForce GT 630M".into(),
+            points: print,
+            color: PALE,
+            dashed: true,
+        }],
+    };
+    Some(figure.figure())
 }
 
 #[cfg(all(test, feature = "scene-file"))]

@@ -30,6 +30,10 @@ pub const MOST_STEPS: f64 = 128.0;
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
+/// Of more views than this heat maps of the first alone are shown, and of each view a smaller picture.
+const MANY_VIEWS: usize = 12;
+/// Pictures of many views are at most this wide.
+const NARROW: u32 = 200;
 
 /// Collects pictures while a plan is measured, and writes each in full into a folder.
 pub struct Album {
@@ -81,35 +85,50 @@ impl Album {
         let stage = *self.stage.get_or_insert(settings.stage);
         if !self.shown.contains(&view) {
             self.shown.push(view);
-            self.keep(
-                view,
-                name,
-                &plain(seen.truth),
-                format!("{name}: the reference"),
-            )?;
+            let widest = if seen.plan.views.len() > MANY_VIEWS {
+                NARROW
+            } else {
+                WIDEST
+            };
+            let caption = format!("{name}: the reference");
+            self.keep((view, widest), name, &plain(seen.truth), caption)?;
         }
         let place = self.shown.iter().position(|v| *v == view).unwrap_or(0);
-        if settings.stage != stage || place >= HEATED_VIEWS || !(self.worth)(settings) {
+        let heated = if seen.plan.views.len() > MANY_VIEWS {
+            1
+        } else {
+            HEATED_VIEWS
+        };
+        if settings.stage != stage || place >= heated || !(self.worth)(settings) {
             return Ok(());
         }
         let way = self.labels.way(settings);
         let file = format!("{name}-{way}");
-        self.keep(
-            view,
-            &format!("{file}-steps"),
-            &steps(seen.frame),
-            format!("{way}: look-ups in each pixel"),
-        )?;
+        // A mesh makes no look-ups.
+        if !settings.solver.is_mesh() {
+            self.keep(
+                (view, WIDEST),
+                &format!("{file}-steps"),
+                &steps(seen.frame),
+                format!("{way}: look-ups in each pixel"),
+            )?;
+        }
         let depth = heat_map(seen.truth, seen.frame, seen.options, Heat::Depth)?;
         self.keep(
-            view,
+            (view, WIDEST),
             &format!("{file}-depth"),
             &depth,
             format!("{way}: error of depth"),
         )
     }
 
-    fn keep(&mut self, view: usize, name: &str, picture: &Picture, caption: String) -> Result<()> {
+    fn keep(
+        &mut self,
+        (view, widest): (usize, u32),
+        name: &str,
+        picture: &Picture,
+        caption: String,
+    ) -> Result<()> {
         let safe: String = name
             .chars()
             .map(|c| {
@@ -121,7 +140,7 @@ impl Album {
             })
             .collect();
         write_bytes(&self.folder.join(format!("{safe}.png")), &png(picture)?)?;
-        let small = reduced(picture, picture.width.div_ceil(WIDEST).max(1));
+        let small = reduced(picture, picture.width.div_ceil(widest).max(1));
         self.shots.push(Shot {
             view,
             caption,

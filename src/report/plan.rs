@@ -62,6 +62,7 @@ impl Axes {
                                         map_source,
                                         map_format,
                                         planes: Planes::Color,
+                                        ..Settings::default()
                                     });
                                 }
                             }
@@ -127,11 +128,11 @@ impl Plan {
         }
     }
 
-    /// Adds, for every view and size that is measured in the fragment stage, the rival: [`MESHES`].
-    pub fn add_meshes(&mut self) {
+    /// Adds, for every view and size that is measured in the fragment stage, the rival in these segments and rings.
+    pub fn add_meshes(&mut self, meshes: &[(u32, u32)]) {
         for case in self.cases.clone() {
             if case.settings.stage == DrawStage::Fragment {
-                for (segments, rings) in MESHES {
+                for &(segments, rings) in meshes {
                     let solver = Solver::Mesh { segments, rings };
                     self.add(case.view, plain(&case.settings, solver));
                 }
@@ -176,8 +177,25 @@ pub fn together(a: &Case, b: &Case) -> bool {
     key(a) == key(b)
 }
 
-/// The tessellations that are measured where none is named, segments and rings.
-pub const MESHES: [(u32, u32); 2] = [(64, 128), (128, 256)];
+/// The searches that a benchmark takes where none is named: those that somebody may want to choose between. Equal steps are left to the whole
+/// sweep: they cost two to five times as much as the rest and are beaten in time and error at once.
+pub const USUAL: [Solver; 5] = [
+    Solver::Circle,
+    Solver::Cone,
+    Solver::Live,
+    Solver::Quadric,
+    Solver::Hull,
+];
+
+/// The searches of a look: the papers' loop is there anyhow.
+pub const FEW: [Solver; 3] = [Solver::Live, Solver::Quadric, Solver::Hull];
+
+/// The tessellations that are measured where none is named, segments and rings: one that a game would take, and finer ones up to the errors of
+/// exact pieces. Each is a quarter as wrong as the one before.
+pub const MESHES: [(u32, u32); 3] = [(128, 256), (256, 512), (512, 1024)];
+
+/// The tessellations of the whole sweep.
+pub const ALL_MESHES: [(u32, u32); 5] = [(32, 64), (64, 128), (128, 256), (256, 512), (512, 1024)];
 
 /// `solver` at the stage and size of `settings`, all else as drawing takes it.
 #[must_use]

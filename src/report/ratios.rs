@@ -1,11 +1,11 @@
-//! Times in proportion to a rival's, over all views: the table that says which search is faster, and how sure that is.
+//! Times in proportion to a rival's, over all views: the tables that say which search is faster, and how sure that is.
 
 use super::plan::{is_papers_loop, variant};
 use super::row::Row;
 use super::stats::{self, Interval};
-use crate::settings::{DrawStage, Settings};
+use crate::settings::{DrawStage, Settings, Solver};
 
-/// One way of drawing against the loop of the papers in the same stage.
+/// One way of drawing against a rival: the loop of the papers in the same stage, or a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratio {
     /// The way, without its size.
@@ -28,6 +28,70 @@ pub struct Ratio {
 /// nothing, and neither do pictures of which the rival has no usable row.
 #[must_use]
 pub fn over_papers_loop(rows: &[Row]) -> Vec<Ratio> {
+    let pairs = |way: &Settings| of_way(rows, way, |row| papers_row(rows, row));
+    ways(rows).iter().filter_map(pairs).collect()
+}
+
+/// The default search against meshes, over the pictures of which both have a usable row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Duel {
+    /// The default search in one stage, its errors those in these pictures.
+    pub ours: Ratio,
+    /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth, pictures without one left out.
+    pub mesh: Option<Solver>,
+    /// The worst 99th percentile of the mesh's depth error.
+    pub mesh_p99: Option<f64>,
+    /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of equals.
+    pub no_worse: usize,
+}
+
+/// The time of the default search, in each stage, over that of meshes in the fragment stage: of each mesh, then of the coarsest that errs
+/// no more.
+#[must_use]
+pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
+    let all = ways(rows);
+    let meshes = || all.iter().map(|w| w.solver).filter(|s| s.is_mesh());
+    let ours = all.iter().filter(|w| w.solver == Solver::DEFAULT);
+    ours.flat_map(|way| {
+        let rivals = meshes().map(Some).chain(meshes().next().map(|_| None));
+        rivals.filter_map(|mesh| duel(rows, way, mesh))
+    })
+    .collect()
+}
+
+fn duel(rows: &[Row], way: &Settings, mesh: Option<Solver>) -> Option<Duel> {
+    let rival = |row: &Row| {
+        rows.iter()
+            .filter(|r| r.settings.solver.is_mesh() && same_picture(r, row) && r.time().is_some())
+            .filter(|r| match mesh {
+                Some(mesh) => r.settings.solver == mesh,
+                None => errs_no_more(r, row),
+            })
+            .min_by_key(|r| r.settings.solver.quads())
+    };
+    let ours = of_way(rows, way, rival)?;
+    let own = rows.iter().filter(|r| variant(&r.settings) == *way);
+    let pairs: Vec<(&Row, &Row)> = own
+        .filter(|r| r.time().is_some())
+        .filter_map(|r| Some((rival(r)?, r)))
+        .collect();
+    let depths = pairs.iter().filter_map(|(m, _)| m.errors.depth);
+    Some(Duel {
+        ours,
+        mesh,
+        mesh_p99: depths.map(|d| d.p99).reduce(f64::max),
+        no_worse: pairs.iter().filter(|(m, r)| errs_no_more(m, r)).count(),
+    })
+}
+
+/// Whether the depth error of `mesh` (99th percentile) is no more than that of `row`.
+fn errs_no_more(mesh: &Row, row: &Row) -> bool {
+    let p99 = |r: &Row| r.errors.depth.map(|d| d.p99);
+    p99(mesh).zip(p99(row)).is_some_and(|(a, b)| a <= b)
+}
+
+/// The ways of drawing, in the order in which they first appear.
+fn ways(rows: &[Row]) -> Vec<Settings> {
     let mut ways: Vec<Settings> = Vec::new();
     for row in rows {
         let way = variant(&row.settings);
@@ -35,16 +99,21 @@ pub fn over_papers_loop(rows: &[Row]) -> Vec<Ratio> {
             ways.push(way);
         }
     }
-    ways.iter().filter_map(|way| of_way(rows, way)).collect()
+    ways
 }
 
-fn of_way(rows: &[Row], way: &Settings) -> Option<Ratio> {
+/// A way over the rival that `rival` gives for each of its rows.
+fn of_way<'a>(
+    rows: &'a [Row],
+    way: &Settings,
+    rival: impl Fn(&Row) -> Option<&'a Row>,
+) -> Option<Ratio> {
     let mut pairs: Vec<(&Row, &Row)> = Vec::new();
     for row in rows
         .iter()
         .filter(|r| variant(&r.settings) == *way && r.time().is_some())
     {
-        pairs.extend(rival(rows, row).map(|rival| (row, rival)));
+        pairs.extend(rival(row).map(|rival| (row, rival)));
     }
     let first = pairs.first()?;
     let passes = first.0.passes.len();
@@ -84,7 +153,7 @@ fn of_way(rows: &[Row], way: &Settings) -> Option<Ratio> {
 }
 
 /// The papers' loop that shows the same picture in the same stage. The reference is held against the fragment stage.
-fn rival<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
+fn papers_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     let stage = match row.settings.stage {
         DrawStage::Reference => DrawStage::Fragment,
         other => other,
@@ -96,6 +165,12 @@ fn rival<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
                 == (row.settings.width, row.settings.height, stage)
             && r.time().is_some()
     })
+}
+
+/// Whether two rows show the same view at the same size.
+fn same_picture(a: &Row, b: &Row) -> bool {
+    let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
+    key(a) == key(b)
 }
 
 /// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot be trusted.
@@ -196,5 +271,48 @@ mod tests {
         }
         let time = over_papers_loop(&rows)[0].time;
         assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
+    }
+
+    /// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is not.
+    #[test]
+    fn the_default_search_is_held_against_meshes() {
+        let depth = |p99| {
+            Some(crate::frame::Spread {
+                rms: p99,
+                p99,
+                max: p99,
+            })
+        };
+        let timed = |solver, ms: f64, p99| {
+            let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+            row.settings.solver = solver;
+            row.errors.depth = depth(p99);
+            row
+        };
+        let mesh = |n| Solver::mesh(n, 2 * n).unwrap();
+        let rows = [
+            timed(Solver::DEFAULT, 9.0, 0.01),
+            timed(mesh(64), 6.0, 0.5),
+            timed(mesh(512), 36.0, 0.009),
+            timed(mesh(256), 18.0, 0.01),
+        ];
+        let duels = over_meshes(&rows);
+        let told: Vec<_> = duels
+            .iter()
+            .map(|d| (d.mesh, (d.ours.time.value * 100.0).round(), d.no_worse))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (Some(mesh(64)), 150.0, 0),
+                (Some(mesh(512)), 25.0, 1),
+                (Some(mesh(256)), 50.0, 1),
+                (None, 50.0, 1)
+            ]
+        );
+        assert_eq!(duels[0].mesh_p99, Some(0.5));
+        // Without a mesh that errs no more there is no such ratio, and without the default search none at all.
+        assert_eq!(over_meshes(&rows[..2]).len(), 1);
+        assert!(over_meshes(&rows[1..]).is_empty());
     }
 }

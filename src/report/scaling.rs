@@ -163,21 +163,13 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
                 );
             }
             for (view, &count) in copies.iter().enumerate() {
-                if quads(way.solver) * u64::from(count) <= MOST_QUADS {
+                if way.solver.quads() * u64::from(count) <= MOST_QUADS {
                     plan.add(view + 1, sized(way, STILL));
                 }
             }
         }
     }
     Ok(plan)
-}
-
-/// Of a mesh; of a search none.
-fn quads(solver: Solver) -> u64 {
-    match solver {
-        Solver::Mesh { segments, rings } => u64::from(segments) * u64::from(rings),
-        _ => 0,
-    }
 }
 
 /// `count` copies on a square field one unit wide, seen whole.
@@ -343,6 +335,11 @@ fn looks(rows: &[Row]) -> Looks {
 }
 
 fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
+    let (unit, label) = match quantity {
+        Quantity::Pixels => (1e6, "pixels (millions)"),
+        Quantity::Solids => (1.0, "solids (number)"),
+        Quantity::Rows => (1.0, "rows of the map (number)"),
+    };
     let series = all
         .iter()
         .map(|g| Series {
@@ -351,7 +348,11 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             points: g
                 .points
                 .iter()
-                .map(|&(x, y)| Point { x, y, label: None })
+                .map(|&(x, y)| Point {
+                    x: x / unit,
+                    y,
+                    label: None,
+                })
                 .collect(),
             joined: false,
         })
@@ -363,7 +364,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             let ends = [g.points.first()?, g.points.last()?];
             Some(Guide {
                 name: String::new(),
-                points: ends.map(|p| (p.0, law.at(p.0))).to_vec(),
+                points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
                 color: looks.style(&g.way).color(),
                 dashed: g.way.stage == DrawStage::Compute,
             })
@@ -375,7 +376,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     };
     XyChart {
         title: format!("Time of a frame with {}", quantity.name()),
-        x: Axis::log(quantity.name()).at(ticks),
+        x: Axis::log(label).at(ticks),
         y: Axis::log("time of a frame (ms)"),
         series,
         guides,

@@ -181,11 +181,11 @@ pub fn has_rows(solver: Solver) -> bool {
     solver == Solver::Cone
 }
 
-/// Maps are swept with the papers' search and with the default one, or with what is named in place of both: the others read the same
-/// maps in the same way. A search without a loop over distances reads none.
+/// Maps are swept with the papers' search and with `live`, the most exact of those that read them, or with what is named in place of both: the
+/// others read the same maps in the same way. The default reads none.
 fn sweeps_maps(solver: Solver, all: &[Solver]) -> bool {
-    let usual = [Solver::Circle, Solver::DEFAULT];
-    has_budget(solver) && (usual.contains(&solver) || !all.iter().any(|s| usual.contains(s)))
+    let usual = [Solver::Circle, Solver::Live];
+    solver.reads_map() && (usual.contains(&solver) || !all.iter().any(|s| usual.contains(s)))
 }
 
 /// A budget with which what is wrong is the map's fault rather than the search's.

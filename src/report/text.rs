@@ -2,7 +2,7 @@
 
 use super::names::{number, stage};
 use super::plan::{Labels, PAPERS_LOOP};
-use super::ratios::over_papers_loop;
+use super::ratios::{Duel, over_meshes, over_papers_loop};
 use super::row::Row;
 use super::stats::Interval;
 
@@ -78,20 +78,11 @@ pub fn ratios(rows: &[Row]) -> String {
         .to_vec(),
     ];
     for ratio in over_papers_loop(rows) {
-        let ends = if ratio.time.high.is_finite() {
-            format!(
-                "{} to {}",
-                number(ratio.time.low, 3),
-                number(ratio.time.high, 3)
-            )
-        } else {
-            "unknown".to_owned()
-        };
         lines.push(vec![
             labels.way(&ratio.settings),
             stage(ratio.settings.stage).to_owned(),
             number(ratio.time.value, 3),
-            ends,
+            ends(&ratio.time),
             format!(
                 "{} to {}",
                 number(ratio.range.0, 3),
@@ -105,4 +96,63 @@ pub fn ratios(rows: &[Row]) -> String {
         return format!("no ratios: no usable row of the {PAPERS_LOOP}\n");
     }
     table(&lines)
+}
+
+/// An interval's ends.
+fn ends(i: &Interval) -> String {
+    if i.high.is_finite() {
+        format!("{} to {}", number(i.low, 3), number(i.high, 3))
+    } else {
+        "unknown".to_owned()
+    }
+}
+
+/// Columns of the table of the default search against meshes.
+pub const AGAINST_MESHES: [&str; 9] = [
+    "search / mesh",
+    "stage",
+    "time / mesh",
+    "95 % interval",
+    "single pictures",
+    "pictures",
+    "depth p99 (texels)",
+    "the mesh's",
+    "mesh no worse in",
+];
+
+/// Its records: the default search in each stage over each mesh, then over the coarsest that is no worse; none without both.
+#[must_use]
+pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
+    let texels = |p: Option<f64>| p.map(|p| number(p, 3)).unwrap_or_default();
+    let record = |duel: Duel| {
+        let ours = &duel.ours;
+        let mesh = duel
+            .mesh
+            .map_or("coarsest no worse".into(), |m| m.to_string());
+        vec![
+            format!("{} / {mesh}", ours.settings.solver),
+            stage(ours.settings.stage).to_owned(),
+            number(ours.time.value, 3),
+            ends(&ours.time),
+            format!("{} to {}", number(ours.range.0, 3), number(ours.range.1, 3)),
+            ours.pictures.to_string(),
+            texels(ours.depth_p99),
+            texels(duel.mesh_p99),
+            duel.no_worse.to_string(),
+        ]
+    };
+    over_meshes(rows).into_iter().map(record).collect()
+}
+
+/// Both tables: over the papers' loop, and over meshes where there are any.
+#[must_use]
+pub fn both(rows: &[Row]) -> String {
+    let mut out = ratios(rows);
+    let against = against_meshes(rows);
+    if !against.is_empty() {
+        let header = AGAINST_MESHES.map(str::to_owned).to_vec();
+        out.push('\n');
+        out += &table(&[vec![header], against].concat());
+    }
+    out
 }

@@ -10,7 +10,7 @@ use revmap::gpu::Device;
 use revmap::report::machine::Machine;
 use revmap::report::measure::{Limits, Measured, Watch, measure};
 use revmap::report::pictures::Album;
-use revmap::report::plan::{Axes, Labels, Plan, is_papers_loop};
+use revmap::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
 use revmap::report::scaling::Ranges;
 use revmap::report::suite::Extent;
 use revmap::report::{DeviceBench, against, folder, overview, papers, scaling, text};
@@ -25,7 +25,7 @@ pub struct Bench {
     /// A look within 20 seconds: one solid unless scenes are named
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// The whole suite from three elevations at two sizes: takes half an hour on two cores
+    /// The whole suite from three elevations at two sizes, every search, five meshes: takes more than half an hour on two cores
     #[arg(long)]
     full: bool,
     /// The papers' tables: extended, beveled and chamfered solids at their two sizes, our rates beside theirs
@@ -65,30 +65,42 @@ impl Bench {
         } else {
             (Limits::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
         };
+        let (solvers, meshes): (&[Solver], &[(u32, u32)]) = if self.quick {
+            (&plan::FEW, &plan::MESHES[..1])
+        } else if self.full {
+            (&Solver::ALL, &plan::ALL_MESHES)
+        } else {
+            (&plan::USUAL, &plan::MESHES)
+        };
         let views = self.lists.views(extent, elevations)?;
-        let mut plan = Plan::new(views, &self.axes(sizes).combinations());
+        let axes = self.axes(sizes, solvers);
+        let mut plan = Plan::new(views, &axes.combinations());
         if self.lists.solver.is_empty() {
-            plan.add_meshes();
+            plan.add_meshes(meshes);
         }
         plan.add_papers_loop();
         let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(&plan, &limits, |_| true)?;
+        let (measured, album) = session.measure(&plan, &self.lists.limits(&limits), |_| true)?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
-        print(&text::ratios(&measured.rows));
+        print(&text::both(&measured.rows));
         session.finish(&measured)
     }
 
-    fn axes(&self, sizes: &[(u32, u32)]) -> Axes {
+    fn axes(&self, sizes: &[(u32, u32)], solvers: &[Solver]) -> Axes {
         self.lists.axes(&Axes {
             sizes: sizes.to_vec(),
+            solvers: solvers.to_vec(),
             ..Axes::default()
         })
     }
 
     /// The papers' tables. The solid is one that the program carries: the papers do not name theirs.
     fn tables(&self) -> Result<()> {
-        let mut plan = Plan::new(papers::views()?, &self.axes(&papers::SIZES).combinations());
+        let mut plan = Plan::new(
+            papers::views()?,
+            &self.axes(&papers::SIZES, &plan::USUAL).combinations(),
+        );
         plan.add_papers_loop();
         plan.mixed = true;
         let limits = if self.quick {
@@ -97,7 +109,8 @@ impl Bench {
             Limits::CHART
         };
         let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(&plan, &limits, is_papers_loop)?;
+        let (measured, album) =
+            session.measure(&plan, &self.lists.limits(&limits), is_papers_loop)?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
@@ -105,7 +118,7 @@ impl Bench {
     }
 
     fn scaling(&self) -> Result<()> {
-        let mut axes = self.axes(&[]);
+        let mut axes = self.axes(&[], &plan::USUAL);
         if self.lists.solver.is_empty() {
             let rival = scaling::MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
             axes.solvers.extend(rival);
@@ -117,7 +130,7 @@ impl Bench {
         };
         let plan = scaling::plan(&axes.stages, &axes.solvers, ranges)?;
         let session = Session::open(&self.lists)?;
-        let (measured, _) = session.measure(&plan, &limits, |_| false)?;
+        let (measured, _) = session.measure(&plan, &self.lists.limits(&limits), |_| false)?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));

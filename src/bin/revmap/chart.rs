@@ -74,7 +74,7 @@ impl Chart {
         };
         plan.add_papers_loop();
         let session = Session::open(lists)?;
-        let (measured, album) = session.measure(&plan, &limits, worth_a_picture)?;
+        let (measured, album) = session.measure(&plan, &lists.limits(&limits), worth_a_picture)?;
         let alone = if measured.interrupted {
             Vec::new()
         } else {
@@ -95,7 +95,7 @@ impl Chart {
             &alone,
         )?;
         let summary: PathBuf = session.out.join("charts").join("summary-depth-error.png");
-        for line in text::ratios(&measured.rows).lines() {
+        for line in text::both(&measured.rows).lines() {
             output::result(line);
         }
         output::result(&summary.display().to_string());

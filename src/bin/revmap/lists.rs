@@ -4,12 +4,20 @@ use super::options::{FORMATS, SOURCES, STAGES, SolverParser, name_of, named, siz
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
+use revmap::report::measure::Limits;
 use revmap::report::plan::Axes;
 use revmap::report::suite::{self, Extent};
 use revmap::report::view::View;
 use revmap::scene::file;
 use revmap::settings::{DrawStage, Solver};
 use std::path::PathBuf;
+
+/// Names of parts of the suite.
+const EXTENTS: [(&str, Extent); 3] = [
+    ("one", Extent::One),
+    ("three", Extent::Three),
+    ("all", Extent::All),
+];
 
 /// What to measure; lists are separated by commas
 #[derive(Args, Clone, Debug)]
@@ -23,7 +31,7 @@ pub struct Lists {
     /// Where rays are traced [default: fragment,compute]
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<DrawStage>,
-    /// The searches [default: all]
+    /// The searches, meshes among them [default: those worth choosing between; all with --full]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = SolverParser)]
     pub solver: Vec<Solver>,
     /// Bounds on the searches' steps [default: each solver's own]
@@ -41,6 +49,15 @@ pub struct Lists {
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
+    /// How many of the solids that the program carries: one, three or all eight [default: three; one with --quick, all with --full]
+    #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
+    pub suite: Option<Extent>,
+    /// Passes over all pictures, each with everything made anew: intervals are Student's over them [default: as time allows, at least 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=100))]
+    pub passes: Option<u16>,
+    /// Frames of each row in a pass [default: as time allows, at least 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub rounds: Option<u16>,
     /// Any key of the scenes, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", requires = "scenes")]
     pub set: Vec<String>,
@@ -75,6 +92,17 @@ impl Lists {
         }
     }
 
+    /// How often, as named; what is not comes from `base`.
+    pub fn limits(&self, base: &Limits) -> Limits {
+        let exactly =
+            |given: Option<u16>, other| given.map_or(other, |n| (usize::from(n), usize::from(n)));
+        Limits {
+            passes: exactly(self.passes, base.passes),
+            rounds: exactly(self.rounds, base.rounds),
+            ..*base
+        }
+    }
+
     /// The scenes named, or the suite's; from each elevation named, or `elevations` of the suite.
     ///
     /// # Errors
@@ -86,7 +114,7 @@ impl Lists {
             } else {
                 &self.elevation
             };
-            return suite::views(extent, given);
+            return suite::views(self.suite.unwrap_or(extent), given);
         }
         let mut views = Vec::new();
         for file in &self.scenes {

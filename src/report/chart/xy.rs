@@ -449,7 +449,7 @@ mod tests {
         XyChart {
             title: "A title that is long enough to need more than one line, since it says a great deal about what is shown below".into(),
             x: Axis::log("time of a frame (ms)"),
-            y: Axis::log("depth error, 99th percentile (texels)").from(1e-3),
+            y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
             series: (0..9).map(series).collect(),
             guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dashed: true }],
         }
