@@ -91,6 +91,7 @@ impl Drawing {
             map_source: self.map_source,
             map_format: self.map_format,
             planes,
+            ..Settings::default()
         }
     }
 }
