@@ -185,3 +185,34 @@ fn slivers() {
     let scene = scene_of(sliver, eye(35.0, 2.0));
     assert_same("sliver", &scene, 0.002);
 }
+
+/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known worst.
+#[test]
+fn faces_of_the_box_itself() {
+    let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]];
+    for (distance, flat) in [(5.0, 1.0), (100.0, 1.0), (20.0, 0.05), (100.0, 0.05)] {
+        let mut scene = scene_of(
+            Profile::polygon(&cylinder, 0.5).unwrap(),
+            eye(45.0, distance),
+        );
+        scene.camera.fov_y = 2.0 * (0.6f64 / distance).atan().to_degrees();
+        scene.camera.target = DVec3::new(0.0, 0.0, 0.5 * flat);
+        scene.objects[0].placement.scale = DVec3::new(1.0, 1.0, flat);
+        let truth = common::reference(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
+        for (solver, stage) in [
+            (Solver::Quadric, DrawStage::Fragment),
+            (Solver::Hull, DrawStage::Fragment),
+            (Solver::Hull, DrawStage::Compute),
+        ] {
+            let frame = draw(&scene, &settings(solver, stage));
+            let found = compare(&truth, &frame, &CompareOptions::default()).unwrap();
+            let wrong = found.missed + found.ghost;
+            assert!(found.hits > 5000, "only {} pixels are hit", found.hits);
+            assert!(
+                wrong <= found.hits / 500,
+                "{distance} away, scale {flat}: {solver}, {stage:?}: {wrong} of {} wrong",
+                found.hits
+            );
+        }
+    }
+}

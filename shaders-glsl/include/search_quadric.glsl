@@ -48,7 +48,8 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
-    float slack = 4e-6 * m.inverse_speed;
+    // The start is known to a few roundings of the distance from the eye: a face of the box that is the solid's own must not be passed there.
+    float slack = 4e-6 * m.inverse_speed + 4e-7 * m.t_start;
     const int top = 3;
     int level = BEAM != 0u ? 1 : top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);

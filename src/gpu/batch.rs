@@ -257,7 +257,9 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> (f64, f64) {
     let mut low = f64::INFINITY;
     let mut high: f64 = 0.0;
     for object in &scene.objects {
-        let half = DVec3::new(object.profile.radius, object.profile.radius, 0.5);
+        // Corners of hulls stand out a little.
+        let radius = 1.04 * object.profile.radius + 0.002;
+        let half = DVec3::new(radius, radius, 0.502);
         for p in object.placements() {
             let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));
             let depth = (middle - camera.eye).dot(camera.forward);

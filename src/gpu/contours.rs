@@ -120,10 +120,7 @@ fn index(n: usize) -> u32 {
 /// The layout of `piece_tables.glsl`.
 fn append_pieces(pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> Placed {
     let tables = Tables::new(pieces, PIECE_ROWS);
-    let largest = tables
-        .nodes
-        .iter()
-        .fold(f32::MIN_POSITIVE, |m, n| m.max(n[1]));
+    let largest = tables.nodes.iter().fold(1e-6f32, |m, n| m.max(n[1]));
     // A little more than what 16 bits hold, so that roundings of the product stay inside.
     let unit = largest * (1.0 + 1e-6) / 65535.0;
     let words: Vec<u32> = tables

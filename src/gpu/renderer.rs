@@ -206,7 +206,7 @@ impl Renderer {
         let searches = Searches::new(&self.contours, scene, &self.settings, &mut self.notes)?;
         // All maps before the first set of textures is written: shadows read those of other objects.
         for (number, object) in scene.objects.iter().enumerate() {
-            if searches.solver(number) != asked {
+            if searches.solver(number) != asked || scene.shadow == Shadow::Soft {
                 let (device, commands) = (&self.device, &self.commands);
                 self.textures
                     .demand_map(device, commands, object, &self.settings)?;
@@ -231,8 +231,12 @@ impl Renderer {
             };
             batch.hull_indices = None;
             batch.beam = None;
-            variant.depth_test = u32::from(number > 0);
-            variant.depth_keep = u32::from(number + 1 < count);
+            batch.groups = None;
+            batch.bins = 0..0;
+            if kind == Kind::Compute {
+                variant.depth_test = u32::from(number > 0);
+                variant.depth_keep = u32::from(number + 1 < count);
+            }
             let table = searches.table(number);
             let wrapped = match solver {
                 Solver::Hull => table.and_then(Table::pieces),

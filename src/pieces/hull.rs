@@ -29,7 +29,7 @@
 //!
 //! # Growing it in a vertex shader
 //!
-//! Draw `6 n` vertices for each band, without buffers. Of vertex `v`: `band = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
+//! `6 n` corners for each band (a vertex shader makes the `2 n` different ones from their number, an index buffer repeats them). Of corner `v`: `band = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
 //! `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth
 //! `2 pi s / n`. Counter-clockwise is front. [`Band::corner`] is the same on the CPU.
 
