@@ -21,7 +21,7 @@ void main()
     // Rays are counted from a depth near the solid, or r^2 would cancel.
     float base = dot(point_to_world(i, vec3(0.0, 0.0, 0.5)) - frame.eye.xyz, frame.forward.xyz);
     hand_over(i, gl_InstanceIndex, base);
-    for (uint k = 0u; k < HULL_TESTS; ++k) {
+    for (uint k = 0u; k < TESTS; ++k) {
         hull_quadric[k] = uintBitsToFloat(piece_tables[at + 1u + 2u * k]);
         hull_guard[k] = uintBitsToFloat(piece_tables[at + 2u + 2u * k]);
     }

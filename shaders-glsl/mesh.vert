@@ -5,7 +5,7 @@
 
 layout(location = 0) in vec3 position; // object units about the axis
 layout(location = 1) in vec2 normal;   // (r, z) in the half-plane
-layout(location = 10) out vec4 surface; // x, y; normal
+layout(location = 11) out vec4 surface; // x, y; normal
 
 void main()
 {

@@ -3,10 +3,10 @@
 #define BOX_VARYINGS_GLSL
 #include "varyings.glsl"
 
-layout(location = 10) flat VARYING vec4 box_bounds;
-layout(location = 11) flat VARYING vec4 box_map;
-layout(location = 12) flat VARYING vec4 box_offset;
-layout(location = 13) flat VARYING uvec4 box_pieces;
-layout(location = 14) flat VARYING vec4 box_axis;
+layout(location = 11) flat VARYING vec4 box_bounds;
+layout(location = 12) flat VARYING vec4 box_map;
+layout(location = 13) flat VARYING vec4 box_offset;
+layout(location = 14) flat VARYING uvec4 box_pieces;
+layout(location = 15) flat VARYING vec4 box_axis;
 
 #endif

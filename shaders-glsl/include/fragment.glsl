@@ -21,7 +21,19 @@ PixelRays varying_rays()
 
 Look varying_look()
 {
-    return Look(look_scale_shininess, look_albedo_strength, look_ambient, look_towards, look_color);
+    Look look;
+    look.scale_shininess = look_scale_shininess;
+    look.albedo_strength = look_albedo_strength;
+    look.ambient = look_ambient;
+    if (LIGHTS > 0u) {
+        look.lights[0].towards.xyz = look_light_0.xyz;
+        look.lights[0].color.rgb = vec3(look_light_0.w, look_colors.xy);
+    }
+    if (LIGHTS > 1u) {
+        look.lights[1].towards.xyz = look_light_1.xyz;
+        look.lights[1].color.rgb = vec3(look_light_1.w, look_colors.zw);
+    }
+    return look;
 }
 
 Shaded shade_fragment(uvec2 pixel, Hit hit)

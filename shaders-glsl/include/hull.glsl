@@ -20,7 +20,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     m.c = dot(m.o.xy, m.o.xy);
     float best = 3e38;
     vec4 quadric = vec4(0.0);
-    for (uint k = 0u; k < HULL_TESTS; ++k) {
+    for (uint k = 0u; k < TESTS; ++k) {
         vec4 guard = hull_guard[k];
         float root = entering_root(m, hull_quadric[k], 1.0);
         float z = m.o.z + root * m.v.z;
@@ -35,7 +35,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     hit.normal = quadric_normal(m, best, quadric);
     hit.point = m.o + best * v;
     hit.sense = vec3(1.0);
-    hit.steps = HULL_TESTS;
+    hit.steps = TESTS;
     hit.exhausted = false;
     return best < 2e38;
 }

@@ -3,7 +3,7 @@
 #define HULL_VARYINGS_GLSL
 #include "varyings.glsl"
 
-layout(location = 10) flat VARYING vec4 hull_quadric[HULL_TESTS];
-layout(location = 18) flat VARYING vec4 hull_guard[HULL_TESTS];
+layout(location = 11) flat VARYING vec4 hull_quadric[HULL_TESTS];
+layout(location = 19) flat VARYING vec4 hull_guard[HULL_TESTS];
 
 #endif

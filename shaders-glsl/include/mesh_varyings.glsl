@@ -3,7 +3,7 @@
 #define MESH_VARYINGS_GLSL
 #include "fragment.glsl"
 
-layout(location = 10) in vec4 surface; // x, y about the axis; normal (r, z)
+layout(location = 11) in vec4 surface; // x, y about the axis; normal (r, z)
 
 // `point` is dead code where nothing textured is drawn; as a varying it would be interpolated all the same.
 Hit mesh_hit(uvec2 pixel)
@@ -13,7 +13,7 @@ Hit mesh_hit(uvec2 pixel)
     Hit hit;
     hit.t = 1.0 / gl_FragCoord.w;
     float inverse_r = inversesqrt(max(dot(surface.xy, surface.xy), 1e-30));
-    hit.normal = normalize(vec3(surface.xy * (inverse_r * surface.z), surface.w));
+    hit.normal = vec3(surface.xy * (inverse_r * surface.z), surface.w);
     hit.point = rays.eye + hit.t * ray_direction(rays, pixel);
     hit.sense = vec3(1.0);
     hit.steps = 0u;

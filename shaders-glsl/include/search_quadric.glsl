@@ -113,11 +113,11 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     return best < 2e38 ? FOUND : LEFT;
 }
 
-// Unit outward normal in object space.
+// Outward normal in object space, of any length.
 vec3 quadric_normal(Meridian m, float s, vec4 q)
 {
     vec3 p = m.o + s * m.v;
-    return normalize(vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z));
+    return vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z);
 }
 
 #endif

@@ -14,12 +14,21 @@ struct Shaded {
     float distance; // along the ray, world units
 };
 
-// Of one light, in the turned space.
-vec3 blinn_phong(Look look, vec3 towards, vec3 color, vec3 n, vec3 view, vec3 albedo)
+// One root and one division, where `normalize` is a root and three: software drivers take it at its word.
+vec3 unit(vec3 v)
 {
-    float highlight = pow(max(dot(n, normalize(towards + view)), 0.0), look.scale_shininess.w);
-    vec3 light = color * (albedo * dot(n, towards) + look.albedo_strength.w * highlight);
-    return dot(n, towards) > 0.0 ? light : vec3(0.0);
+    return v * inversesqrt(dot(v, v));
+}
+
+// Of one light, in the turned space.
+vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
+{
+    vec3 middle = light.towards.xyz + view;
+    float aligned = dot(n, middle) * inversesqrt(max(dot(middle, middle), 1e-20));
+    float highlight = pow(max(aligned, 0.0), look.scale_shininess.w);
+    float facing = dot(n, light.towards.xyz);
+    vec3 reflected = light.color.rgb * (albedo * facing + look.albedo_strength.w * highlight);
+    return facing > 0.0 ? reflected : vec3(0.0);
 }
 
 Shaded shade(Instance i, Look look, PixelRays rays, uvec2 pixel, Hit hit)
@@ -28,22 +37,25 @@ Shaded shade(Instance i, Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 scale = look.scale_shininess.xyz;
     vec3 v = ray_direction(rays, pixel);
     vec3 dir = v * scale;
-    float len = length(dir);
-    vec3 view = dir / -len;
-    vec3 turned = normalize(hit.normal / scale);
-    s.distance = hit.t * len;
+    float square = dot(dir, dir);
+    float inverse_length = inversesqrt(square);
+    vec3 view = dir * -inverse_length;
+    // The normal over the scale, times the product of all three.
+    vec3 turned = unit(hit.normal * (scale.yzx * scale.zxy));
+    s.distance = hit.t * (square * inverse_length);
     s.normal = rotate(i.rotation, turned);
 
     // In the replica's own space: reflected and shrunk to its cell.
     vec3 count = vec3(solid.cells.xyz);
-    vec3 n = CELLS == 0u ? hit.normal : normalize(hit.normal * hit.sense / count);
+    vec3 n = unit(CELLS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
     s.albedo = look.albedo_strength.rgb;
     vec3 shaded = turned;
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
-        vec3 right = footprint(v, rays.dir_x, hit.normal, hit.t);
-        vec3 down = footprint(v, rays.dir_y, hit.normal, hit.t);
+        vec3 normal = unit(hit.normal);
+        vec3 right = footprint(v, rays.dir_x, normal, hit.t);
+        vec3 down = footprint(v, rays.dir_y, normal, hit.t);
         if (CELLS != 0u) {
             right *= hit.sense * count;
             down *= hit.sense * count;
@@ -62,9 +74,14 @@ Shaded shade(Instance i, Look look, PixelRays rays, uvec2 pixel, Hit hit)
     s.shading_normal = rotate(i.rotation, lit);
     vec3 color = s.albedo * look.ambient;
     for (uint n = 0u; n < LIGHTS; ++n) {
-        bool first = n == 0u;
-        vec3 towards = first ? look.towards : rotate(conjugate(i.rotation), frame.lights[n].towards.xyz);
-        vec3 light = blinn_phong(look, towards, first ? look.color : frame.lights[n].color.rgb, lit, view, s.albedo);
+        Light source;
+        if (n < LOOK_LIGHTS) {
+            source = look.lights[min(n, LOOK_LIGHTS - 1u)];
+        } else {
+            source = light_seen(i, n);
+        }
+        vec3 towards = source.towards.xyz;
+        vec3 light = blinn_phong(look, source, lit, view, s.albedo);
         if (SHADOW != SHADOW_OFF && light != vec3(0.0)) {
             // A shadow's ray starts a texel off the surface, or it would meet the surface itself.
             float lift = 1.5 * solid.map.z * length(scale);

@@ -18,6 +18,7 @@ layout(constant_id = 11) const uint SINGLE = 0u;    // 1: the batch is one insta
 layout(constant_id = 12) const uint BEAM = 0u;      // 1: tiles and where their rays begin and end come from beam.comp
 layout(constant_id = 13) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 14) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
+layout(constant_id = 15) const uint TESTS = 8u;     // pieces of the hull's largest cell, at most HULL_TESTS
 
 const uint SOLVER_CIRCLE = 0u; // the papers' loop
 const uint SOLVER_LIVE = 1u;   // conservative steps and a last secant, on the map alone
@@ -54,6 +55,7 @@ const uint SHADOW_SOFT = 2u;
 const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
 
 const uint MAX_LIGHTS = 8u;
+const uint LOOK_LIGHTS = 2u; // whose colours and ways vertices hand to fragments; others are read there
 const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
 const uint PIECE_ROWS = 256u; // of a solid's tables: a power of 4
 const uint PIECE_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4

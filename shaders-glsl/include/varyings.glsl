@@ -16,7 +16,8 @@ layout(location = 4) flat VARYING vec4 ray_dir_y;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;
 layout(location = 7) flat VARYING vec3 look_ambient;
-layout(location = 8) flat VARYING vec3 look_towards;
-layout(location = 9) flat VARYING vec3 look_color;
+layout(location = 8) flat VARYING vec4 look_light_0; // towards it; red of its colour
+layout(location = 9) flat VARYING vec4 look_light_1; // the same
+layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both
 
 #endif

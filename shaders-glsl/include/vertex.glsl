@@ -16,8 +16,14 @@ void hand_over(Instance i, uint index, float base)
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
     look_ambient = look.ambient;
-    look_towards = look.towards;
-    look_color = look.color;
+    if (LIGHTS > 0u) {
+        look_light_0 = vec4(look.lights[0].towards.xyz, look.lights[0].color.r);
+        look_colors = look.lights[0].color.gbgb;
+    }
+    if (LIGHTS > 1u) {
+        look_light_1 = vec4(look.lights[1].towards.xyz, look.lights[1].color.r);
+        look_colors.zw = look.lights[1].color.gb;
+    }
 }
 
 #endif

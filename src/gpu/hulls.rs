@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 const CLEARANCE: f64 = 1e-3;
 
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
-pub(crate) const COMPONENTS: u32 = 4 * (10 + 2 * HULL_TESTS);
+pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * HULL_TESTS);
 
 /// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
 fn is_whole(object: &Object, pieces: &[Piece]) -> bool {

@@ -248,6 +248,7 @@ impl Renderer {
                 && let Some(hull) = hulls::of(object, cut, &view)
             {
                 kind = Kind::Hull;
+                variant.tests = hull.tests();
                 block.hull[0] = hulls::append(&hull, cut, &mut pieces) as u32;
                 batch.hull_indices = Some(6 * HULL_SIDES * hull.bands.len() as u32);
                 bands = bands.max(hull.bands.len());

@@ -132,11 +132,12 @@ impl Hull {
         let mut first = 0;
         while first < pieces.len() {
             let chain = pieces[first].chain;
-            let end = (first + most).min(pieces.len());
-            let mut count = 1;
-            while first + count < end && pieces[first + count].chain == chain {
-                count += 1;
-            }
+            let left = pieces[first..]
+                .iter()
+                .take_while(|p| p.chain == chain)
+                .count();
+            // Cells of a chain as even as can be: the largest decides what every fragment tests.
+            let count = left.div_ceil(left.div_ceil(most));
             let cell = &pieces[first..first + count];
             let points = Shell { options, widen }.of(cell);
             hull.push(&points, first, count);
@@ -169,6 +170,12 @@ impl Hull {
         // Flat sides lie nearer to the axis than their corners.
         extent[0] *= (std::f64::consts::PI / f64::from(self.sides)).cos();
         self.extents.push(extent);
+    }
+
+    /// Pieces of the largest cell.
+    #[must_use]
+    pub fn tests(&self) -> u32 {
+        self.bands.iter().map(|b| b.count).max().unwrap_or(0)
     }
 
     /// Vertices of the whole draw.

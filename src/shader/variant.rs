@@ -38,6 +38,8 @@ pub struct Variant {
     pub depth_test: u32,
     /// 0 where nothing will be drawn after.
     pub depth_keep: u32,
+    /// Pieces of a hull's largest cell.
+    pub tests: u32,
 }
 
 impl Variant {
@@ -93,6 +95,7 @@ impl Variant {
             beam: 0,
             depth_test: 1,
             depth_keep: 1,
+            tests: g::HULL_TESTS,
             shadow: match scene.shadow {
                 Shadow::Off => g::SHADOW_OFF,
                 Shadow::Hard => g::SHADOW_HARD,
@@ -103,7 +106,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 15] {
+    pub fn constants(&self) -> [(u32, u32); 16] {
         [
             (g::SOLVER_ID, self.solver),
             (g::MAP_FORMAT_ID, self.map_format),
@@ -120,6 +123,7 @@ impl Variant {
             (g::BEAM_ID, self.beam),
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
+            (g::TESTS_ID, self.tests),
         ]
     }
 }
