@@ -8,52 +8,62 @@
 #define SEARCH_LIVE_GLSL
 #include "surface.glsl"
 
+// What does not change along a ray.
+struct Way {
+    float speed2;  // of the ray in space, squared
+    float speed;
+    float j2;      // J^2: the ray's acceleration in the half-plane is J^2 / r^3
+    float nearest; // to the axis
+};
+
 // The largest step from s that cannot pass the surface; `f` is side * F there.
-float safe_step(Meridian m, float side, float s, vec2 rz, float f)
+float safe_step(Meridian m, Way way, float side, float s, vec2 rz, float f)
 {
-    float speed = 1.0 / m.inverse_speed;
-    float slope = offset_slope(rz.y) * m.v.z; // dw/ds
-    if (OFFSET == OFFSET_BEVELED && side < 0.0) {
-        slope = solid.offset.y * abs(m.v.z); // from within, the tangent bounds nothing: take the steepest
-    }
-    // Ball: the distance shrinks by at most `speed` for each unit of s.
-    float ball = OFFSET == OFFSET_BEVELED ? f / max(speed + slope, 1e-3 * speed) : f * m.inverse_speed;
-    // Torus: the disc of radius f about the sample, swept around the axis.
     float moment = m.a * s + m.b;
     float r = max(rz.x, 1e-6);
-    float sigma = sqrt(moment * moment / (r * r) + m.v.z * m.v.z);
-    float j2 = max(m.a * m.c - m.b * m.b, 0.0);
-    float nearest = moment >= 0.0 ? r : sqrt(j2 / max(m.a, 1e-20));
-    float closest = max(nearest, r - f);
-    float kappa = j2 / max(closest * closest * closest, 1e-12);
-    float rate = sigma + slope;
+    float closest = max(moment >= 0.0 ? r : way.nearest, r - f);
+    float kappa = way.j2 / max(closest * closest * closest, 1e-12);
+    // The ray's speed in the half-plane, squared.
+    float sigma2 = max(way.speed2 - way.j2 / (r * r), m.v.z * m.v.z);
+    if (OFFSET != OFFSET_BEVELED) {
+        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the sample, swept around the axis.
+        return f * max(m.inverse_speed, inversesqrt(max(sigma2 + kappa * f, 1e-12 * way.speed2)));
+    }
+    // From within, the tangent to w bounds nothing: take the steepest.
+    float slope = side < 0.0 ? solid.offset.y * abs(m.v.z) : offset_slope(rz.y) * m.v.z; // dw/ds
+    float ball = f / max(way.speed + slope, 1e-3 * way.speed);
+    float rate = sqrt(sigma2) + slope;
     float root = rate + sqrt(max(rate * rate, 0.0) + 2.0 * kappa * f);
-    float torus = root > 1e-6 * speed ? 2.0 * f / root : ball;
+    float torus = root > 1e-6 * way.speed ? 2.0 * f / root : ball;
     return max(ball, torus);
 }
 
 uint search_live(Meridian m, float side, float f, float t_pixel, inout float s, inout uint steps)
 {
+    Way way;
+    way.speed2 = dot(m.v, m.v);
+    way.speed = way.speed2 * m.inverse_speed;
+    way.j2 = max(m.a * m.c - m.b * m.b, 0.0);
+    way.nearest = sqrt(way.j2 / max(m.a, 1e-20));
     // A quarter of a texel, or a tenth of a pixel where texels are smaller.
     float least = max(0.25 * solid.map.z * m.inverse_speed, 0.1 * t_pixel);
-    for (uint i = 1u; i < MAX_STEPS; ++i) {
-        float step_ = max(safe_step(m, side, s, point_rz(m, s), f), least);
-        float next = s + step_;
-        bool last = next >= m.s_end;
-        next = min(next, m.s_end);
-        float f_next = side * field(point_rz(m, next));
+    vec2 rz = point_rz(m, s);
+    // The last step: where it began, and F at both of its ends.
+    float before = s;
+    float f_before = f;
+    for (uint i = 1u; i < MAX_STEPS && (i == 1u || (f > 0.0 && s < m.s_end)); ++i) {
+        before = s;
+        f_before = f;
+        s = min(s + max(safe_step(m, way, side, s, rz, f), least), m.s_end);
+        rz = point_rz(m, s);
+        f = side * field(rz);
         ++steps;
-        if (f_next <= 0.0) {
-            s = mix(s, next, f / max(f - f_next, 1e-30));
-            return FOUND;
-        }
-        s = next;
-        f = f_next;
-        if (last) {
-            return LEFT;
-        }
     }
-    return f < solid.map.z ? NEARLY : EXHAUSTED;
+    if (f <= 0.0) {
+        s = mix(before, s, f_before / max(f_before - f, 1e-30));
+        return FOUND;
+    }
+    return s >= m.s_end ? LEFT : (f < solid.map.z ? NEARLY : EXHAUSTED);
 }
 
 #endif
