@@ -26,6 +26,8 @@ mod fit;
 pub mod hull;
 mod offset;
 pub mod rows;
+mod shell;
+mod sight;
 mod smooth;
 mod tree;
 pub mod walk;

@@ -1,0 +1,176 @@
+//! Which parts of a cavity an eye may look into.
+//!
+//! # Tubes
+//!
+//! Pieces that have nothing but emptiness between themselves and the axis, one after the other along their chain, line a **tube**
+//! `r < f(z)`, whatever `f` is: level faces between them close its jumps, so a ray that is in the tube at one height and at another is in it at all
+//! heights between, or it meets the solid. A tube is closed at an end where its chain ends on the axis.
+//!
+//! # What is hidden
+//!
+//! A ray that first meets the solid at a point `p` of a tube's lining, from an eye outside the tube, was in the tube at all heights from `p` to
+//! the end of the tube that it came in by; that end is open, and the eye is beyond it. In particular it passed the disc within each **rim**
+//! `(r_o, z_o)` on its way. Seen from the eye at `(R, z_e)` such a disc, thrown onto the height `z` of `p`, has its middle at distance
+//! `R |z_o - z| / |z_e - z_o|` beyond the axis and the radius `r_o |z_e - z| / |z_e - z_o|`; where the circle of radius `r` at that height
+//! lies wholly outside it, or around it, `p` is hidden. Both bounds are linear in `z`: it is enough to look at a cell's ends.
+
+use super::Piece;
+use glam::DVec2;
+use std::ops::Range;
+
+/// By how much discs are widened and points moved towards what may be seen, object units.
+const MARGIN: f64 = 1e-4;
+
+/// The lining of one tube.
+#[derive(Clone, Debug, PartialEq)]
+struct Tube {
+    /// From where to where, `z`.
+    z: [f64; 2],
+    /// Its largest `r`.
+    r: f64,
+    /// Whether it ends on the axis: at its lower end, at its upper.
+    closed: [bool; 2],
+    /// Ends of its pieces.
+    rims: Vec<DVec2>,
+}
+
+/// A cell within a tube's lining.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    tube: usize,
+    z: [f64; 2],
+    r: [f64; 2],
+}
+
+/// What is known of a hull's cells once and for all.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Sight {
+    tubes: Vec<Tube>,
+    /// One a cell; none outside of tubes.
+    cells: Vec<Option<Place>>,
+}
+
+impl Sight {
+    /// Of pieces in the order of their chains, dealt out to `cells`.
+    pub fn new(pieces: &[Piece], cells: &[Range<usize>]) -> Self {
+        let mut sight = Self::default();
+        let mut runs = Vec::new();
+        let mut at = 0;
+        while at < pieces.len() {
+            let run = run_from(pieces, at);
+            at = run.end.max(at + 1);
+            if !run.is_empty() {
+                sight.tubes.push(Tube::of(&pieces[run.clone()]));
+                runs.push(run);
+            }
+        }
+        let place = |cell: &Range<usize>| {
+            let within = |run: &Range<usize>| run.start <= cell.start && cell.end <= run.end;
+            let tube = runs.iter().position(within)?;
+            let [r, z] = extent(&pieces[cell.clone()]);
+            Some(Place { tube, z, r })
+        };
+        sight.cells = cells.iter().map(place).collect();
+        sight
+    }
+
+    /// Whether no ray from an eye at `(r, z)` can first meet the solid in a cell.
+    pub fn hides(&self, cell: usize, eye: DVec2) -> bool {
+        let Some(place) = self.cells[cell] else {
+            return false;
+        };
+        let tube = &self.tubes[place.tube];
+        let level = eye.y >= tube.z[0] - MARGIN && eye.y <= tube.z[1] + MARGIN;
+        if level && eye.x <= tube.r + MARGIN {
+            return false;
+        }
+        let from_above = !tube.closed[1] && eye.y > tube.z[1];
+        let from_below = !tube.closed[0] && eye.y < tube.z[0];
+        match (from_above, from_below) {
+            (true, _) => tube.rims.iter().any(|rim| place.behind(*rim, eye, 1.0)),
+            (_, true) => tube.rims.iter().any(|rim| place.behind(*rim, eye, -1.0)),
+            _ => true,
+        }
+    }
+}
+
+impl Tube {
+    fn of(lining: &[Piece]) -> Self {
+        let [r, z] = extent(lining);
+        let on_axis = |p: Option<DVec2>| p.is_some_and(|p| p.x == 0.0);
+        let start = lining.first().map(|p| p.start);
+        let end = lining.last().map(|p| p.end);
+        Self {
+            z,
+            r: r[1],
+            // With the solid on its left the lining of a tube is followed downwards.
+            closed: [on_axis(end), on_axis(start)],
+            rims: start
+                .into_iter()
+                .chain(lining.iter().map(|p| p.end))
+                .collect(),
+        }
+    }
+}
+
+impl Place {
+    /// Whether the disc within `rim` shows nothing of the cell to an eye above (`up` 1) or below (-1) both.
+    fn behind(&self, rim: DVec2, eye: DVec2, up: f64) -> bool {
+        let ends = [up * self.z[0], up * self.z[1]];
+        let (z_o, z_e) = (up * rim.y, up * eye.y);
+        let height = z_e - z_o;
+        if height <= MARGIN || ends[0].max(ends[1]) > z_o {
+            return false;
+        }
+        let bounds = ends.map(|z| {
+            let middle = eye.x * (z_o - z) / height;
+            let radius = (rim.x + MARGIN) * (z_e - z) / height;
+            [middle - radius, middle + radius]
+        });
+        let beyond = self.r[1] + MARGIN < bounds[0][0].min(bounds[1][0]);
+        let around = self.r[0] - MARGIN > bounds[0][1].max(bounds[1][1]);
+        beyond || around
+    }
+}
+
+/// Least and largest `r`, then `z`.
+fn extent(pieces: &[Piece]) -> [[f64; 2]; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let join = |[low, high]: [f64; 2], with: [f64; 2]| [low.min(with[0]), high.max(with[1])];
+    pieces
+        .iter()
+        .fold([none; 2], |[r, z], p| [join(r, p.r), join(z, p.z)])
+}
+
+/// The lining that begins at piece `at`: empty where none does.
+fn run_from(pieces: &[Piece], at: usize) -> Range<usize> {
+    let chain = pieces[at].chain;
+    let joins = |p: &Piece| p.chain == chain && (p.is_plane() || is_exposed(pieces, p));
+    let end = at + pieces[at..].iter().take_while(|p| joins(p)).count();
+    let mut run = at..end;
+    // A level face at an end belongs to it where it closes the tube.
+    while run.start < run.end && pieces[run.start].is_plane() && pieces[run.start].start.x != 0.0 {
+        run.start += 1;
+    }
+    while run.start < run.end && pieces[run.end - 1].is_plane() && pieces[run.end - 1].end.x != 0.0
+    {
+        run.end -= 1;
+    }
+    let lines = pieces[run.clone()].iter().any(|p| !p.is_plane());
+    if lines { run } else { end..end }
+}
+
+/// Whether nothing lies between a piece and the axis. Pieces do not cross: who is nearer at one height is at all that both have.
+fn is_exposed(pieces: &[Piece], piece: &Piece) -> bool {
+    if piece.quadric[0] >= 0.0 {
+        return false;
+    }
+    let nearer = |other: &Piece| {
+        let (low, high) = (piece.z[0].max(other.z[0]), piece.z[1].min(other.z[1]));
+        let middle = 0.5 * (low + high);
+        high - low > 1e-9
+            && !other.is_plane()
+            && other.square_at(middle) < piece.square_at(middle) - 1e-12
+    };
+    !pieces.iter().any(nearer)
+}
