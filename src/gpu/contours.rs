@@ -157,23 +157,24 @@ pub(crate) struct Searches {
     /// The table of each object; none where its contour does not close, or a map is searched.
     tables: Vec<Option<Table>>,
     asked: Solver,
+    notes: Vec<String>,
 }
 
 impl Searches {
-    /// `contours` are empty, or one for each object. What is done in another way is told in `notes`, once.
+    /// `contours` are empty, or one for each object.
     ///
     /// # Errors
     /// Where the search asked for cannot draw an object, and another must be asked for.
-    pub fn new(
-        contours: &[Contours],
-        scene: &Scene,
-        settings: &Settings,
-        notes: &mut Vec<String>,
-    ) -> Result<Self> {
+    pub fn new(contours: &[Contours], scene: &Scene, settings: &Settings) -> Result<Self> {
         let asked = settings.solver;
         let mut tables = Vec::new();
+        let mut notes = Vec::new();
         if asked.is_mesh() {
-            return Ok(Self { tables, asked });
+            return Ok(Self {
+                tables,
+                asked,
+                notes,
+            });
         }
         for (number, (contours, object)) in contours.iter().zip(&scene.objects).enumerate() {
             let found = contours.contour(&object.offset);
@@ -186,16 +187,13 @@ impl Searches {
                 continue;
             }
             if let Err(error) = &found {
-                let note = format!(
+                notes.push(format!(
                     "object.{number} ({}) is drawn by the search {} in place of {}: {}",
                     object.name,
                     FALLBACK.name(),
                     asked.name(),
                     error.message
-                );
-                if !notes.contains(&note) {
-                    notes.push(note);
-                }
+                ));
             }
             let table = |contour| Table::Pieces(cut(&contour, &contours.options));
             tables.push(found.ok().map(table));
@@ -204,7 +202,16 @@ impl Searches {
         if scene.shadow != Shadow::Off && tables.iter().any(Option::is_none) {
             tables.clear();
         }
-        Ok(Self { tables, asked })
+        Ok(Self {
+            tables,
+            asked,
+            notes,
+        })
+    }
+
+    /// What is done in another way than asked for.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// The search of object `number`.

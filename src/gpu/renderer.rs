@@ -10,7 +10,7 @@ use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::hulls;
 use super::memory::Buffer;
-use super::meshes::Meshes;
+use super::meshes::{Meshes, Planned};
 use super::pipelines::{Kind, Pipelines};
 use super::target::Target;
 use super::textures::Textures;
@@ -63,7 +63,18 @@ pub struct Renderer {
     clock: Clock,
     settings: Settings,
     background: [f32; 4],
+    /// From the first thing that an update changes to the last: what one that failed in between has left must not be drawn.
+    stale: bool,
     device: Arc<Shared>,
+}
+
+/// What an update needs and can find out without changing anything.
+struct Plan {
+    camera: CameraFrame,
+    frame: FrameBlock,
+    searches: Searches,
+    /// One an object, where meshes are drawn.
+    meshes: Vec<Planned>,
 }
 
 /// One draw or dispatch: instances that share shape, look and variant.
@@ -157,6 +168,7 @@ impl Renderer {
             commands,
             settings: *settings,
             background: scene.background,
+            stale: true,
             device,
         };
         renderer.update(scene)?;
@@ -167,8 +179,19 @@ impl Renderer {
     /// No map is computed again, but for a solid whose contour no longer closes under its offset ([`Renderer::notes`]).
     ///
     /// # Errors
-    /// Of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
+    /// Of the scene's values ([`Stage::Scene`]), and of objects or instances other than those the renderer was made with
+    /// ([`Stage::Draw`]): what was drawn before can be drawn on. Of baking a map ([`Stage::Map`]) and of Vulkan ([`Stage::Draw`]):
+    /// nothing is drawn before an update succeeds.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
+        let plan = self.plan(scene)?;
+        self.stale = true;
+        self.apply(scene, plan)?;
+        self.stale = false;
+        Ok(())
+    }
+
+    /// Finds all that can be found wrong with a scene before anything is changed for it.
+    fn plan(&self, scene: &Scene) -> Result<Plan> {
         if scene.objects.len() != self.batches.len() {
             return Err(Error::new(
                 Stage::Draw,
@@ -176,10 +199,56 @@ impl Renderer {
             ));
         }
         scene.check()?;
-        self.background = scene.background;
         let size = (self.settings.width, self.settings.height);
         let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
         let frame = frame_block(scene, &camera, size)?;
+        if scene.shadow != Shadow::Off {
+            self.check_shadows()?;
+        }
+        let searches = Searches::new(&self.contours, scene, &self.settings)?;
+        for (number, (batch, object)) in self.batches.iter().zip(&scene.objects).enumerate() {
+            let settings = Settings {
+                solver: searches.solver(number),
+                ..self.settings
+            };
+            check_format(number, object, &settings)?;
+            self.textures.shape(object, &self.settings)?;
+            if object.placements().len() != batch.instances.len() {
+                return Err(Error::new(
+                    Stage::Draw,
+                    format!(
+                        "{} has other instances than the renderer was made with; make a new one",
+                        object.name
+                    ),
+                ));
+            }
+        }
+        let meshes = match &self.meshes {
+            Some(meshes) => meshes.plan(scene, &self.contours)?,
+            None => Vec::new(),
+        };
+        Ok(Plan {
+            camera,
+            frame,
+            searches,
+            meshes,
+        })
+    }
+
+    fn apply(&mut self, scene: &Scene, plan: Plan) -> Result<()> {
+        let Plan {
+            camera,
+            frame,
+            searches,
+            meshes: planned,
+        } = plan;
+        let size = (self.settings.width, self.settings.height);
+        self.background = scene.background;
+        for note in searches.notes() {
+            if !self.notes.contains(note) {
+                self.notes.push(note.clone());
+            }
+        }
         write(&mut self.frame_buffer, 0, &frame)?;
         let mut bins = Bins::default();
         let mut pieces: Vec<[u32; 4]> = Vec::new();
@@ -197,13 +266,11 @@ impl Renderer {
         let mut shadows: ShadowBlock = bytemuck::Zeroable::zeroed();
         let casts = scene.shadow != Shadow::Off;
         if casts {
-            self.check_shadows()?;
             shadows.shadow_batches[0] = u32::try_from(self.batches.len()).unwrap_or(0);
         }
         let count = self.batches.len();
         let mut tiles = Vec::new();
         let asked = self.settings.solver;
-        let searches = Searches::new(&self.contours, scene, &self.settings, &mut self.notes)?;
         // All maps before the first set of textures is written: shadows read those of other objects.
         for (number, object) in scene.objects.iter().enumerate() {
             if searches.solver(number) != asked || scene.shadow == Shadow::Soft {
@@ -218,7 +285,6 @@ impl Renderer {
                 solver,
                 ..self.settings
             };
-            check_format(number, object, &settings)?;
             let mut variant = Variant::new(&settings, scene, object);
             variant.single = u32::from(batch.instances.len() == 1);
             let (shape, facts) = self.textures.shape(object, &self.settings)?;
@@ -281,11 +347,10 @@ impl Renderer {
                 tiles.push((number, rectangle.padded()));
             }
             let mut near_first = Vec::new();
-            if let Some(meshes) = &mut self.meshes {
-                let contours = &self.contours[number];
+            if let (Some(meshes), Some(planned)) = (&mut self.meshes, planned.get(number)) {
                 let both_sides;
                 (near_first, both_sides) =
-                    meshes.update(number, scene, contours, &camera, &self.commands)?;
+                    meshes.update(number, object, planned, &camera, &self.commands)?;
                 kind = Kind::Mesh { both_sides };
             }
             batch.pipeline = self.pipelines.get(variant, kind)?;
@@ -297,15 +362,6 @@ impl Renderer {
                 [] => object.placements(),
                 sorted => sorted,
             };
-            if all.len() != batch.instances.len() {
-                return Err(Error::new(
-                    Stage::Draw,
-                    format!(
-                        "{} has other instances than the renderer was made with; make a new one",
-                        object.name
-                    ),
-                ));
-            }
             let at = 48 * batch.instances.start as usize;
             let bytes = self.instance_buffer.mapped()?;
             for (target, placement) in bytes[at..].chunks_exact_mut(48).zip(all) {
@@ -352,16 +408,16 @@ impl Renderer {
             &self.piece_buffer,
         );
         self.descriptors.target(&self.target, &self.bin_buffer);
-        let recorded = &self.commands;
-        recorded.record(|cmd| self.record(cmd))
+        Ok(())
     }
 
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]).
+    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
     pub fn draw(&mut self) -> Result<Times> {
-        // What was read back in between has recorded something else.
+        self.check_whole()?;
+        // Buffers may have been replaced, and what was uploaded or read back has recorded something else.
         self.commands.record(|cmd| self.record(cmd))?;
         let start = Instant::now();
         self.commands.submit_and_wait()?;
@@ -386,6 +442,16 @@ impl Renderer {
         &self.notes
     }
 
+    fn check_whole(&self) -> Result<()> {
+        if self.stale {
+            return Err(Error::new(
+                Stage::Draw,
+                "the last update failed half way; update again with what can be drawn, or make a new renderer",
+            ));
+        }
+        Ok(())
+    }
+
     fn check_shadows(&self) -> Result<()> {
         let (count, most) = (self.batches.len(), MAX_SHADOW_BATCHES as usize);
         if count > most {
@@ -401,8 +467,9 @@ impl Renderer {
     /// Reads the last drawn frame back.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]).
+    /// As [`Renderer::draw`].
     pub fn read(&self) -> Result<Frame> {
+        self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
         super::read_back::frame(&self.settings, self.background, &planes)
     }
