@@ -120,6 +120,11 @@ pub(crate) fn append(hull: &Hull, pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> 
     begin
 }
 
+/// How many corners the triangles of so many bands have.
+pub(crate) fn corners(bands: usize) -> u32 {
+    6 * HULL_SIDES * bands as u32
+}
+
 /// Corners that every band's triangles join, in the numbering of `hull.vert`: `2 n` vertices a band, the rings one after the other.
 pub(crate) fn indices(bands: usize) -> Vec<u32> {
     let n = HULL_SIDES;

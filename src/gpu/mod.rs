@@ -7,6 +7,7 @@
 mod batch;
 mod bins;
 pub mod blocks;
+mod buffers;
 mod call;
 mod clock;
 mod commands;
@@ -20,12 +21,15 @@ mod meshes;
 mod messages;
 mod pipelines;
 mod read_back;
+mod record;
 mod renderer;
 mod report;
 mod srgb;
 mod target;
 mod textures;
+mod update;
 mod usage;
+mod work;
 
 pub use device::Device;
 pub use instance::VALIDATION_VARIABLE;
