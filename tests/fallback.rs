@@ -75,6 +75,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     renderer.update(&scene).unwrap();
     renderer.draw().unwrap();
     assert_eq!(renderer.notes().len(), 1);
+    // Nor is it tried again.
+    assert_eq!(renderer.cuts(), 2);
     // What has a contour has nothing to say.
     scene.objects.remove(0);
     assert!(

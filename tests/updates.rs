@@ -9,7 +9,7 @@ use revmap::frame::Frame;
 use revmap::gpu::Renderer;
 use revmap::maps::MapSource;
 use revmap::profile::{Profile, Shape};
-use revmap::scene::{Scene, Shadow};
+use revmap::scene::{Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
@@ -118,6 +118,67 @@ fn what_fails_half_way_is_not_drawn() {
         let fresh = draw(&scene, &settings);
         assert_eq!(fresh.first_difference(&mended), None);
         assert!((0..fresh.pixels()).any(|i| fresh.hits(i)));
+    }
+    device().check().unwrap();
+}
+
+/// A vase, the same again, and a sphere, side by side.
+fn three() -> Scene {
+    let mut scene = scene_of(shapes::vase(), eye(25.0, 4.0));
+    let twin = scene.objects[0].clone();
+    let ball = Object::new("ball", shapes::sphere().into());
+    scene.objects.extend([twin, ball]);
+    for (object, y) in scene.objects.iter_mut().zip([-0.9, 0.0, 0.9]) {
+        object.placement.position.y = y;
+    }
+    scene
+}
+
+/// Contours are cut for what has changed, once for each profile and offset; and what is kept is drawn like what is new.
+#[test]
+fn only_what_has_changed_is_cut() {
+    let mesh = Solver::mesh(24, 48).unwrap();
+    for (solver, stage) in [
+        (Solver::Hull, DrawStage::Fragment),
+        (Solver::Hull, DrawStage::Compute),
+        (Solver::Quadric, DrawStage::Fragment),
+        (Solver::Cone, DrawStage::Fragment),
+        (mesh, DrawStage::Fragment),
+        (Solver::Live, DrawStage::Fragment),
+    ] {
+        let settings = Settings {
+            solver,
+            ..settings(stage)
+        };
+        let mut scene = three();
+        let mut renderer = Renderer::new(device(), &scene, &settings).unwrap();
+        let mut updated = |scene: &Scene, cuts: u64, what: &str| {
+            renderer.update(scene).unwrap();
+            let cuts = if solver.reads_map() { 0 } else { cuts };
+            assert_eq!(renderer.cuts(), cuts, "{solver}, {stage:?}: {what}");
+            let fresh = draw(scene, &settings);
+            let kept = drawn(&mut renderer);
+            assert_eq!(fresh.first_difference(&kept), None, "{solver}: {what}");
+        };
+        updated(&scene, 2, "two profiles");
+        scene.camera.eye.x += 0.2;
+        updated(&scene, 2, "the camera");
+        scene.objects[1].placement.position.z = 0.1;
+        scene.lights.clear();
+        updated(&scene, 2, "a placement and lights");
+        scene.objects[1].offset.extend = 0.02;
+        updated(&scene, 3, "one offset");
+        scene.camera.eye.x += 0.2;
+        updated(&scene, 3, "the camera again");
+        scene.objects[1].offset.extend = 0.0;
+        updated(&scene, 3, "as its twin");
+        scene.objects[1].offset.extend = 0.02;
+        updated(&scene, 4, "what was forgotten");
+        scene.objects[2].offset.extend = 0.02;
+        updated(&scene, 5, "the other profile");
+        // Each takes the other's place.
+        scene.objects.swap(1, 2);
+        updated(&scene, 5, "their order");
     }
     device().check().unwrap();
 }

@@ -4,6 +4,7 @@ use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock, SolidBlock};
 use super::device::Shared;
 use super::hulls;
 use super::memory::Buffer;
+use super::parts::Parts;
 use crate::error::{Error, Result, Stage};
 use crate::shader::generated::PIECE_VECTORS;
 use ash::vk;
@@ -25,6 +26,8 @@ pub(crate) struct Buffers {
     pub corners: Buffer,
     /// Bytes from batch block to batch block, as dynamic offsets need it.
     pub stride: u32,
+    /// What stands in `pieces`.
+    written: Parts,
     device: Arc<Shared>,
 }
 
@@ -46,6 +49,7 @@ impl Buffers {
             pieces: storage(device, "pieces", 16 * u64::from(PIECE_VECTORS))?,
             corners: indices(device, 0)?,
             stride,
+            written: Parts::default(),
             device: device.clone(),
         })
     }
@@ -67,11 +71,22 @@ impl Buffers {
         write_slice(&mut self.bins, words)
     }
 
-    /// Takes over tables and bands. The window on the last tables is as long as on all others; what is behind them is not read.
-    pub fn write_pieces(&mut self, pieces: &[[u32; 4]]) -> Result<()> {
-        let bytes = size_of_val(pieces) + 16 * PIECE_VECTORS as usize;
+    /// Takes over tables and bands, if they are others than before. The window on the last tables is as long as on all others; what is
+    /// behind them is not read.
+    pub fn write_pieces(&mut self, parts: Parts) -> Result<()> {
+        if parts.same(&self.written) {
+            return Ok(());
+        }
+        self.written = Parts::default();
+        let bytes = 16 * (parts.end() + PIECE_VECTORS as usize);
         fit(&self.device, &mut self.pieces, "pieces", bytes)?;
-        write_slice(&mut self.pieces, pieces)
+        let mapped = self.pieces.mapped()?;
+        for (begin, vectors) in parts.vectors() {
+            let bytes: &[u8] = bytemuck::cast_slice(vectors);
+            mapped[16 * begin..][..bytes.len()].copy_from_slice(bytes);
+        }
+        self.written = parts;
+        Ok(())
     }
 
     /// Sees to it that there are corners for hulls of so many bands.

@@ -20,6 +20,8 @@ pub(crate) struct Meshes {
     depths: Vec<f64>,
     segments: u32,
     rings: u32,
+    /// Contours that were cut.
+    cuts: u64,
     device: Arc<Shared>,
 }
 
@@ -75,27 +77,29 @@ impl Meshes {
             depths: vec![0.0; count],
             segments,
             rings,
+            cuts: 0,
             device: device.clone(),
         }))
     }
 
-    /// Makes the meshes whose offset has moved, and changes nothing.
+    /// Makes the meshes whose offset has moved; nothing that is drawn is changed.
     ///
     /// # Errors
     /// [`Stage::Scene`] for what meshes do not draw.
-    pub fn plan(&self, scene: &Scene, contours: &[Contours]) -> Result<Vec<Planned>> {
+    pub fn plan(&mut self, scene: &Scene, contours: &Contours) -> Result<Vec<Planned>> {
         if scene.shadow != Shadow::Off {
             return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
         }
         let mut all: Vec<Planned> = Vec::new();
-        for (number, (object, contours)) in scene.objects.iter().zip(contours).enumerate() {
+        for (number, object) in scene.objects.iter().enumerate() {
             let key = |key: &str| format!("object.{number}.{key}");
             if object.repeat != [1; 3] {
                 return Err(
                     refused("draws one cell; give [1, 1, 1], and instances").at_key(key("repeat"))
                 );
             }
-            let (profile, offset) = (contours.key(), object.offset);
+            let contour = contours.get(object)?;
+            let (profile, offset) = (contour.key(), object.offset);
             let mut made = self.made.iter().flatten().map(|d| &d.shared);
             let there = made.find(|u| u.profile == profile && u.offset == offset);
             let mut before = all.iter();
@@ -106,7 +110,8 @@ impl Meshes {
                 (Some(there), _) => there.mesh.clone(),
                 (None, Some(before)) => before.mesh.clone(),
                 (None, None) => {
-                    let contour = contours.contour(&offset)?;
+                    let contour = contour.contour(&offset)?;
+                    self.cuts += 1;
                     Arc::new(Mesh::new(&contour, self.segments, self.rings))
                 }
             };
@@ -184,6 +189,11 @@ impl Meshes {
             vertices,
             indices,
         })
+    }
+
+    /// How many contours have been cut.
+    pub fn cuts(&self) -> u64 {
+        self.cuts
     }
 
     /// Objects in the order in which to draw them.

@@ -4,6 +4,7 @@ use super::buffers::Buffers;
 use super::clock::Clock;
 use super::commands::Commands;
 use super::contours::Contours;
+use super::cuts::Cuts;
 use super::descriptors::Descriptors;
 use super::device::{Device, Shared};
 use super::meshes::Meshes;
@@ -38,8 +39,10 @@ pub struct Renderer {
     pub(super) descriptors: Descriptors,
     pub(super) batches: Vec<Batch>,
     pub(super) textures: Textures,
-    /// What the searches' tables, or meshes, are built from, one an object; empty for other searches.
-    pub(super) contours: Vec<Contours>,
+    /// What the searches' tables, or meshes, are built from; empty for other searches.
+    pub(super) contours: Contours,
+    /// The tables of the last frame.
+    pub(super) cuts: Cuts,
     /// None where there is a search.
     pub(super) meshes: Option<Meshes>,
     pub(super) notes: Vec<String>,
@@ -84,11 +87,7 @@ impl Renderer {
             });
             instances = end;
         }
-        let contours = if settings.solver.reads_map() {
-            Vec::new()
-        } else {
-            Contours::of(scene)?
-        };
+        let contours = Contours::of(scene, settings)?;
         let mut renderer = Self {
             buffers: Buffers::new(&device, batches.len(), instances)?,
             descriptors: Descriptors::new(&device, &pipelines, batches.len())?,
@@ -97,6 +96,7 @@ impl Renderer {
             batches,
             textures,
             contours,
+            cuts: Cuts::default(),
             meshes,
             notes: Vec::new(),
             clock: Clock::new(&device)?,
@@ -139,6 +139,13 @@ impl Renderer {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// How many contours were cut (or tessellated) since the renderer was made: one for each profile under each offset that was not there in
+    /// the update before. A camera that moves cuts none. Searches on the map never do.
+    #[must_use]
+    pub fn cuts(&self) -> u64 {
+        self.cuts.done() + self.meshes.as_ref().map_or(0, Meshes::cuts)
     }
 
     fn check_whole(&self) -> Result<()> {

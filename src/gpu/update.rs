@@ -4,21 +4,24 @@ use super::batch::{check_format, frame_block, instance_block, solid_block};
 use super::bins::{Bins, rectangle};
 use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock};
 use super::buffers::write;
-use super::contours::{Searches, Table};
+use super::cuts::Cut;
 use super::hulls;
 use super::meshes::Planned;
+use super::parts::{Of, Parts};
 use super::pipelines::Kind;
 use super::renderer::Renderer;
+use super::searches::Searches;
 use super::work::{Batch, Work};
 use crate::error::{Error, Result, Stage};
-use crate::pieces::{Hull, Piece};
+use crate::pieces::Hull;
 use crate::scene::{CameraFrame, Object, Placement, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
 use crate::shader::Variant;
 use crate::shader::generated::{GROUP_PIXELS, MAX_SHADOW_BATCHES, PIECE_VECTORS};
 use ash::vk;
+use std::sync::Arc;
 
-/// What an update needs and can find out without changing anything.
+/// What an update needs and can find out without changing anything that is drawn.
 struct Plan {
     camera: CameraFrame,
     frame: FrameBlock,
@@ -32,7 +35,7 @@ struct Lists {
     bins: Bins,
     /// Words of the lists that beams fill, behind those of the bins.
     tiles: usize,
-    pieces: Vec<[u32; 4]>,
+    pieces: Parts,
     /// Of the hull that has most.
     bands: usize,
     shadows: ShadowBlock,
@@ -54,8 +57,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Finds all that can be found wrong with a scene before anything is changed for it.
-    fn plan(&self, scene: &Scene) -> Result<Plan> {
+    /// Finds all that can be found wrong with a scene before anything that is drawn is changed for it.
+    fn plan(&mut self, scene: &Scene) -> Result<Plan> {
         if scene.objects.len() != self.batches.len() {
             return Err(Error::new(
                 Stage::Draw,
@@ -69,9 +72,7 @@ impl Renderer {
         if scene.shadow != Shadow::Off {
             self.check_shadows()?;
         }
-        let searches = Searches::new(&self.contours, scene, &self.settings)?;
-        for (number, (batch, object)) in self.batches.iter().zip(&scene.objects).enumerate() {
-            check_format(number, object, &self.settings_of(number, &searches))?;
+        for (batch, object) in self.batches.iter().zip(&scene.objects) {
             self.textures.shape(object, &self.settings)?;
             if object.placements().len() != batch.instances.len() {
                 return Err(Error::new(
@@ -83,7 +84,11 @@ impl Renderer {
                 ));
             }
         }
-        let meshes = match &self.meshes {
+        let searches = Searches::new(&mut self.cuts, &self.contours, scene, &self.settings)?;
+        for (number, object) in scene.objects.iter().enumerate() {
+            check_format(number, object, &self.settings_of(number, &searches))?;
+        }
+        let meshes = match &mut self.meshes {
             Some(meshes) => meshes.plan(scene, &self.contours)?,
             None => Vec::new(),
         };
@@ -134,7 +139,7 @@ impl Renderer {
         let mut lists = Lists {
             bins: Bins::default(),
             tiles: 0,
-            pieces: Vec::new(),
+            pieces: Parts::default(),
             bands: 0,
             shadows: bytemuck::Zeroable::zeroed(),
         };
@@ -151,7 +156,7 @@ impl Renderer {
         }
         self.batches = batches;
         self.buffers.write_bins(&bins, bins.len() + lists.tiles)?;
-        self.buffers.write_pieces(&lists.pieces)?;
+        self.buffers.write_pieces(lists.pieces)?;
         self.buffers.fit_corners(lists.bands)?;
         write(&mut self.buffers.frame, 0, &plan.frame)?;
         write(&mut self.buffers.shadows, 0, &lists.shadows)?;
@@ -177,11 +182,8 @@ impl Renderer {
         let (shape, facts) = self.textures.shape(object, &self.settings)?;
         let bound = self.textures.of(object, shape);
         let mut block = solid_block(object, &facts, &instances, shape, settings.solver);
-        let table = plan.searches.table(number);
-        let wrapped = match settings.solver {
-            Solver::Hull => table.and_then(Table::pieces),
-            _ => None,
-        };
+        let tables = plan.searches.tables(number);
+        let wrapped = tables.filter(|_| settings.solver == Solver::Hull);
         let mut near_first = Vec::new();
         let (kind, work) =
             if let (Some(meshes), Some(planned)) = (&mut self.meshes, plan.meshes.get(number)) {
@@ -195,9 +197,10 @@ impl Renderer {
                 let work = self.compute_work(object, instances.start, wrapped, plan, lists);
                 variant.beam = u32::from(matches!(work, Work::Beams { .. }));
                 (Kind::Compute, work)
-            } else if let Some(hull) = wrapped.and_then(|cut| self.hull(object, cut, plan)) {
-                let cut = wrapped.unwrap_or_default();
-                block.hull[0] = hulls::append(&hull, cut, &mut lists.pieces) as u32;
+            } else if let Some(cut) = wrapped
+                && let Some(hull) = self.hull(object, cut, plan)
+            {
+                block.hull[0] = lists.pieces.place(cut, Of::Bands, 1);
                 lists.bands = lists.bands.max(hull.bands.len());
                 let corners = hulls::corners(hull.bands.len());
                 (Kind::Hull, Work::Hull { corners })
@@ -206,13 +209,14 @@ impl Renderer {
             };
         let mut tables_offset = 0;
         // A hull's own fragments read none of the tree; shadows' rays do.
-        if let Some(table) = table
+        if let Some(cut) = tables
             && (kind != Kind::Hull || casts)
         {
-            let placed = table.append(self.buffers.table_align(), &mut lists.pieces);
-            block.pieces = placed.block;
-            variant.own_tables = u32::from(placed.vectors <= PIECE_VECTORS as usize);
-            tables_offset = 16 * block.pieces[0];
+            let align = self.buffers.table_align();
+            let begin = lists.pieces.place(cut, Of::Tables, align);
+            block.pieces = cut.tables().block(begin);
+            variant.own_tables = u32::from(cut.tables().own <= PIECE_VECTORS as usize);
+            tables_offset = 16 * begin;
         }
         let work = match work {
             Work::Beams { rectangle, at, .. } => Work::Beams {
@@ -248,7 +252,7 @@ impl Renderer {
         &self,
         object: &Object,
         first: u32,
-        wrapped: Option<&[Piece]>,
+        wrapped: Option<&Arc<Cut>>,
         plan: &Plan,
         lists: &mut Lists,
     ) -> Work {
@@ -286,7 +290,7 @@ impl Renderer {
     }
 
     /// The hull of an object, where it is drawn by it.
-    fn hull(&self, object: &Object, cut: &[Piece], plan: &Plan) -> Option<Hull> {
+    fn hull<'a>(&self, object: &Object, cut: &'a Cut, plan: &Plan) -> Option<&'a Hull> {
         let limits = &self.device.limits;
         let wraps = limits.max_fragment_input_components >= hulls::COMPONENTS
             && limits.max_vertex_output_components >= hulls::COMPONENTS + 4;
