@@ -24,6 +24,7 @@ mod parts;
 mod pipelines;
 mod read_back;
 mod record;
+mod render_pass;
 mod renderer;
 mod report;
 mod searches;

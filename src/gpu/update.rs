@@ -18,7 +18,6 @@ use crate::scene::{CameraFrame, Object, Placement, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
 use crate::shader::Variant;
 use crate::shader::generated::{GROUP_PIXELS, MAX_SHADOW_BATCHES, PIECE_VECTORS};
-use ash::vk;
 use std::sync::Arc;
 
 /// What an update needs and can find out without changing anything that is drawn.
@@ -194,7 +193,7 @@ impl Renderer {
             } else if self.settings.stage == DrawStage::Compute {
                 variant.depth_test = u32::from(number > 0);
                 variant.depth_keep = u32::from(number + 1 < scene.objects.len());
-                let work = self.compute_work(object, instances.start, wrapped, plan, lists);
+                let work = self.compute_work(object, instances.start, wrapped, plan, lists)?;
                 variant.beam = u32::from(matches!(work, Work::Beams { .. }));
                 (Kind::Compute, work)
             } else if let Some(cut) = wrapped
@@ -218,14 +217,6 @@ impl Renderer {
             variant.own_tables = u32::from(cut.tables().own <= PIECE_VECTORS as usize);
             tables_offset = 16 * begin;
         }
-        let work = match work {
-            Work::Beams { rectangle, at, .. } => Work::Beams {
-                rectangle,
-                list: self.pipelines.get(variant, Kind::Beam)?,
-                at,
-            },
-            other => other,
-        };
         let block_offset = number as u32 * self.buffers.stride;
         write(&mut self.buffers.batches, block_offset as usize, &block)?;
         if casts {
@@ -249,13 +240,13 @@ impl Renderer {
 
     /// How the compute stage draws an object; `at` of beams counts from the last bin's words on.
     fn compute_work(
-        &self,
+        &mut self,
         object: &Object,
         first: u32,
         wrapped: Option<&Arc<Cut>>,
         plan: &Plan,
         lists: &mut Lists,
-    ) -> Work {
+    ) -> Result<Work> {
         let size = (self.settings.width, self.settings.height);
         let radius = object.profile.radius;
         let [one] = object.placements() else {
@@ -263,14 +254,14 @@ impl Renderer {
             let bins = lists
                 .bins
                 .add(&plan.camera, size, radius, first, placements);
-            return if bins.is_empty() {
+            return Ok(if bins.is_empty() {
                 Work::Nothing
             } else {
                 Work::Bins(bins)
-            };
+            });
         };
         let Some(rectangle) = rectangle(&plan.camera, size, GROUP_PIXELS, radius, one) else {
-            return Work::Nothing;
+            return Ok(Work::Nothing);
         };
         // A tile listed is a work group.
         let tiles = rectangle.padded();
@@ -279,13 +270,14 @@ impl Renderer {
             Some(cut) if hulls::takes_beams(object, cut, &plan.camera) && tiles <= most => {
                 let at = lists.tiles as u32;
                 lists.tiles += 4 + 4 * tiles as usize;
-                Work::Beams {
+                let list = self.pipelines.beam()?;
+                Ok(Work::Beams {
                     rectangle,
-                    list: vk::Pipeline::null(),
+                    list,
                     at,
-                }
+                })
             }
-            _ => Work::Rectangle(rectangle),
+            _ => Ok(Work::Rectangle(rectangle)),
         }
     }
 
