@@ -4,7 +4,7 @@ use crate::error::{Error, Result, Stage};
 use crate::pieces::{Contour, ContourSource, CutOptions, outline_of};
 use crate::profile::{Profile, Shape};
 use crate::scene::{Object, Offset, Scene};
-use crate::settings::Settings;
+use crate::settings::{Settings, Solver};
 use std::sync::Arc;
 
 /// Those of a scene, each profile's once.
@@ -16,7 +16,8 @@ pub(crate) struct Contours {
 /// What does not depend on the offset, of one profile.
 pub(crate) struct ProfileContour {
     profile: Arc<Profile>,
-    source: ContourSource,
+    /// Or why there is none.
+    source: Result<ContourSource>,
     pub options: CutOptions,
 }
 
@@ -24,7 +25,7 @@ impl Contours {
     /// Of every profile of a scene; none where the search reads maps alone.
     ///
     /// # Errors
-    /// Of a profile that has no contour.
+    /// Of a profile that has no contour, where nothing else than tables or a mesh will do.
     pub fn of(scene: &Scene, settings: &Settings) -> Result<Self> {
         let mut contours = Self::default();
         if settings.solver.reads_map() {
@@ -32,7 +33,12 @@ impl Contours {
         }
         for (number, object) in scene.objects.iter().enumerate() {
             if contours.get(object).is_err() {
-                let new = ProfileContour::new(object).map_err(|e| named(e, number, object))?;
+                let new = ProfileContour::new(object);
+                if let (Err(error), Solver::Cone | Solver::Mesh { .. }) =
+                    (&new.source, settings.solver)
+                {
+                    return Err(named(error.clone(), number, object));
+                }
                 contours.all.push(new);
             }
         }
@@ -60,24 +66,24 @@ impl Contours {
 }
 
 impl ProfileContour {
-    fn new(object: &Object) -> Result<Self> {
+    fn new(object: &Object) -> Self {
         let (source, options) = match &object.profile.shape {
-            Shape::Outline(outline) => (ContourSource::new(outline)?, CutOptions::default()),
+            Shape::Outline(outline) => (ContourSource::new(outline), CutOptions::default()),
             Shape::Raster(raster) => {
                 // The curve that the picture was drawn from, as well as its pixels tell.
                 let traced = outline_of(raster);
                 let tolerance = traced.tolerance;
                 (
-                    ContourSource::new(&traced.outline)?,
+                    ContourSource::new(&traced.outline),
                     CutOptions { tolerance },
                 )
             }
         };
-        Ok(Self {
+        Self {
             profile: object.profile.clone(),
             source,
             options,
-        })
+        }
     }
 
     /// Equal for objects of one profile, and for no others while this lives.
@@ -88,9 +94,12 @@ impl ProfileContour {
     /// The contour under `offset`.
     ///
     /// # Errors
-    /// Where that of an odd profile cannot be closed.
+    /// Where the profile has none, or that of an odd one cannot be closed.
     pub fn contour(&self, offset: &Offset) -> Result<Contour> {
-        self.source.contour(offset)
+        match &self.source {
+            Ok(source) => source.contour(offset),
+            Err(error) => Err(error.clone()),
+        }
     }
 }
 
