@@ -6,7 +6,7 @@ mod common;
 use common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::Stage;
 use revmap::frame::Frame;
-use revmap::gpu::Renderer;
+use revmap::gpu::{Renderer, Way};
 use revmap::maps::MapSource;
 use revmap::profile::{Profile, Shape};
 use revmap::scene::{Object, Scene, Shadow};
@@ -156,6 +156,13 @@ fn only_what_has_changed_is_cut() {
             renderer.update(scene).unwrap();
             let cuts = if solver.reads_map() { 0 } else { cuts };
             assert_eq!(renderer.cuts(), cuts, "{solver}, {stage:?}: {what}");
+            let way = match (solver, stage) {
+                (Solver::Hull, DrawStage::Fragment) => Way::Hull,
+                (Solver::Hull, _) => Way::Beams,
+                (Solver::Mesh { .. }, _) => Way::Mesh,
+                _ => Way::Box,
+            };
+            assert_eq!(renderer.ways(), [way; 3], "{solver}: {what}");
             let fresh = draw(scene, &settings);
             let kept = drawn(&mut renderer);
             assert_eq!(fresh.first_difference(&kept), None, "{solver}: {what}");
@@ -179,6 +186,15 @@ fn only_what_has_changed_is_cut() {
         // Each takes the other's place.
         scene.objects.swap(1, 2);
         updated(&scene, 5, "their order");
+        // What is not seen is left to the rasteriser, and not traced.
+        for object in &mut scene.objects {
+            object.placement.position.x += 100.0;
+        }
+        renderer.update(&scene).unwrap();
+        let none = [Way::Nothing; 3];
+        assert_eq!(renderer.ways() == none, stage == DrawStage::Compute);
+        let frame = drawn(&mut renderer);
+        assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }
     device().check().unwrap();
 }

@@ -40,6 +40,7 @@ pub use device::Device;
 pub use instance::VALIDATION_VARIABLE;
 pub use renderer::{Renderer, Times};
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
+pub use work::Way;
 
 use crate::error::Result;
 use crate::frame::Frame;
@@ -57,6 +58,8 @@ pub struct Drawn {
     pub map_bytes: [u64; 2],
     /// [`Renderer::notes`].
     pub notes: Vec<String>,
+    /// [`Renderer::ways`].
+    pub ways: Vec<Way>,
 }
 
 /// Draws a scene once: bakes its maps, uploads, draws, reads back.
@@ -72,6 +75,7 @@ pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn
         times,
         map_bytes: renderer.map_bytes(),
         notes: renderer.notes().to_vec(),
+        ways: renderer.ways(),
     };
     drop(renderer);
     device.check()?;

@@ -11,7 +11,7 @@ use super::meshes::Meshes;
 use super::pipelines::Pipelines;
 use super::target::Target;
 use super::textures::Textures;
-use super::work::{Batch, Work};
+use super::work::{Batch, Way, Work};
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::Scene;
@@ -139,6 +139,12 @@ impl Renderer {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// How each object is drawn since the last update that succeeded, in order.
+    #[must_use]
+    pub fn ways(&self) -> Vec<Way> {
+        self.batches.iter().map(|b| Way::from(&b.work)).collect()
     }
 
     /// How many contours were cut (or tessellated) since the renderer was made: one for each profile under each offset that was not there in

@@ -153,7 +153,6 @@ impl Renderer {
                 *at += bins.len() as u32;
             }
         }
-        self.batches = batches;
         self.buffers.write_bins(&bins, bins.len() + lists.tiles)?;
         self.buffers.write_pieces(lists.pieces)?;
         self.buffers.fit_corners(lists.bands)?;
@@ -161,6 +160,7 @@ impl Renderer {
         write(&mut self.buffers.shadows, 0, &lists.shadows)?;
         self.descriptors.frame(&self.buffers);
         self.descriptors.target(&self.target, &self.buffers.bins);
+        self.batches = batches;
         Ok(())
     }
 

@@ -45,3 +45,40 @@ pub(crate) enum Work {
         at: u32,
     },
 }
+
+/// How an object was drawn, which is chosen anew with every update: [`Renderer::ways`](super::Renderer::ways).
+///
+/// A search and what it searches are two things: a box may be drawn by any of the searches, a rectangle or bins too; hulls and beams are
+/// what [`Solver::Hull`](crate::settings::Solver::Hull) takes where it can.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Way {
+    /// Not at all: it is beside the picture, or behind the eye. In the fragment stage the rasteriser finds that out, and no object is
+    /// `Nothing`.
+    Nothing,
+    /// Fragment stage: the fragments of its boxes are searched.
+    Box,
+    /// Fragment stage: by the shells of its pieces.
+    Hull,
+    /// Compute stage, a single copy: the pixels of its rectangle on the screen are searched.
+    Rectangle,
+    /// Compute stage, several copies: the squares of the screen that they cover are searched.
+    Bins,
+    /// Compute stage, a single copy: the tiles of its rectangle that beams have found to be near it are searched.
+    Beams,
+    /// As triangles.
+    Mesh,
+}
+
+impl From<&Work> for Way {
+    fn from(work: &Work) -> Self {
+        match work {
+            Work::Nothing => Self::Nothing,
+            Work::Box => Self::Box,
+            Work::Hull { .. } => Self::Hull,
+            Work::Rectangle(_) => Self::Rectangle,
+            Work::Bins(_) => Self::Bins,
+            Work::Beams { .. } => Self::Beams,
+            Work::Mesh => Self::Mesh,
+        }
+    }
+}
