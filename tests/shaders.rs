@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 use revmap::gpu::blocks::{FrameBlock, InstanceBlock, LightBlock, ShadowBlock, SolidBlock};
+use revmap::pieces::{ROWS, Tables};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::Settings;
@@ -199,6 +200,17 @@ fn no_variant_changes_how_tiles_are_listed() {
     };
     assert_eq!(read(g::BEAM_COMP), 0);
     assert!(read(g::TRACE_COLOR_COMP) > 0);
+}
+
+/// The tree over the rows of tables, as beams and searches count on it.
+#[test]
+fn tables_have_the_rows_and_nodes_of_the_shaders() {
+    let tables = Tables::new(&[], ROWS);
+    assert_eq!(ROWS, g::PIECE_ROWS);
+    assert_eq!(tables.nodes.len(), g::PIECE_NODES as usize);
+    let [rows, beams] = [0, 1].map(|level| tables.levels[level]);
+    assert_eq!((rows, beams), (0, g::BEAM_FIRST_NODE));
+    assert_eq!(tables.levels[2] - beams, g::BEAM_NODES);
 }
 
 /// What is kept was made from today's sources; and word for word, where the same compiler makes it here.
