@@ -8,7 +8,7 @@ mod shapes;
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
 use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, Tables, cut, outline_of, trace_pieces,
+    ContourSource, CutOptions, Hull, HullOptions, ROWS, Tables, cut, outline_of, trace_pieces,
 };
 use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
 use revmap::scene::Offset;
@@ -80,15 +80,15 @@ fn prepare(bencher: Bencher, name: &str) {
     bencher.bench(|| ContourSource::new(black_box(&outline)).unwrap());
 }
 
-/// What a slider moves: all of it.
-#[divan::bench(args = cases())]
-fn rebuild(bencher: Bencher, (name, technique): (&str, &str)) {
+/// What a slider moves: all of it. The goal is a millisecond for 64 to 128 rows; shaders draw with 256.
+#[divan::bench(args = cases(), consts = [64, 128, ROWS])]
+fn rebuild<const N: u32>(bencher: Bencher, (name, technique): (&str, &str)) {
     let source = ContourSource::new(&outline(name)).unwrap();
     let offset = offset(technique);
     bencher.bench(|| {
         let contour = source.contour(black_box(&offset)).unwrap();
         let pieces = cut(&contour, &CutOptions::default());
-        Tables::new(&pieces, 64)
+        Tables::new(&pieces, N)
     });
 }
 
@@ -106,8 +106,8 @@ fn pieces(bencher: Bencher, (name, technique): (&str, &str)) {
     bencher.bench(|| cut(black_box(&contour), &CutOptions::default()));
 }
 
-/// Dealing out to 64 and 128 rows.
-#[divan::bench(args = [64, 128])]
+/// Dealing out to rows.
+#[divan::bench(args = [64, 128, ROWS])]
 fn rows(bencher: Bencher, rows: u32) {
     let source = ContourSource::new(&outline("king")).unwrap();
     let contour = source.contour(&offset("plain")).unwrap();
@@ -132,7 +132,7 @@ fn picture(bencher: Bencher) {
 }
 
 /// One ray.
-#[divan::bench(args = [32, 64, 128])]
+#[divan::bench(args = [64, 128, ROWS])]
 fn ray(bencher: Bencher, rows: u32) {
     let source = ContourSource::new(&outline("king")).unwrap();
     let contour = source.contour(&offset("plain")).unwrap();

@@ -75,6 +75,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     renderer.update(&scene).unwrap();
     renderer.draw().unwrap();
     assert_eq!(renderer.notes().len(), 1);
+    // Nor is it tried again.
+    assert_eq!(renderer.cuts(), 2);
     // What has a contour has nothing to say.
     scene.objects.remove(0);
     assert!(
@@ -83,4 +85,57 @@ fn what_has_no_contour_is_drawn_from_the_map() {
             .notes
             .is_empty()
     );
+}
+
+/// A line on the axis has no surface to follow, and encloses nothing. Searches on the map draw nothing of it, others say that they cannot.
+#[test]
+fn what_has_no_surface_is_drawn_from_the_map() {
+    let line = [0.1, 0.5, 0.9].map(|z| DVec2::new(0.0, z)).to_vec();
+    let line = Profile {
+        shape: Shape::Outline(Outline { loops: vec![line] }),
+        radius: 0.5,
+    };
+    let mut scene = scene_of(shapes::sphere(), eye(20.0, 2.2));
+    let mut alone = Object::new("line", Arc::new(line));
+    alone.placement.position.x = 0.3;
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let settings = Settings {
+            width: 200,
+            height: 150,
+            stage,
+            hull_from: 0,
+            ..Settings::default()
+        };
+        scene.objects.truncate(1);
+        let wanted = draw(&scene, &settings);
+        scene.objects.push(alone.clone());
+        for solver in [Solver::Quadric, Solver::Hull] {
+            let settings = Settings { solver, ..settings };
+            let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+            let [note] = drawn.notes.as_slice() else {
+                unreachable!("{:?}", drawn.notes)
+            };
+            assert!(note.contains("object.1 (line)") && note.contains("no surface"));
+            let same = |&i: &usize| {
+                let (a, b) = (wanted.distance[i], drawn.frame.distance[i]);
+                wanted.hits(i) == drawn.frame.hits(i) && (a == b || (a - b).abs() < 1e-3)
+            };
+            let same = (0..wanted.pixels()).filter(same).count();
+            // The search of the sphere is another than the default's, with `quadric`.
+            assert!(same + 3 >= wanted.pixels(), "{same} of {}", wanted.pixels());
+        }
+        for (solver, stage) in [
+            (Solver::Cone, stage),
+            (Solver::mesh(16, 32).unwrap(), DrawStage::Fragment),
+        ] {
+            let settings = Settings {
+                solver,
+                stage,
+                ..settings
+            };
+            let error = Renderer::new(device(), &scene, &settings).err().unwrap();
+            assert_eq!(error.key.as_deref(), Some("object.1.profile"), "{error}");
+            assert!(error.message.contains("no surface"), "{error}");
+        }
+    }
 }

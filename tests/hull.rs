@@ -4,15 +4,23 @@
 
 mod common;
 
-use common::{draw, eye, placement, scene_of, shapes};
+use common::{device, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::{CompareOptions, Frame, compare};
+use revmap::gpu::{self, Way};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use std::sync::Arc;
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+
+/// How a scene's objects are to be drawn, in either stage.
+type Ways<'a> = [&'a [Way]; 2];
+
+/// By what is tested here, and by what it falls back to.
+const WRAPPED: Ways<'static> = [&[Way::Hull], &[Way::Beams]];
+const BOXED: Ways<'static> = [&[Way::Box], &[Way::Rectangle]];
 
 fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
@@ -38,20 +46,42 @@ fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     (hits, edge, far)
 }
 
-/// Both stages against the box: at most `tolerated` of the pixels hit differ, silhouettes of grazing rays.
-fn assert_same(name: &str, scene: &Scene, tolerated: f64) {
+/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box would be right too, and say nothing.
+#[track_caller]
+fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
+    let drawn = gpu::draw(device(), scene, settings).unwrap();
+    let wanted = ways[usize::from(settings.stage == DrawStage::Compute)];
+    assert_eq!(drawn.ways, wanted, "{name}, {:?}", settings.stage);
+    drawn.frame
+}
+
+/// Share of the pixels hit, beyond 2 pixels, that hulls or beams may see otherwise than the box: silhouettes of grazing rays.
+///
+/// Measured on lavapipe 22.3.6, over all views of this file: 1 pixel, of 38,661 of the torus from its rim. The bound is for other
+/// devices' roundings.
+const TOLERATED: f64 = 0.0005;
+
+/// Root mean square of the angle between normals, degrees: at a crease either face's is right. Measured: 0.98 on the many creases of the
+/// discs from below (fragments), 0.54 elsewhere.
+const NORMALS: f64 = 1.0;
+
+/// Both stages against the box.
+fn assert_same(name: &str, scene: &Scene, ways: Ways) {
     let truth = draw(scene, &settings(Solver::Quadric, DrawStage::Fragment));
     for stage in STAGES {
-        let frame = draw(scene, &settings(Solver::Hull, stage));
+        let frame = draw_by(name, scene, &settings(Solver::Hull, stage), ways);
         let (hits, edge, far) = apart(&truth, &frame);
         assert!(hits > 500, "{name}: only {hits} pixels are hit");
         assert!(
-            (edge + far) as f64 <= tolerated * hits as f64 + 2.0,
+            (edge + far) as f64 <= TOLERATED * hits as f64 + 2.0,
             "{name}, {stage:?}: of {hits} pixels {edge} are hit by one alone, {far} seen elsewhere"
         );
         let compared = compare(&truth, &frame, &CompareOptions::default()).unwrap();
         let normal = compared.normal.unwrap();
-        assert!(normal.rms < 1.0, "{name}, {stage:?}: normals {normal:?}");
+        assert!(
+            normal.rms < NORMALS,
+            "{name}, {stage:?}: normals {normal:?}"
+        );
     }
 }
 
@@ -61,7 +91,7 @@ fn every_shape_from_all_sides() {
     for (name, profile) in shapes::all() {
         for elevation in [-50.0, 0.0, 25.0, 60.0, 89.5] {
             let scene = scene_of(profile.clone(), eye(elevation, 2.2));
-            assert_same(&format!("{name} at {elevation}"), &scene, 0.0005);
+            assert_same(&format!("{name} at {elevation}"), &scene, WRAPPED);
         }
     }
 }
@@ -82,16 +112,23 @@ fn offsets_in_motion() {
                 bevel,
                 chamfer,
             };
+            // A cone whose foot is moved out by the whole bevel reaches past its box.
+            let ways = if name == "cone" && bevel == 0.12 {
+                BOXED
+            } else {
+                WRAPPED
+            };
             let name = format!("{name} with {extend} {bevel} {chamfer}");
-            assert_same(&name, &scene, 0.001);
+            assert_same(&name, &scene, ways);
         }
     }
 }
 
 /// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it; solids that the box cuts; replicas: the box draws these.
+/// An eye close to a solid, but outside of all its shells, is none of them.
 #[test]
 fn what_a_hull_cannot_wrap() {
-    let mut all: Vec<(String, Scene)> = Vec::new();
+    let mut all: Vec<(String, Scene, Ways)> = Vec::new();
     for (name, profile) in [
         ("sphere", shapes::sphere()),
         ("glass", shapes::glass()),
@@ -105,17 +142,21 @@ fn what_a_hull_cannot_wrap() {
         ] {
             let mut scene = scene_of(profile.clone(), at);
             scene.camera.target = DVec3::new(-0.3, 0.1, 0.45);
-            all.push((format!("{name} from {place}"), scene));
+            let ways = match (name, place) {
+                (_, "close to the surface" | "the rim") | ("torus", "the axis") => WRAPPED,
+                _ => BOXED,
+            };
+            all.push((format!("{name} from {place}"), scene, ways));
         }
     }
     let mut cut = scene_of(shapes::vase(), eye(25.0, 2.4));
     cut.objects[0].axis = [0.8, 0.5];
-    all.push(("cut by its box".into(), cut));
+    all.push(("cut by its box".into(), cut, BOXED));
     let mut repeated = scene_of(shapes::vase(), eye(25.0, 2.4));
     repeated.objects[0].repeat = [2, 2, 2];
-    all.push(("replicas".into(), repeated));
-    for (name, scene) in all {
-        assert_same(&name, &scene, 0.001);
+    all.push(("replicas".into(), repeated, BOXED));
+    for (name, scene, ways) in all {
+        assert_same(&name, &scene, ways);
     }
 }
 
@@ -126,6 +167,7 @@ fn a_crowd_in_one_depth_buffer() {
         DVec3::new(2.6, 1.9, 1.7),
         DVec3::new(0.0, 0.0, 0.3),
     ));
+    let mut ways = [Vec::new(), Vec::new()];
     for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
         let mut object = Object::new(name, Arc::new(profile));
         let turn = n as f64 * 0.8;
@@ -141,11 +183,19 @@ fn a_crowd_in_one_depth_buffer() {
             object.repeat = [2, 1, 1];
         }
         crowd.objects.push(object);
+        let [fragment, compute] = [
+            [Way::Hull, Way::Beams],
+            [Way::Hull, Way::Bins],
+            [Way::Box, Way::Rectangle],
+        ][n % 3];
+        ways[0].push(fragment);
+        ways[1].push(compute);
     }
-    assert_same("crowd", &crowd, 0.001);
+    assert_same("crowd", &crowd, ways.each_ref().map(Vec::as_slice));
 }
 
-/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100 pixels.
+/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100 pixels. Measured: 0.0055 (vase) and 0.0004
+/// (jewel), and no wrong pixel.
 #[test]
 fn the_reference_is_met() {
     for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
@@ -157,7 +207,8 @@ fn the_reference_is_met() {
                 texel: 1.0 / 512.0,
                 ..CompareOptions::default()
             };
-            let found = compare(&truth, &draw(&scene, &wanted), &options).unwrap();
+            let frame = draw_by(name, &scene, &wanted, WRAPPED);
+            let found = compare(&truth, &frame, &options).unwrap();
             let p99 = found.depth.unwrap().p99;
             assert!(p99 <= 0.02, "{name}, {stage:?}: p99 {p99}");
             let wrong = found.missed + found.ghost;
@@ -173,7 +224,8 @@ fn a_wrong_solid_is_noticed() {
     let mut larger = scene.clone();
     larger.objects[0].offset.extend = 0.01;
     let quadric = draw(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
-    let hull = draw(&larger, &settings(Solver::Hull, DrawStage::Fragment));
+    let wanted = settings(Solver::Hull, DrawStage::Fragment);
+    let hull = draw_by("larger", &larger, &wanted, WRAPPED);
     let (hits, edge, far) = apart(&quadric, &hull);
     assert!(edge + far > hits / 2, "{edge} + {far} of {hits}");
 }
@@ -183,10 +235,11 @@ fn a_wrong_solid_is_noticed() {
 fn slivers() {
     let sliver = Profile::polygon(&[[0.0, 0.5], [0.45, 0.501], [0.0, 0.502]], 0.5).unwrap();
     let scene = scene_of(sliver, eye(35.0, 2.0));
-    assert_same("sliver", &scene, 0.002);
+    assert_same("sliver", &scene, WRAPPED);
 }
 
-/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known worst.
+/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known worst. Measured: at most 1 wrong pixel. A
+/// walk of the tree without slack for that passes 423 of 36,056, a hull that takes no hit below the floor 276 of 15,044.
 #[test]
 fn faces_of_the_box_itself() {
     let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]];
@@ -204,13 +257,20 @@ fn faces_of_the_box_itself() {
             (Solver::Hull, DrawStage::Fragment),
             (Solver::Hull, DrawStage::Compute),
         ] {
-            let frame = draw(&scene, &settings(solver, stage));
+            let settings = settings(solver, stage);
+            let name = format!("{distance} away, scale {flat}: {solver}");
+            let ways = if solver == Solver::Hull {
+                WRAPPED
+            } else {
+                BOXED
+            };
+            let frame = draw_by(&name, &scene, &settings, ways);
             let found = compare(&truth, &frame, &CompareOptions::default()).unwrap();
             let wrong = found.missed + found.ghost;
             assert!(found.hits > 5000, "only {} pixels are hit", found.hits);
             assert!(
                 wrong <= found.hits / 500,
-                "{distance} away, scale {flat}: {solver}, {stage:?}: {wrong} of {} wrong",
+                "{name}, {stage:?}: {wrong} of {} wrong",
                 found.hits
             );
         }

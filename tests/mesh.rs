@@ -198,25 +198,9 @@ fn planted_faults_are_found() {
     assert_eq!(wrong_planes(&truth, &behind), ["distance"]);
 
     // One ring of the glass a texel too wide.
-    let Ok(bent) = Profile::polygon(
-        &[
-            [0.0, 0.04],
-            [0.26, 0.04],
-            [0.26, 0.06],
-            [0.04, 0.1],
-            [0.035, 0.4],
-            [0.18, 0.5],
-            [0.3 + TEXEL, 0.7],
-            [0.28, 0.95],
-            [0.265, 0.95],
-            [0.285, 0.7],
-            [0.17, 0.52],
-            [0.0, 0.44],
-        ],
-        0.5,
-    ) else {
-        unreachable!()
-    };
+    let mut points = shapes::GLASS;
+    points[6][0] += TEXEL;
+    let bent = Profile::polygon(&points, 0.5).unwrap();
     scene.objects[0].profile = Arc::new(bent);
     let bent = errors(&truth, &draw(&scene, &settings)).depth.unwrap();
     let straight = errors(&truth, &good).depth.unwrap();

@@ -8,7 +8,8 @@ mod shapes;
 use glam::{DVec2, DVec3};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, Record, Tables, cut, outline_of, trace_pieces,
+    ContourSource, CutOptions, Hull, HullOptions, ROWS, Record, Tables, cut, outline_of,
+    trace_pieces,
 };
 use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
 use revmap::reference::{Ray, Reference};
@@ -59,9 +60,9 @@ struct Tally {
 }
 
 /// Rays from cameras all round, above and below.
-fn shoot(profile: &Profile, offset: Offset, rows: u32, count: usize) -> (Tally, String) {
+fn shoot(profile: &Profile, offset: Offset, count: usize) -> (Tally, String) {
     let options = CutOptions::default();
-    shoot_at(profile, outline(profile), &options, offset, rows, count)
+    shoot_at(profile, outline(profile), &options, offset, count)
 }
 
 /// The same, with pieces made from `own`.
@@ -70,13 +71,12 @@ fn shoot_at(
     own: &Outline,
     options: &CutOptions,
     offset: Offset,
-    rows: u32,
     count: usize,
 ) -> (Tally, String) {
     let source = ContourSource::new(own).unwrap();
     let contour = source.contour(&offset).unwrap();
     let pieces = cut(&contour, options);
-    let tables = Tables::new(&pieces, rows);
+    let tables = Tables::new(&pieces, ROWS);
     let tally = against_offset(profile, offset, count, |origin, direction| {
         trace_pieces(&tables, profile.radius, DVec2::ZERO, origin, direction)
             .map(|hit| (hit.t, hit.normal))
@@ -154,7 +154,7 @@ fn check(
     count: usize,
     failures: &mut Vec<String>,
 ) -> [usize; 2] {
-    let (tally, words) = shoot(profile, offset, 64, count);
+    let (tally, words) = shoot(profile, offset, count);
     let p99 = quantile(&tally.depth, 0.99);
     let words = format!(
         "{name:8} {words} {:6} hits {:3} wrong, depth p99 {p99:.4} max {:.3} texels, normal p99 {:.3} max {:.2}",
@@ -230,7 +230,7 @@ fn hulls_lose_no_ray() {
             }
             let source = ContourSource::new(outline(&profile)).unwrap();
             let pieces = cut(&source.contour(&offset).unwrap(), &CutOptions::default());
-            let tables = Tables::new(&pieces, 64);
+            let tables = Tables::new(&pieces, ROWS);
             let records: Vec<Record> = pieces
                 .iter()
                 .enumerate()
@@ -506,7 +506,7 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
                 tolerance: traced.tolerance,
             };
             let offset = Offset::default();
-            let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, 64, count);
+            let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, count);
             let (wrong, p99) = (
                 tally.wrong as f64 / tally.hits as f64,
                 quantile(&tally.depth, 0.99),
@@ -544,7 +544,7 @@ fn eyes_inside_and_boxes_that_cut() {
             profile.radius = radius;
             let source = ContourSource::new(outline(&profile)).unwrap();
             let contour = source.contour(&Offset::default()).unwrap();
-            let tables = Tables::new(&cut(&contour, &CutOptions::default()), 64);
+            let tables = Tables::new(&cut(&contour, &CutOptions::default()), ROWS);
             let mut object = Object::new("test", Arc::new(profile.clone()));
             object.axis = [axis, 0.5];
             let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));

@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 use revmap::gpu::blocks::{FrameBlock, InstanceBlock, LightBlock, ShadowBlock, SolidBlock};
+use revmap::pieces::{ROWS, Tables};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::Settings;
@@ -18,6 +19,7 @@ mod op {
     pub const MEMBER_NAME: u32 = 6;
     pub const DECORATE: u32 = 71;
     pub const MEMBER_DECORATE: u32 = 72;
+    pub const FUNCTION: u32 = 54;
     pub const SPEC_ID: u32 = 1;
     pub const OFFSET: u32 = 35;
 }
@@ -179,6 +181,36 @@ fn a_variant_sets_every_specialisation_constant() {
         all.extend(used);
     }
     assert_eq!(all, set);
+}
+
+/// There is one pipeline of beam.comp, whatever the variant.
+#[test]
+fn no_variant_changes_how_tiles_are_listed() {
+    let read = |words| {
+        let all = instructions(words);
+        let constants: BTreeSet<u32> = all
+            .iter()
+            .filter(|(code, w)| *code == op::DECORATE && w[1] == op::SPEC_ID)
+            .map(|(_, w)| w[0])
+            .collect();
+        let code = all.iter().skip_while(|(code, _)| *code != op::FUNCTION);
+        code.flat_map(|(_, w)| w.iter())
+            .filter(|word| constants.contains(word))
+            .count()
+    };
+    assert_eq!(read(g::BEAM_COMP), 0);
+    assert!(read(g::TRACE_COLOR_COMP) > 0);
+}
+
+/// The tree over the rows of tables, as beams and searches count on it.
+#[test]
+fn tables_have_the_rows_and_nodes_of_the_shaders() {
+    let tables = Tables::new(&[], ROWS);
+    assert_eq!(ROWS, g::PIECE_ROWS);
+    assert_eq!(tables.nodes.len(), g::PIECE_NODES as usize);
+    let [rows, beams] = [0, 1].map(|level| tables.levels[level]);
+    assert_eq!((rows, beams), (0, g::BEAM_FIRST_NODE));
+    assert_eq!(tables.levels[2] - beams, g::BEAM_NODES);
 }
 
 /// What is kept was made from today's sources; and word for word, where the same compiler makes it here.

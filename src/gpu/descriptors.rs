@@ -1,5 +1,7 @@
 //! Descriptor sets and samplers.
 
+use super::blocks::SolidBlock;
+use super::buffers::Buffers;
 use super::call::Call;
 use super::device::Shared;
 use super::memory::Buffer;
@@ -164,46 +166,21 @@ impl Descriptors {
         set
     }
 
-    /// Points set 0 to its buffers; of the batch blocks one is seen at a time.
-    pub fn frame(
-        &self,
-        frame: &Buffer,
-        batches: (&Buffer, u64),
-        instances: &Buffer,
-        shadows: &Buffer,
-        pieces: &Buffer,
-    ) {
+    /// Points set 0 to its buffers; of the batch blocks one is seen at a time, of the tables a window.
+    pub fn frame(&self, buffers: &Buffers) {
         use vk::DescriptorType as T;
-        self.buffer(self.frame, 0, T::UNIFORM_BUFFER, frame.raw, vk::WHOLE_SIZE);
-        self.buffer(
-            self.frame,
-            1,
-            T::UNIFORM_BUFFER_DYNAMIC,
-            batches.0.raw,
-            batches.1,
-        );
-        self.buffer(
-            self.frame,
-            2,
-            T::STORAGE_BUFFER,
-            instances.raw,
-            vk::WHOLE_SIZE,
-        );
-        self.buffer(
-            self.frame,
-            3,
-            T::UNIFORM_BUFFER,
-            shadows.raw,
-            vk::WHOLE_SIZE,
-        );
-        self.buffer(self.frame, 4, T::STORAGE_BUFFER, pieces.raw, vk::WHOLE_SIZE);
-        self.buffer(
-            self.frame,
-            5,
-            T::UNIFORM_BUFFER_DYNAMIC,
-            pieces.raw,
-            16 * u64::from(PIECE_VECTORS),
-        );
+        let block = size_of::<SolidBlock>() as u64;
+        let window = 16 * u64::from(PIECE_VECTORS);
+        for (binding, (kind, buffer, range)) in (0u32..).zip([
+            (T::UNIFORM_BUFFER, &buffers.frame, vk::WHOLE_SIZE),
+            (T::UNIFORM_BUFFER_DYNAMIC, &buffers.batches, block),
+            (T::STORAGE_BUFFER, &buffers.instances, vk::WHOLE_SIZE),
+            (T::UNIFORM_BUFFER, &buffers.shadows, vk::WHOLE_SIZE),
+            (T::STORAGE_BUFFER, &buffers.pieces, vk::WHOLE_SIZE),
+            (T::UNIFORM_BUFFER_DYNAMIC, &buffers.pieces, window),
+        ]) {
+            self.buffer(self.frame, binding, kind, buffer.raw, range);
+        }
     }
 
     /// Points set 2 to a target and the bins.

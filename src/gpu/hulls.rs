@@ -2,10 +2,12 @@
 
 use super::batch::axis_offset;
 use super::bins::{Rectangle, rectangle};
+use super::cuts::Cut;
 use crate::pieces::{Hull, HullOptions, Piece, Record};
 use crate::scene::{CameraFrame, Object, Placement};
 use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 
 /// By how much an eye has to stand clear of a shell, and a shell of the near plane, object units.
 const CLEARANCE: f64 = 1e-3;
@@ -13,31 +15,44 @@ const CLEARANCE: f64 = 1e-3;
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
 pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * HULL_TESTS);
 
+/// A hull, and its bands in the layout of `hull.vert`.
+pub(crate) struct Shell {
+    pub hull: Hull,
+    pub vectors: Vec<[u32; 4]>,
+}
+
+impl Shell {
+    pub fn new(pieces: &[Piece]) -> Self {
+        let options = HullOptions {
+            sides: HULL_SIDES,
+            tests: HULL_TESTS,
+            ..HullOptions::default()
+        };
+        let hull = Hull::new(pieces, &options);
+        let vectors = pack(&hull, pieces);
+        Self { hull, vectors }
+    }
+}
+
 /// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
-fn is_whole(object: &Object, pieces: &[Piece]) -> bool {
+fn is_whole(object: &Object, cut: &Cut) -> bool {
     let radius = object.profile.radius;
     let [x, y] = axis_offset(object);
     let side_face = radius - x.abs().max(y.abs());
-    object.repeat == [1; 3] && pieces.iter().all(|p| p.r[1] <= side_face)
+    object.repeat == [1; 3] && cut.extent()[0] <= side_face
 }
 
 /// Whether rays of an object's one copy can be taken between the ends that beams give: they begin outside the solid and no face
 /// of the box shows.
-pub(crate) fn takes_beams(object: &Object, pieces: &[Piece], camera: &CameraFrame) -> bool {
+pub(crate) fn takes_beams(object: &Object, cut: &Cut, camera: &CameraFrame) -> bool {
     let [placement] = object.placements() else {
         return false;
     };
     let (eye, _) = seen_from(object, placement, camera);
-    let eye = DVec2::new(eye.truncate().length(), eye.z);
-    let whole = pieces
-        .iter()
-        .fold([0.0f64, f64::INFINITY, f64::NEG_INFINITY], |m, p| {
-            [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-        });
-    let apart = eye.x > whole[0] + CLEARANCE
-        || eye.y < whole[1] - CLEARANCE
-        || eye.y > whole[2] + CLEARANCE;
-    apart && is_whole(object, pieces)
+    let eye = flat(eye);
+    let [r_max, z_min, z_max] = cut.extent();
+    let apart = eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE;
+    apart && is_whole(object, cut)
 }
 
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.
@@ -61,32 +76,47 @@ pub(crate) struct View<'a> {
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
 const SAMPLES: usize = 64;
 
-/// The hull of `object` whose boundary the pieces are, if it shows from this camera all that the box would (the eye is outside all shells,
+/// The hull of `object` whose boundary was cut, if it shows from this camera all that the box would (the eye is outside all shells,
 /// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
-pub(crate) fn of(object: &Object, pieces: &[Piece], view: &View) -> Option<Hull> {
-    if !is_whole(object, pieces) {
+pub(crate) fn of<'a>(object: &Object, cut: &'a Cut, view: &View) -> Option<Wrapped<'a>> {
+    if !is_whole(object, cut) {
         return None;
     }
-    let hull = Hull::new(
-        pieces,
-        &HullOptions {
-            sides: HULL_SIDES,
-            tests: HULL_TESTS,
-            ..HullOptions::default()
-        },
-    );
+    let hull = &cut.shell().hull;
     let copies = object.placements();
     let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));
     let count = sampled.len().max(1);
     let covered: u64 = sampled
+        .clone()
         .filter_map(|copy| rectangle(view.camera, view.size, 1, object.profile.radius, copy))
         .map(Rectangle::squares)
         .sum();
-    if covered < u64::from(view.from) * (hull.bands.len() * count) as u64 {
+    let eyes: Vec<DVec2> = sampled
+        .map(|copy| flat(seen_from(object, copy, view.camera).0))
+        .collect();
+    let bands = if eyes.len() == copies.len() {
+        hull.seen_from(&eyes)
+    } else {
+        vec![0..hull.bands.len() as u32]
+    };
+    let drawn: usize = bands.iter().map(ExactSizeIterator::len).sum();
+    if covered < u64::from(view.from) * (drawn * count) as u64 {
         return None;
     }
-    let seen = |copy| is_in_front(&hull, seen_from(object, copy, view.camera), view.near);
-    object.placements().iter().all(seen).then_some(hull)
+    let seen = |copy| is_in_front(hull, seen_from(object, copy, view.camera), view.near);
+    copies.iter().all(seen).then_some(Wrapped { hull, bands })
+}
+
+/// A hull, and what of it may be seen.
+pub(crate) struct Wrapped<'a> {
+    pub hull: &'a Hull,
+    /// Runs of bands.
+    pub bands: Vec<Range<u32>>,
+}
+
+/// A point as the half-plane has it.
+fn flat(p: DVec3) -> DVec2 {
+    DVec2::new(p.truncate().length(), p.z)
 }
 
 /// Whether a copy's shells are all in front of the near plane, and the eye in none of them.
@@ -97,12 +127,12 @@ fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), near: f64) -> bool {
         let lowest = (forward.z * (low - eye.z)).min(forward.z * (high - eye.z));
         lowest - forward.truncate().dot(eye.truncate()) - r * aside >= near + margin
     });
-    ahead && hull.clear_of(DVec2::new(eye.truncate().length(), eye.z), CLEARANCE)
+    ahead && hull.clear_of(flat(eye), CLEARANCE)
 }
 
-/// Appends a hull's bands in the layout of `hull.vert`; returns where they stand.
-pub(crate) fn append(hull: &Hull, pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> usize {
-    let begin = out.len();
+/// A hull's bands in the layout of `hull.vert`.
+fn pack(hull: &Hull, pieces: &[Piece]) -> Vec<[u32; 4]> {
+    let mut out = Vec::with_capacity(hull.bands.len() * BAND_VECTORS as usize);
     // A guard that nothing passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0]];
     for band in &hull.bands {
@@ -116,8 +146,13 @@ pub(crate) fn append(hull: &Hull, pieces: &[Piece], out: &mut Vec<[u32; 4]>) -> 
             out.extend(vectors.map(|v| v.map(f32::to_bits)));
         }
     }
-    debug_assert_eq!(out.len() - begin, hull.bands.len() * BAND_VECTORS as usize);
-    begin
+    debug_assert_eq!(out.len(), hull.bands.len() * BAND_VECTORS as usize);
+    out
+}
+
+/// How many corners the triangles of so many bands have.
+pub(crate) fn corners(bands: u32) -> u32 {
+    6 * HULL_SIDES * bands
 }
 
 /// Corners that every band's triangles join, in the numbering of `hull.vert`: `2 n` vertices a band, the rings one after the other.

@@ -20,6 +20,8 @@ pub(crate) struct Meshes {
     depths: Vec<f64>,
     segments: u32,
     rings: u32,
+    /// Contours that were cut.
+    cuts: u64,
     device: Arc<Shared>,
 }
 
@@ -29,10 +31,18 @@ struct Drawable {
     start: u32,
 }
 
+/// A mesh that an object is to be drawn with, made, but not necessarily on the device.
+pub(crate) struct Planned {
+    profile: usize,
+    offset: Offset,
+    mesh: Arc<Mesh>,
+    there: Option<Arc<Uploaded>>,
+}
+
 struct Uploaded {
     profile: usize,
     offset: Offset,
-    mesh: Mesh,
+    mesh: Arc<Mesh>,
     count: u32,
     kind: vk::IndexType,
     vertices: Buffer,
@@ -67,39 +77,72 @@ impl Meshes {
             depths: vec![0.0; count],
             segments,
             rings,
+            cuts: 0,
             device: device.clone(),
         }))
     }
 
-    /// Makes object `number`'s mesh if its offset has moved. Returns its placements, the nearest first, and whether both sides of its
-    /// triangles must be drawn.
-    pub fn update(
-        &mut self,
-        number: usize,
-        scene: &Scene,
-        contours: &Contours,
-        camera: &CameraFrame,
-        commands: &Commands,
-    ) -> Result<(Vec<Placement>, bool)> {
-        let object = &scene.objects[number];
+    /// Makes the meshes whose offset has moved; nothing that is drawn is changed.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] for what meshes do not draw.
+    pub fn plan(&mut self, scene: &Scene, contours: &Contours) -> Result<Vec<Planned>> {
         if scene.shadow != Shadow::Off {
             return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
         }
-        let key = |key: &str| format!("object.{number}.{key}");
-        if object.repeat != [1; 3] {
-            return Err(
-                refused("draws one cell; give [1, 1, 1], and instances").at_key(key("repeat"))
-            );
+        let mut all: Vec<Planned> = Vec::new();
+        for (number, object) in scene.objects.iter().enumerate() {
+            let key = |key: &str| format!("object.{number}.{key}");
+            if object.repeat != [1; 3] {
+                return Err(
+                    refused("draws one cell; give [1, 1, 1], and instances").at_key(key("repeat"))
+                );
+            }
+            let contour = contours.get(object)?;
+            let (profile, offset) = (contour.key(), object.offset);
+            let mut made = self.made.iter().flatten().map(|d| &d.shared);
+            let there = made.find(|u| u.profile == profile && u.offset == offset);
+            let mut before = all.iter();
+            let mesh = match (
+                there,
+                before.find(|p| p.profile == profile && p.offset == offset),
+            ) {
+                (Some(there), _) => there.mesh.clone(),
+                (None, Some(before)) => before.mesh.clone(),
+                (None, None) => {
+                    let contour = contour.contour(&offset)?;
+                    self.cuts += 1;
+                    Arc::new(Mesh::new(&contour, self.segments, self.rings))
+                }
+            };
+            check_box(object, mesh.extent[0]).map_err(|(k, e)| e.at_key(key(k)))?;
+            all.push(Planned {
+                profile,
+                offset,
+                mesh,
+                there: there.cloned(),
+            });
         }
-        let known = contours.key();
-        let fits = |u: &Uploaded| u.profile == known && u.offset == object.offset;
-        let there = self.made.iter().flatten().find(|d| fits(&d.shared));
-        let shared = match there {
-            Some(drawable) => drawable.shared.clone(),
-            None => Arc::new(self.upload(object, contours, commands)?),
-        };
-        check_box(object, shared.mesh.extent[0]).map_err(|(k, e)| e.at_key(key(k)))?;
+        Ok(all)
+    }
 
+    /// Gives object `number` its mesh. Returns its placements, the nearest first, and whether both sides of its triangles must be
+    /// drawn.
+    pub fn update(
+        &mut self,
+        number: usize,
+        object: &Object,
+        planned: &Planned,
+        camera: &CameraFrame,
+        commands: &Commands,
+    ) -> Result<(Vec<Placement>, bool)> {
+        let same = |u: &Uploaded| u.profile == planned.profile && u.offset == planned.offset;
+        let mut made = self.made.iter().flatten().map(|d| &d.shared);
+        let there = planned.there.as_ref().or_else(|| made.find(|u| same(u)));
+        let shared = match there {
+            Some(there) => there.clone(),
+            None => Arc::new(self.upload(planned, commands)?),
+        };
         let mut placements = object.placements().to_vec();
         let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
         placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -122,17 +165,8 @@ impl Meshes {
         Ok((placements, both_sides))
     }
 
-    fn upload(
-        &self,
-        object: &Object,
-        contours: &Contours,
-        commands: &Commands,
-    ) -> Result<Uploaded> {
-        let mesh = Mesh::new(
-            &contours.contour(&object.offset)?,
-            self.segments,
-            self.rings,
-        );
+    fn upload(&self, planned: &Planned, commands: &Commands) -> Result<Uploaded> {
+        let mesh = &planned.mesh;
         let upload =
             |name, usage, bytes: &[u8]| upload_buffer(&self.device, commands, name, usage, bytes);
         let vertices = upload(
@@ -147,14 +181,19 @@ impl Meshes {
         };
         let indices = upload("indices", vk::BufferUsageFlags::INDEX_BUFFER, bytes)?;
         Ok(Uploaded {
-            profile: contours.key(),
-            offset: object.offset,
+            profile: planned.profile,
+            offset: planned.offset,
             count: u32::try_from(mesh.indices.len()).unwrap_or(0),
             kind,
-            mesh,
+            mesh: mesh.clone(),
             vertices,
             indices,
         })
+    }
+
+    /// How many contours have been cut.
+    pub fn cuts(&self) -> u64 {
+        self.cuts
     }
 
     /// Objects in the order in which to draw them.

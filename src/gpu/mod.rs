@@ -7,10 +7,12 @@
 mod batch;
 mod bins;
 pub mod blocks;
+mod buffers;
 mod call;
 mod clock;
 mod commands;
 mod contours;
+mod cuts;
 mod descriptors;
 mod device;
 mod hulls;
@@ -18,19 +20,27 @@ mod instance;
 mod memory;
 mod meshes;
 mod messages;
+mod parts;
 mod pipelines;
 mod read_back;
+mod record;
+mod render_pass;
 mod renderer;
 mod report;
+mod searches;
 mod srgb;
+mod tables;
 mod target;
 mod textures;
+mod update;
 mod usage;
+mod work;
 
 pub use device::Device;
 pub use instance::VALIDATION_VARIABLE;
 pub use renderer::{Renderer, Times};
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
+pub use work::Way;
 
 use crate::error::Result;
 use crate::frame::Frame;
@@ -48,6 +58,8 @@ pub struct Drawn {
     pub map_bytes: [u64; 2],
     /// [`Renderer::notes`].
     pub notes: Vec<String>,
+    /// [`Renderer::ways`].
+    pub ways: Vec<Way>,
 }
 
 /// Draws a scene once: bakes its maps, uploads, draws, reads back.
@@ -63,6 +75,7 @@ pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn
         times,
         map_bytes: renderer.map_bytes(),
         notes: renderer.notes().to_vec(),
+        ways: renderer.ways(),
     };
     drop(renderer);
     device.check()?;

@@ -2,6 +2,7 @@
 
 use super::call::Call;
 use super::device::Shared;
+use super::render_pass::{color_formats, render_pass};
 use crate::error::Result;
 use crate::mesh::Vertex;
 use crate::settings::Planes;
@@ -10,16 +11,6 @@ use crate::shader::{Variant, generated as spirv};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Formats of the colour attachments of the fragment path, in order of location.
-pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
-    match planes {
-        Planes::Color => &[vk::Format::R8G8B8A8_SRGB],
-        Planes::All => &[vk::Format::R32G32B32A32_SFLOAT; 4],
-    }
-}
-
-pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 /// What a pipeline draws with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,8 +21,6 @@ pub(crate) enum Kind {
     Hull,
     /// Bins of pixels.
     Compute,
-    /// The list of tiles that a batch's rays may meet.
-    Beam,
     /// Meshes, rasterised; `both_sides`: an eye may be inside.
     Mesh {
         /// Whether back faces show.
@@ -48,6 +37,8 @@ pub(crate) struct Pipelines {
     planes: Planes,
     cache: vk::PipelineCache,
     made: HashMap<(Variant, Kind), vk::Pipeline>,
+    /// The list of tiles that a batch's rays may meet.
+    beam: Option<vk::Pipeline>,
     device: Arc<Shared>,
 }
 
@@ -60,6 +51,7 @@ impl Pipelines {
             planes,
             cache: vk::PipelineCache::null(),
             made: HashMap::new(),
+            beam: None,
             device: device.clone(),
         };
         let raw = &device.raw;
@@ -148,11 +140,27 @@ impl Pipelines {
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
         let pipeline = match kind {
-            Kind::Compute | Kind::Beam => self.compute(kind, &specialization)?,
+            Kind::Compute => {
+                let words = match self.planes {
+                    Planes::Color => spirv::TRACE_COLOR_COMP,
+                    Planes::All => spirv::TRACE_PLANES_COMP,
+                };
+                self.compute(words, &specialization)?
+            }
             Kind::Box | Kind::Hull | Kind::Mesh { .. } => self.graphics(kind, &specialization)?,
         };
         self.made.insert(key, pipeline);
         Ok(pipeline)
+    }
+
+    /// The pipeline that lists tiles: one, as it reads none of a variant's constants.
+    pub fn beam(&mut self) -> Result<vk::Pipeline> {
+        if let Some(made) = self.beam {
+            return Ok(made);
+        }
+        let made = self.compute(spirv::BEAM_COMP, &vk::SpecializationInfo::default())?;
+        self.beam = Some(made);
+        Ok(made)
     }
 
     fn module(&self, words: &[u32]) -> Result<Module<'_>> {
@@ -168,14 +176,10 @@ impl Pipelines {
 
     fn compute(
         &self,
-        kind: Kind,
+        words: &[u32],
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let module = self.module(match (kind, self.planes) {
-            (Kind::Beam, _) => spirv::BEAM_COMP,
-            (_, Planes::Color) => spirv::TRACE_COLOR_COMP,
-            (_, Planes::All) => spirv::TRACE_PLANES_COMP,
-        })?;
+        let module = self.module(words)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
             .layout(self.layout);
@@ -307,7 +311,7 @@ impl Drop for Pipelines {
         let raw = &self.device.raw;
         // SAFETY: every submission was waited for; null handles may be destroyed.
         unsafe {
-            for pipeline in self.made.values() {
+            for pipeline in self.made.values().chain(&self.beam) {
                 raw.destroy_pipeline(*pipeline, None);
             }
             raw.destroy_pipeline_cache(self.cache, None);
@@ -353,73 +357,4 @@ impl Drop for Module<'_> {
         // SAFETY: pipelines made of a module do not need it afterwards.
         unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
     }
-}
-
-/// Cleared at its start; its colours are left ready to be copied from.
-fn render_pass(device: &Shared, planes: Planes) -> Result<vk::RenderPass> {
-    let mut attachments: Vec<_> = color_formats(planes)
-        .iter()
-        .map(|format| {
-            vk::AttachmentDescription::default()
-                .format(*format)
-                .samples(vk::SampleCountFlags::TYPE_1)
-                .load_op(vk::AttachmentLoadOp::CLEAR)
-                .store_op(vk::AttachmentStoreOp::STORE)
-                .final_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL)
-        })
-        .collect();
-    let colors: Vec<_> = (0u32..)
-        .take(attachments.len())
-        .map(|n| {
-            vk::AttachmentReference::default()
-                .attachment(n)
-                .layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-        })
-        .collect();
-    let depth = vk::AttachmentReference::default()
-        .attachment(u32::try_from(colors.len()).unwrap_or(0))
-        .layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-    attachments.push(
-        vk::AttachmentDescription::default()
-            .format(DEPTH_FORMAT)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::DONT_CARE)
-            .final_layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL),
-    );
-    let subpasses = [vk::SubpassDescription::default()
-        .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
-        .color_attachments(&colors)
-        .depth_stencil_attachment(&depth)];
-    use vk::AccessFlags as A;
-    use vk::PipelineStageFlags as S;
-    let fragment_tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
-    let dependencies = [
-        // The last frame's copies and depth tests are over before this one's clears.
-        vk::SubpassDependency::default()
-            .src_subpass(vk::SUBPASS_EXTERNAL)
-            .src_stage_mask(S::TRANSFER | fragment_tests | S::COLOR_ATTACHMENT_OUTPUT)
-            .dst_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | fragment_tests)
-            .src_access_mask(
-                A::TRANSFER_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_WRITE,
-            )
-            .dst_access_mask(
-                A::COLOR_ATTACHMENT_WRITE
-                    | A::DEPTH_STENCIL_ATTACHMENT_READ
-                    | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
-            ),
-        // This frame's colours are there before they are copied.
-        vk::SubpassDependency::default()
-            .dst_subpass(vk::SUBPASS_EXTERNAL)
-            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT)
-            .dst_stage_mask(S::TRANSFER)
-            .src_access_mask(A::COLOR_ATTACHMENT_WRITE)
-            .dst_access_mask(A::TRANSFER_READ),
-    ];
-    let info = vk::RenderPassCreateInfo::default()
-        .attachments(&attachments)
-        .subpasses(&subpasses)
-        .dependencies(&dependencies);
-    // SAFETY: `info` and all it points to live until the call returns.
-    unsafe { device.raw.create_render_pass(&info, None) }.call("vkCreateRenderPass")
 }

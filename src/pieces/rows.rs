@@ -60,8 +60,8 @@ pub struct Tables {
     pub reach: f32,
 }
 
-/// Rows where nothing else is asked for.
-pub const ROWS: u32 = 64;
+/// Rows that the shaders draw with: a power of 4, which fills the tree. Fewer are made in less time.
+pub const ROWS: u32 = 256;
 
 impl Tables {
     /// Deals pieces out to `rows` rows (at least 1, at most 4096).

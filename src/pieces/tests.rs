@@ -156,7 +156,7 @@ fn rows_and_nodes_contain_their_pieces() {
         .contour(&Offset::default())
         .unwrap();
     let pieces = cut(&contour, &CutOptions::default());
-    for rows in [1, 7, 64, 100] {
+    for rows in [1, 7, 64, 100, ROWS] {
         let tables = Tables::new(&pieces, rows);
         let top = tables.levels.len() - 1;
         assert!(tables.nodes.len() - tables.levels[top] as usize <= 4);

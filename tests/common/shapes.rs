@@ -53,24 +53,24 @@ pub fn vase() -> Profile {
 
 /// A thin-walled glass with foot and stem: walls of 0.015.
 pub fn glass() -> Profile {
-    polygon(
-        &[
-            [0.0, 0.04],
-            [0.26, 0.04],
-            [0.26, 0.06],
-            [0.04, 0.1],
-            [0.035, 0.4],
-            [0.18, 0.5],
-            [0.3, 0.7],
-            [0.28, 0.95],
-            [0.265, 0.95],
-            [0.285, 0.7],
-            [0.17, 0.52],
-            [0.0, 0.44],
-        ],
-        0.5,
-    )
+    polygon(&GLASS, 0.5)
 }
+
+/// Its points; the seventh is the widest.
+pub const GLASS: [[f64; 2]; 12] = [
+    [0.0, 0.04],
+    [0.26, 0.04],
+    [0.26, 0.06],
+    [0.04, 0.1],
+    [0.035, 0.4],
+    [0.18, 0.5],
+    [0.3, 0.7],
+    [0.28, 0.95],
+    [0.265, 0.95],
+    [0.285, 0.7],
+    [0.17, 0.52],
+    [0.0, 0.44],
+];
 
 /// Nineteen thin discs on a spindle.
 pub fn discs() -> Profile {
