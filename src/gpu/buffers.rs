@@ -93,8 +93,9 @@ impl Buffers {
     pub fn fit_corners(&mut self, bands: usize) -> Result<()> {
         let bytes = 4 * hulls::corners(bands as u32) as usize;
         if self.corners.bytes < bytes as u64 {
-            self.corners = indices(&self.device, bytes)?;
-            write_slice(&mut self.corners, &hulls::indices(bands))?;
+            let mut corners = indices(&self.device, bytes)?;
+            write_slice(&mut corners, &hulls::indices(bands))?;
+            self.corners = corners;
         }
         Ok(())
     }
