@@ -3,14 +3,15 @@
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::front::{WORTH, front};
-use super::chart::style::{PALE, Style};
+use super::chart::style::{Dash, PALE, Style};
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
 use super::folder::write_text;
+use super::looks::{Looks, of_source, style};
 use super::machine::Machine;
 use super::map_error::MapError;
 use super::measure::Measured;
 use super::names::{self, number, stage};
-use super::overview::{self, Looks, keep_figure, safe};
+use super::overview::{self, keep_figure, safe};
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Labels, Plan, is_papers_loop, variant};
@@ -19,8 +20,7 @@ use super::row::Row;
 use super::sweep::{has_budget, has_rows};
 use super::text::percent;
 use crate::error::Result;
-use crate::maps::MapSource;
-use crate::settings::{DrawStage, Settings, Solver};
+use crate::settings::{Settings, Solver};
 use std::path::Path;
 
 /// An error that a chart can show.
@@ -98,25 +98,6 @@ fn budget(s: &Settings) -> Option<String> {
     has_budget(s.solver).then(|| steps.to_string())
 }
 
-/// A search in a stage looks the same in all charts.
-fn style(solver: Solver, stage: DrawStage) -> Style {
-    Style {
-        index: Solver::ALL
-            .iter()
-            .position(|s| *s == solver)
-            .unwrap_or(Solver::ALL.len() + 1), // of meshes, after the papers' loop
-        filled: stage != DrawStage::Compute,
-    }
-}
-
-/// The style of the papers' loop: one that no search has.
-fn papers_style(stage: DrawStage) -> Style {
-    Style {
-        index: Solver::ALL.len(),
-        filled: stage != DrawStage::Compute,
-    }
-}
-
 /// Error against time of every search swept over its steps, in both stages, with the front over all of them.
 #[must_use]
 pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -> Figure {
@@ -133,15 +114,9 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
         places.push((time.value, error));
         let s = &row.settings;
         let (name, style) = if papers {
-            (
-                format!("papers' loop, {}", stage(s.stage)),
-                papers_style(s.stage),
-            )
+            (format!("papers' loop, {}", stage(s.stage)), style(s))
         } else {
-            (
-                format!("{}, {}", s.solver.name(), stage(s.stage)),
-                style(s.solver, s.stage),
-            )
+            (format!("{}, {}", s.solver.name(), stage(s.stage)), style(s))
         };
         let label = budget(s);
         let point = Point {
@@ -200,7 +175,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
-                style: source_style(source),
+                style: of_source(source),
                 points: vec![point],
                 joined: false,
             }),
@@ -220,18 +195,6 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
     )
 }
 
-fn source_style(source: MapSource) -> Style {
-    let index = match source {
-        MapSource::Binary => 1,
-        MapSource::Coverage => 0,
-        MapSource::Exact => 2,
-    };
-    Style {
-        index,
-        filled: true,
-    }
-}
-
 fn chart(title: &str, measure: Measure, series: Vec<Series>, best: &[(f64, f64)]) -> Figure {
     XyChart {
         title: title.to_owned(),
@@ -242,7 +205,8 @@ fn chart(title: &str, measure: Measure, series: Vec<Series>, best: &[(f64, f64)]
             name: "Pareto front".into(),
             points: stairs(best),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()
@@ -280,7 +244,7 @@ pub fn resolution(
         if let Some(y) = measure.of(row) {
             add(
                 format!("{}, drawn", names::source(source)),
-                source_style(source),
+                of_source(source),
                 Point {
                     x: f64::from(count),
                     y,
@@ -298,7 +262,7 @@ pub fn resolution(
         if let Some(y) = value {
             let style = Style {
                 filled: false,
-                ..source_style(error.source)
+                ..of_source(error.source)
             };
             add(
                 format!("{}, the map alone", names::source(error.source)),
@@ -488,15 +452,9 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
         let x = ratio.time.value;
         places.push((x, y));
         let (name, style) = if papers {
-            (
-                format!("papers' loop, {}", stage(s.stage)),
-                papers_style(s.stage),
-            )
+            (format!("papers' loop, {}", stage(s.stage)), style(s))
         } else {
-            (
-                format!("{}, {}", s.solver.name(), stage(s.stage)),
-                style(s.solver, s.stage),
-            )
+            (format!("{}, {}", s.solver.name(), stage(s.stage)), style(s))
         };
         let label = budget(s);
         let point = Point { x, y, label };
@@ -525,7 +483,8 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
             name: "Pareto front".into(),
             points: stairs(&best.into_iter().map(|i| places[i]).collect::<Vec<_>>()),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()

@@ -9,6 +9,7 @@ pub mod csv;
 pub mod curves;
 mod device;
 pub mod folder;
+pub mod looks;
 pub mod machine;
 pub mod map_error;
 pub mod measure;

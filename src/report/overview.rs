@@ -5,17 +5,18 @@ use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
 use super::chart::front::{WORTH, front};
 use super::chart::raster::raster;
-use super::chart::style::{PALE, Style};
+use super::chart::style::{Dash, PALE};
 use super::chart::svg::svg;
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
 use super::curves::{self, Measure};
 use super::folder::{left_out, make, write_bytes, write_text};
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
 use super::page::Page;
 use super::pictures::{Album, heat_key, png};
-use super::plan::{Labels, Plan, variant};
+use super::plan::{Plan, variant};
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::{CLOCKS_APART, Row};
 use super::text::{self, interval, percent};
@@ -25,51 +26,6 @@ use std::path::Path;
 
 /// Errors below this many texels are drawn as this many: no eye and no other use tells them apart.
 pub const LEAST_DEPTH: f64 = 1e-4;
-
-/// Which way of drawing looks how: colour and marker by what is drawn, filled in the fragment stage.
-#[derive(Clone, Debug)]
-pub struct Looks {
-    labels: Labels,
-    ways: Vec<String>,
-}
-
-impl Looks {
-    /// Looks for these ways.
-    #[must_use]
-    pub fn new<'a>(settings: impl IntoIterator<Item = &'a Settings> + Clone) -> Self {
-        let labels = Labels::new(settings.clone());
-        let mut ways = Vec::new();
-        for s in settings {
-            let way = labels.way(s);
-            if !ways.contains(&way) {
-                ways.push(way);
-            }
-        }
-        Self { labels, ways }
-    }
-
-    /// The name of a way, without its stage.
-    #[must_use]
-    pub fn way(&self, s: &Settings) -> String {
-        self.labels.way(s)
-    }
-
-    /// The name of a way and its stage.
-    #[must_use]
-    pub fn name(&self, s: &Settings) -> String {
-        format!("{}, {}", self.labels.way(s), stage(s.stage))
-    }
-
-    /// How it looks.
-    #[must_use]
-    pub fn style(&self, s: &Settings) -> Style {
-        let way = self.labels.way(s);
-        Style {
-            index: self.ways.iter().position(|w| *w == way).unwrap_or(0),
-            filled: s.stage != DrawStage::Compute,
-        }
-    }
-}
 
 /// Writes a figure as SVG and as PNG of twice its size into `folder/charts`.
 ///
@@ -183,7 +139,8 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
             name: "Pareto front".into(),
             points: stairs(&best),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()

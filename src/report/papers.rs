@@ -2,13 +2,14 @@
 
 use super::chart::Figure;
 use super::chart::axis::Axis;
-use super::chart::style::PALE;
+use super::chart::style::{Dash, PALE};
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, Looks, keep_figure};
+use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Plan, variant};
@@ -426,7 +427,8 @@ fn chart(
             name: "print, GeForce GT 630M".into(),
             points: print,
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     };
     Some(figure.figure())

@@ -4,10 +4,11 @@ use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, Looks, keep_figure};
+use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::plan::{Plan, papers_loop, variant};
 use super::row::Row;
@@ -365,8 +366,9 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             Some(Guide {
                 name: String::new(),
                 points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
-                color: looks.style(&g.way).color(),
-                dashed: g.way.stage == DrawStage::Compute,
+                color: looks.style(&g.way).color,
+                dash: looks.style(&g.way).dash,
+                width: looks.style(&g.way).line(),
             })
         })
         .collect();
@@ -408,7 +410,7 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
         )?;
         page.figure(
             &figure,
-            "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, dashed in the compute stage.",
+            "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, thinner in the compute stage.",
         );
         page.table(&HEADER, &records(&all, &looks), &[0, 1]);
     }

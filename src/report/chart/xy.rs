@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Scale};
 use super::letters::{width, wrap};
-use super::style::{GRID, INK, PALE, PAPER, Style};
+use super::style::{Dash, GRID, INK, PALE, PAPER, Style};
 use super::{Anchor, Bounds, Figure, Mark, overlap};
 
 /// A point of a series.
@@ -38,8 +38,10 @@ pub struct Guide {
     pub points: Vec<(f64, f64)>,
     /// Colour.
     pub color: &'static str,
-    /// Whether it is dashed.
-    pub dashed: bool,
+    /// How it is broken.
+    pub dash: Dash,
+    /// Width, pixels.
+    pub width: f64,
 }
 
 /// A chart of points.
@@ -112,8 +114,8 @@ impl XyChart {
                 marks.push(Mark::Line {
                     points,
                     color: guide.color,
-                    width: 1.8,
-                    dashed: guide.dashed,
+                    width: guide.width,
+                    dash: guide.dash,
                 });
             }
         }
@@ -147,9 +149,9 @@ impl XyChart {
                 let points = places.iter().map(|(place, _)| *place).collect();
                 marks.push(Mark::Line {
                     points,
-                    color: series.style.color(),
-                    width: 1.4,
-                    dashed: false,
+                    color: series.style.color,
+                    width: series.style.line(),
+                    dash: series.style.dash,
                 });
             }
             for (place, point) in places {
@@ -186,7 +188,7 @@ impl XyChart {
         let guides = self
             .guides
             .iter()
-            .map(|g| (g.name.clone(), Key::Line(g.color, g.dashed)));
+            .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
         let mut all: Vec<(String, Key)> = Vec::new();
         for entry in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
             if !all.contains(&entry) {
@@ -203,7 +205,7 @@ pub enum Key {
     /// A marker, with or without its line.
     Dot(Style, bool),
     /// A line.
-    Line(&'static str, bool),
+    Line(&'static str, Dash),
 }
 
 /// The title, wrapped; gives the place below it.
@@ -245,7 +247,7 @@ fn axes(
         points,
         color,
         width: 1.0,
-        dashed: false,
+        dash: Dash::Solid,
     };
     let mut end = f64::NEG_INFINITY;
     for (value, text) in &x.ticks {
@@ -312,12 +314,12 @@ fn axes(
 
 pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
     let (fill, stroke) = if style.filled {
-        (style.color(), (PAPER, 0.8))
+        (style.color, (PAPER, 0.8))
     } else {
-        (PAPER, (style.color(), 1.8))
+        (PAPER, (style.color, 1.8))
     };
     Mark::Shape {
-        points: style.marker(x, y, MARKER),
+        points: style.corners(x, y, MARKER),
         fill,
         stroke: Some(stroke),
     }
@@ -361,20 +363,20 @@ pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Key)])
             y += TEXT + 8.0;
         }
         let level = y + TEXT * 0.1;
-        let line = |color, dashed| Mark::Line {
+        let line = |color, width, dash| Mark::Line {
             points: vec![(x, level), (x + sign, level)],
             color,
-            width: 1.6,
-            dashed,
+            width,
+            dash,
         };
         match key {
             Key::Dot(style, joined) => {
                 if *joined {
-                    marks.push(line(style.color(), false));
+                    marks.push(line(style.color, style.line(), style.dash));
                 }
                 marks.push(dot(*style, (x + sign / 2.0, level)));
             }
-            Key::Line(color, dashed) => marks.push(line(color, *dashed)),
+            Key::Line(color, dash) => marks.push(line(color, 1.6, *dash)),
         }
         marks.push(word(
             (x + sign + 6.0, y + TEXT * 0.45),
@@ -428,14 +430,16 @@ fn clip(points: &[(f64, f64)], plot: Bounds) -> Vec<Vec<(f64, f64)>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::style::{Marker, color};
     use super::*;
 
     fn crowded() -> XyChart {
         let series = |index: usize| Series {
             name: format!("a search of some length, number {index}"),
             style: Style {
-                index,
                 filled: index.is_multiple_of(2),
+                heavy: index == 3,
+                ..Style::new(color::ALL[index], Marker::ALL[index])
             },
             points: (0..7)
                 .map(|k| Point {
@@ -451,7 +455,7 @@ mod tests {
             x: Axis::log("time of a frame (ms)"),
             y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
             series: (0..9).map(series).collect(),
-            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dashed: true }],
+            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dash: Dash::Guide, width: 1.8 }],
         }
     }
 
@@ -490,10 +494,7 @@ mod tests {
         let mut chart = crowded();
         chart.series = vec![Series {
             name: String::new(),
-            style: Style {
-                index: 0,
-                filled: true,
-            },
+            style: Style::new(color::BLUE, Marker::Disk),
             joined: false,
             points: vec![],
         }];
