@@ -5,6 +5,7 @@ use super::chart::axis::Axis;
 use super::chart::front::{WORTH, front};
 use super::chart::style::{Dash, PALE, Style};
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
+use super::covered::parts;
 use super::folder::write_text;
 use super::looks::{Looks, of_source, style};
 use super::machine::Machine;
@@ -403,22 +404,23 @@ fn summary(
     overview::begin(&mut page, machine, measured);
     page.chapter("All views together");
     page.text(
-        "Times are ratios to the papers' loop in the fragment stage where it was measured, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
+        "Times are ratios to the papers' loop in the same stage, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
          normals. A search that is fast because it misses the surface stands at the top.",
     );
-    let ratios = over_papers_loop(&measured.rows);
-    for measure in [Measure::Depth, Measure::Wrong, Measure::Normal] {
-        let figure = summed(&ratios, measure, base);
-        keep_figure(
-            folder,
-            &format!("summary-{}", measure.name().replace(' ', "-")),
-            &figure,
-        )?;
-        page.figure(
-            &figure,
-            "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
-             in both.",
-        );
+    let parts = parts(&measured.rows);
+    for part in &parts {
+        let ratios = over_papers_loop(&part.rows);
+        page.heading(&part.heading());
+        for measure in [Measure::Depth, Measure::Wrong, Measure::Normal] {
+            let figure = summed(part.views(), &ratios, measure, base);
+            let name = format!("summary-{}", measure.name().replace(' ', "-"));
+            keep_figure(folder, &format!("{name}{}", part.ending(&parts)), &figure)?;
+            page.figure(
+                &figure,
+                "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
+                 in both.",
+            );
+        }
     }
     page.chapter("Fronts");
     page.text("Ways of drawing that are on the front of depth error against time of at least one view, best first.");
@@ -426,14 +428,15 @@ fn summary(
     page.table(&header, &records, &[0, 1]);
     page.chapter("Views");
     page.links(pages);
+    overview::picture_table(&mut page, &measured.rows);
     overview::pictures(&mut page, plan, album);
     overview::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
 
-/// The chart that sums up: error against the ratio to the papers' loop.
+/// The chart that sums `views` up: error against the ratio to the papers' loop.
 #[must_use]
-pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
+pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
     let mut series: Vec<Series> = Vec::new();
     let mut places = Vec::new();
     for ratio in ratios {
@@ -475,7 +478,7 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
         }
     }
     XyChart {
-        title: format!("All views: {} against time", measure.name()),
+        title: format!("{views}: {} against time", measure.name()),
         x: Axis::log("time / time of the papers' loop").with(1.0),
         y: measure.axis(),
         series,

@@ -8,7 +8,7 @@ use super::chart::raster::raster;
 use super::chart::style::{Dash, PALE};
 use super::chart::svg::svg;
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
-use super::curves::{self, Measure};
+use super::covered;
 use super::folder::{left_out, make, write_bytes, write_text};
 use super::looks::Looks;
 use super::machine::Machine;
@@ -17,11 +17,11 @@ use super::names::{number, stage};
 use super::page::Page;
 use super::pictures::{Album, heat_key, png};
 use super::plan::{Plan, variant};
-use super::ratios::{Ratio, over_papers_loop};
 use super::row::{CLOCKS_APART, Row};
-use super::text::{self, interval, percent};
+use super::summary;
+use super::text::interval;
 use crate::error::Result;
-use crate::settings::{DrawStage, Settings};
+use crate::settings::Settings;
 use std::path::Path;
 
 /// Errors below this many texels are drawn as this many: no eye and no other use tells them apart.
@@ -39,37 +39,6 @@ pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
         &charts.join(format!("{name}.png")),
         &png(&raster(figure, 2.0)?)?,
     )
-}
-
-/// The chart of ratios to the papers' loop.
-#[must_use]
-pub fn ratio_chart(ratios: &[Ratio], looks: &Looks) -> Figure {
-    let mut blocks = Vec::new();
-    for which in [DrawStage::Fragment, DrawStage::Compute] {
-        let lines: Vec<Line> = ratios
-            .iter()
-            .filter(|r| r.settings.stage == which)
-            .map(|r| Line {
-                name: looks.way(&r.settings),
-                value: r.time,
-                style: looks.style(&r.settings),
-            })
-            .collect();
-        if !lines.is_empty() {
-            blocks.push(Block {
-                name: format!("{} stage", stage(which)),
-                lines,
-            });
-        }
-    }
-    DotChart {
-        title: "Time of a frame, the papers' loop in the same stage being 1".into(),
-        axis: Axis::log("time / time of the papers' loop (left is faster)"),
-        mark: Some(1.0),
-        blocks,
-        legend: Vec::new(),
-    }
-    .figure()
 }
 
 /// The chart of times, a block for each picture.
@@ -206,53 +175,14 @@ pub fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
     );
 }
 
-/// The table of ratios.
-pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
-    let records: Vec<Vec<String>> = ratios
-        .iter()
-        .map(|r| {
-            vec![
-                looks.way(&r.settings),
-                stage(r.settings.stage).into(),
-                interval(&r.time, 3),
-                format!("{} to {}", number(r.range.0, 3), number(r.range.1, 3)),
-                r.pictures.to_string(),
-                percent(r.wrong),
-                r.depth_p99.map(|v| number(v, 3)).unwrap_or_default(),
-                r.normal_rms.map(|v| number(v, 3)).unwrap_or_default(),
-            ]
-        })
-        .collect();
-    page.table(
-        &[
-            "search",
-            "stage",
-            "time / papers' loop (95 % interval)",
-            "single pictures",
-            "pictures",
-            "wrong pixels",
-            "worst depth p99 (texels)",
-            "worst normal rms (degrees)",
-        ],
-        &records,
-        &[0, 1],
-    );
-}
-
-/// The default search against meshes, where both were measured.
-pub fn mesh_table(page: &mut Page, rows: &[Row]) {
-    let records = text::against_meshes(rows);
-    if records.is_empty() {
-        return;
-    }
-    page.chapter("Against meshes");
+/// The table of pictures, with the share of each that is solid.
+pub fn picture_table(page: &mut Page, rows: &[Row]) {
+    page.chapter("What was drawn");
     page.text(
-        "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
-         stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
-         (99th percentile) is no worse; the last column counts them. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
-         pictures without one.",
+        "Each picture, with the share of its pixels in which the reference hits a solid. Where that is small, what a frame costs anyhow (clearing, storing, ending it) \
+         weighs much in its time, and searches look more alike than they are.",
     );
-    page.table(&text::AGAINST_MESHES, &records, &[0, 1]);
+    page.table(&covered::PICTURES, &covered::pictures(rows), &[0, 1, 4]);
 }
 
 /// The table of all rows.
@@ -358,31 +288,11 @@ pub fn write(
     let mut page = Page::new("revmap: frame rates, look-ups and errors");
     begin(&mut page, machine, measured);
 
-    let ratios = over_papers_loop(rows);
-    if !ratios.is_empty() {
-        page.chapter("Against the papers' loop");
-        page.text(
-            "The papers' loop is circle tracing of 20 steps (25 and 10 halvings under a bevel) over the distances of a binary image in 8 bits. Ratios are geometric means \
-             over all pictures; below 1 is faster.",
-        );
-        let figure = ratio_chart(&ratios, &looks);
-        keep_figure(folder, "ratios", &figure)?;
-        page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval; further left is faster.");
-        ratio_table(&mut page, &ratios, &looks);
-    }
-    mesh_table(&mut page, rows);
+    summary::chapters(&mut page, folder, rows, &looks)?;
 
     page.chapter("Speed and error");
     let all: Vec<&Row> = rows.iter().collect();
-    if !ratios.is_empty() {
-        let figure = curves::summed(&ratios, Measure::Depth, &Settings::default());
-        keep_figure(folder, "summary", &figure)?;
-        page.figure(
-            &figure,
-            "All pictures together: the time of each search over that of the papers' loop in the same stage, and its depth error in the worst picture. Filled in the fragment stage, hollow in the \
-             compute stage; lower is more exact, further left is faster, and what lies on the dashed line is beaten by nothing in both.",
-        );
-    }
+    summary::speed_and_error(&mut page, folder, rows)?;
     for group in pictures_of(&all) {
         let Some(first) = group.first() else { continue };
         let size = format!("{}x{}", first.settings.width, first.settings.height);
@@ -419,6 +329,7 @@ pub fn write(
         )?;
         page.figure(&figure, "Each marker is the time of a frame with its 95 % interval, by the device's clock where it has one; further left is faster.");
     }
+    picture_table(&mut page, rows);
     page.chapter("All rows");
     row_table(&mut page, rows, &looks);
     pictures(&mut page, plan, album);

@@ -1,5 +1,6 @@
 //! Tables as plain text, for standard output.
 
+use super::covered::{PICTURES, parts, pictures};
 use super::names::{number, stage};
 use super::plan::{Labels, PAPERS_LOOP};
 use super::ratios::{Duel, over_meshes, over_papers_loop};
@@ -144,15 +145,21 @@ pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
     over_meshes(rows).into_iter().map(record).collect()
 }
 
-/// Both tables: over the papers' loop, and over meshes where there are any.
+/// The tables that sum a run up: over the papers' loop, and over meshes where there are any, of all pictures and of each framing; then the
+/// pictures themselves.
 #[must_use]
-pub fn both(rows: &[Row]) -> String {
-    let mut out = ratios(rows);
-    let against = against_meshes(rows);
-    if !against.is_empty() {
-        let header = AGAINST_MESHES.map(str::to_owned).to_vec();
-        out.push('\n');
-        out += &table(&[vec![header], against].concat());
+pub fn summary(rows: &[Row]) -> String {
+    let mut out = String::new();
+    for part in parts(rows) {
+        out += &format!("{}\n\n{}\n", part.title(), ratios(&part.rows));
+        let against = against_meshes(&part.rows);
+        if !against.is_empty() {
+            let header = AGAINST_MESHES.map(str::to_owned).to_vec();
+            out += &table(&[vec![header], against].concat());
+            out.push('\n');
+        }
     }
+    let header = PICTURES.map(str::to_owned).to_vec();
+    out += &table(&[vec![header], pictures(rows)].concat());
     out
 }

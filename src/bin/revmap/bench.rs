@@ -25,14 +25,15 @@ pub struct Bench {
     /// A look within 20 seconds: one solid unless scenes are named
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// The whole suite from three elevations at two sizes, every search, five meshes: takes more than half an hour on two cores
+    /// The whole suite from three elevations at two sizes, every search, five meshes: takes about an hour on two cores, above two with
+    /// --framing whole,close
     #[arg(long)]
     full: bool,
     /// The papers' tables: extended, beveled and chamfered solids at their two sizes, our rates beside theirs
-    #[arg(long, conflicts_with_all = ["full", "scenes"])]
+    #[arg(long, conflicts_with_all = ["full", "scenes", "framing"])]
     tables: bool,
     /// How time grows with pixels, with solids and with rows of the map
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "tables"])]
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "framing", "tables"])]
     scaling: bool,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling"])]
@@ -83,7 +84,7 @@ impl Bench {
         let (measured, album) = session.measure(&plan, &self.lists.limits(&limits), |_| true)?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
-        print(&text::both(&measured.rows));
+        print(&text::summary(&measured.rows));
         session.finish(&measured)
     }
 

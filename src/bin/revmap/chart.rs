@@ -95,7 +95,7 @@ impl Chart {
             &alone,
         )?;
         let summary: PathBuf = session.out.join("charts").join("summary-depth-error.png");
-        for line in text::both(&measured.rows).lines() {
+        for line in text::summary(&measured.rows).lines() {
             output::result(line);
         }
         output::result(&summary.display().to_string());
