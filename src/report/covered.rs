@@ -99,7 +99,7 @@ pub fn parts(rows: &[Row]) -> Vec<Part> {
 }
 
 /// Columns of the table of pictures.
-pub const PICTURES: [&str; 6] = ["picture", "framing", "size", "solids", "form", "pixels hit"];
+pub const PICTURES: [&str; 6] = ["picture", "framing", "size", "pixels hit", "solids", "form"];
 
 /// Its records, in the order of the rows: a picture is a view at a size.
 #[must_use]
@@ -110,9 +110,9 @@ pub fn pictures(rows: &[Row]) -> Vec<Vec<String>> {
             row.scene.clone(),
             row.framing.name().to_owned(),
             format!("{}x{}", row.settings.width, row.settings.height),
+            percent(row.covered()),
             row.solids.to_string(),
             row.technique.name().to_owned(),
-            percent(row.covered()),
         ]
     };
     pictures_of(&all)
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(records.len(), 2);
         assert_eq!(
             records[0],
-            ["s0", "whole", "800x600", "1", "revolution", "10.5 %"]
+            ["s0", "whole", "800x600", "10.5 %", "1", "revolution"]
         );
         assert_eq!(records[1].len(), PICTURES.len());
     }

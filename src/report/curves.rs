@@ -7,7 +7,7 @@ use super::chart::style::{Dash, PALE, Style};
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
 use super::covered::parts;
 use super::folder::write_text;
-use super::looks::{Looks, of_source, style};
+use super::looks::{Looks, of_line, of_source, style};
 use super::machine::Machine;
 use super::map_error::MapError;
 use super::measure::Measured;
@@ -15,7 +15,7 @@ use super::names::{self, number, stage};
 use super::overview::{self, keep_figure, safe};
 use super::page::Page;
 use super::pictures::Album;
-use super::plan::{Labels, Plan, is_papers_loop, variant};
+use super::plan::{Labels, PAPERS_LOOP, Plan, is_papers_loop, variant};
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::Row;
 use super::sweep::{has_budget, has_rows};
@@ -115,9 +115,9 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
         places.push((time.value, error));
         let s = &row.settings;
         let (name, style) = if papers {
-            (format!("papers' loop, {}", stage(s.stage)), style(s))
+            (PAPERS_LOOP.to_owned(), style(s))
         } else {
-            (format!("{}, {}", s.solver.name(), stage(s.stage)), style(s))
+            (s.solver.name().to_owned(), of_line(s))
         };
         let label = budget(s);
         let point = Point {
@@ -125,7 +125,10 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
             y: error,
             label,
         };
-        match series.iter_mut().find(|known| known.name == name) {
+        match series
+            .iter_mut()
+            .find(|known| (&known.name, known.style.filled) == (&name, style.filled))
+        {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
@@ -344,7 +347,7 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage, its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute), its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
                  in both time and error.",
             );
         }
@@ -417,7 +420,7 @@ fn summary(
             keep_figure(folder, &format!("{name}{}", part.ending(&parts)), &figure)?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute) over its bound on steps, or the mesh over its segments x rings (numbers: at meshes, and on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
                  in both.",
             );
         }
@@ -455,13 +458,16 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) 
         let x = ratio.time.value;
         places.push((x, y));
         let (name, style) = if papers {
-            (format!("papers' loop, {}", stage(s.stage)), style(s))
+            (PAPERS_LOOP.to_owned(), style(s))
         } else {
-            (format!("{}, {}", s.solver.name(), stage(s.stage)), style(s))
+            (s.solver.name().to_owned(), of_line(s))
         };
         let label = budget(s);
         let point = Point { x, y, label };
-        match series.iter_mut().find(|known| known.name == name) {
+        match series
+            .iter_mut()
+            .find(|known| (&known.name, known.style.filled) == (&name, style.filled))
+        {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
@@ -473,7 +479,8 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) 
     }
     let best = front(&places, WORTH);
     for point in series.iter_mut().flat_map(|s| &mut s.points) {
-        if !best.iter().any(|&i| places[i] == (point.x, point.y)) {
+        let mesh = point.label.as_ref().is_some_and(|l| l.contains('x'));
+        if !(mesh || best.iter().any(|&i| places[i] == (point.x, point.y))) {
             point.label = None;
         }
     }

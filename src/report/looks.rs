@@ -59,6 +59,19 @@ pub fn style(s: &Settings) -> Style {
     }
 }
 
+/// How a way looks in a chart in which a line joins the budgets of a search, or the meshes of growing fineness: all meshes alike.
+#[must_use]
+pub fn of_line(s: &Settings) -> Style {
+    let own = style(s);
+    match s.solver {
+        Solver::Mesh { .. } => Style {
+            marker: Marker::Square,
+            ..own
+        },
+        _ => own,
+    }
+}
+
 /// How a source of distances looks, in charts that compare sources.
 #[must_use]
 pub fn of_source(source: MapSource) -> Style {

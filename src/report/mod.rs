@@ -11,6 +11,7 @@ pub mod curves;
 mod device;
 pub mod folder;
 pub mod framing;
+pub mod glossary;
 pub mod looks;
 pub mod machine;
 pub mod map_error;

@@ -216,6 +216,9 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
     header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
     let mut records = Vec::new();
     for (size, rates) in SIZES.iter().zip(&table.rates) {
+        if lines(rows, index).iter().all(|l| l.size != *size) {
+            continue;
+        }
         let mut print = vec![
             format!("{}x{}", size.0, size.1),
             "print, GT 630M".into(),
@@ -387,7 +390,7 @@ fn chart(
         };
         let point = |(x, y)| Point { x, y, label: None };
         series.push(Series {
-            name: looks.name(&line.way),
+            name: looks.way(&line.way),
             style: looks.style(&line.way),
             points: points.into_iter().map(point).collect(),
             joined: true,
@@ -497,7 +500,8 @@ mod tests {
                 .collect::<Vec<_>>(),
         );
         let (_, records) = records(&rows, 1, &looks);
-        assert_eq!(records.len(), 3);
+        // The print stands above what was measured at its size, and nowhere else.
+        assert_eq!(records.len(), 2);
         assert_eq!(records[0][3..], ["200", "210", "230", "1.15", "rises"]);
         assert_eq!(records[1][3..7], ["100", "125", "200", "2 (2 to 2)"]);
     }

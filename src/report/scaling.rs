@@ -14,6 +14,7 @@ use super::plan::{Plan, papers_loop, variant};
 use super::row::Row;
 use super::stats::{self, Interval, PowerLaw};
 use super::suite::{self, Extent};
+use super::sweep::has_rows;
 use super::text;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
@@ -51,13 +52,15 @@ impl Quantity {
     fn setting(self) -> &'static str {
         match self {
             Self::Pixels => {
-                "One solid that fills nine tenths of the picture, at sizes from 320x240 to 3840x2160."
+                "One solid that fills nine tenths of the picture's height, in pictures of growing size."
             }
             Self::Solids => {
                 "A square field of copies at 800x600, seen from above so that the field always fills the picture: the pixels covered stay about the same while the copies grow smaller \
                  and more. Meshes keep their tessellation, and are drawn as long as all copies together have at most 8 million quads."
             }
-            Self::Rows => "One solid at 800x600, its map of 64 to 4096 rows.",
+            Self::Rows => {
+                "One solid at 800x600, its map of more and more rows; searches that read no map are not in it."
+            }
         }
     }
 }
@@ -152,7 +155,7 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
                 plan.add(0, sized(way, size));
             }
             for &rows in ROWS.iter().take(ranges.rows) {
-                if way.solver.is_mesh() {
+                if !(way.solver.reads_map() || has_rows(way.solver)) {
                     continue;
                 }
                 plan.add(
@@ -344,7 +347,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     let series = all
         .iter()
         .map(|g| Series {
-            name: looks.name(&g.way),
+            name: looks.way(&g.way),
             style: looks.style(&g.way),
             points: g
                 .points
@@ -415,7 +418,9 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
         page.table(&HEADER, &records(&all, &looks), &[0, 1]);
     }
     page.chapter("All rows");
-    overview::row_table(&mut page, rows, &looks);
+    // Here the rows of maps tell rows apart.
+    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+    overview::row_table(&mut page, rows, &Looks::new(&ways));
     overview::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }

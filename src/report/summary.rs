@@ -11,7 +11,7 @@ use super::overview::keep_figure;
 use super::page::Page;
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::Row;
-use super::text::{self, interval, percent};
+use super::text::{self, percent};
 use crate::error::Result;
 use crate::settings::{DrawStage, Settings};
 use std::path::Path;
@@ -25,8 +25,9 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
     if !over_papers_loop(rows).is_empty() {
         page.chapter("Against the papers' loop");
         page.text(
-            "The papers' loop is circle tracing of 20 steps (25 and 10 halvings under a bevel) over the distances of a binary image in 8 bits. Ratios are geometric means \
-             over all pictures; below 1 is faster.",
+            "Times over that of the papers' loop in the same stage. Ratios are geometric means \
+             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together, errors of depth (99th percentile) and of normals those of the \
+             worst picture.",
         );
         for part in &parts {
             let ratios = over_papers_loop(&part.rows);
@@ -36,7 +37,7 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
             page.heading(&part.heading());
             let figure = ratio_chart(part.views(), &ratios, looks);
             keep_figure(folder, &format!("ratios{}", part.ending(&parts)), &figure)?;
-            page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval; further left is faster.");
+            page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval, and its number at the right; further left is faster.");
             ratio_table(page, &ratios, looks);
         }
     }
@@ -108,7 +109,8 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
             vec![
                 looks.way(&r.settings),
                 stage(r.settings.stage).into(),
-                interval(&r.time, 3),
+                number(r.time.value, 3),
+                text::ends(&r.time),
                 format!("{} to {}", number(r.range.0, 3), number(r.range.1, 3)),
                 r.pictures.to_string(),
                 percent(r.wrong),
@@ -121,7 +123,8 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
         &[
             "search",
             "stage",
-            "time / papers' loop (95 % interval)",
+            "time / papers' loop",
+            "95 % interval",
             "single pictures",
             "pictures",
             "wrong pixels",
@@ -147,7 +150,7 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
     page.text(
         "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
          stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
-         (99th percentile) is no worse; the last column counts them. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
+         (99th percentile) is no worse; the last column counts them. Depths are those of the worst picture, of the search and of the mesh. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
          pictures without one.",
     );
     for (part, records) in tables {

@@ -99,8 +99,9 @@ pub fn ratios(rows: &[Row]) -> String {
     table(&lines)
 }
 
-/// An interval's ends.
-fn ends(i: &Interval) -> String {
+/// An interval's ends, as `0.40 to 0.44`.
+#[must_use]
+pub fn ends(i: &Interval) -> String {
     if i.high.is_finite() {
         format!("{} to {}", number(i.low, 3), number(i.high, 3))
     } else {
@@ -118,7 +119,7 @@ pub const AGAINST_MESHES: [&str; 9] = [
     "pictures",
     "depth p99 (texels)",
     "the mesh's",
-    "mesh no worse in",
+    "pictures, mesh no worse",
 ];
 
 /// Its records: the default search in each stage over each mesh, then over the coarsest that is no worse; none without both.

@@ -175,7 +175,7 @@ impl DotChart {
         let entries: Vec<_> = self
             .legend
             .iter()
-            .map(|(name, style)| (name.clone(), Key::Dot(*style, false)))
+            .map(|(name, style)| (name.clone(), vec![Key::Dot(*style, false)]))
             .collect();
         let below = legend(&mut marks, bottom + 2.0 * TEXT + 30.0, &entries);
         Figure {

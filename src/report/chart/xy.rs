@@ -19,7 +19,7 @@ pub struct Point {
 /// Points of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; empty: not listed.
+    /// Its name in the legend; empty: not listed. Series of one name share an entry there.
     pub name: String,
     /// How it looks.
     pub style: Style,
@@ -59,8 +59,8 @@ pub struct XyChart {
     pub guides: Vec<Guide>,
 }
 
-/// Width of every chart, pixels: read well on a phone, where it is shown at two thirds of that.
-pub const WIDTH: f64 = 540.0;
+/// Width of every chart, pixels: read well on a phone, where it is shown at four fifths of that.
+pub const WIDTH: f64 = 460.0;
 const PLOT: f64 = 330.0;
 const EDGE: f64 = 14.0;
 /// Sizes of words.
@@ -157,13 +157,15 @@ impl XyChart {
             for (place, point) in places {
                 let dot = dot(series.style, place);
                 taken.push(dot.bounds());
-                dots.push(dot);
+                dots.push((series.style.heavy, dot));
                 if let Some(label) = &point.label {
                     labels.push((place, label));
                 }
             }
         }
-        marks.extend(dots);
+        // The larger ones below, or they would hide what is near.
+        let (above, below): (Vec<_>, Vec<_>) = dots.into_iter().partition(|(heavy, _)| !heavy);
+        marks.extend(below.into_iter().chain(above).map(|(_, dot)| dot));
         for (place, label) in labels {
             if let Some(word) = beside(place, label, plot, &taken) {
                 taken.push(word.bounds());
@@ -180,19 +182,23 @@ impl XyChart {
         }
     }
 
-    fn legend(&self) -> Vec<(String, Key)> {
-        let series = self
-            .series
-            .iter()
-            .map(|s| (s.name.clone(), Key::Dot(s.style, s.joined)));
+    fn legend(&self) -> Vec<(String, Vec<Key>)> {
+        let series = self.series.iter().map(|s| {
+            (
+                s.name.clone(),
+                Key::Dot(s.style, s.joined && s.points.len() > 1),
+            )
+        });
         let guides = self
             .guides
             .iter()
             .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
-        let mut all: Vec<(String, Key)> = Vec::new();
-        for entry in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
-            if !all.contains(&entry) {
-                all.push(entry);
+        let mut all: Vec<(String, Vec<Key>)> = Vec::new();
+        for (name, key) in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
+            match all.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, keys)) if keys.contains(&key) => {}
+                Some((_, keys)) => keys.push(key),
+                None => all.push((name, vec![key])),
             }
         }
         all
@@ -206,6 +212,15 @@ pub enum Key {
     Dot(Style, bool),
     /// A line.
     Line(&'static str, Dash),
+}
+
+impl Key {
+    fn width(self) -> f64 {
+        match self {
+            Self::Dot(_, false) => 18.0,
+            Self::Dot(_, true) | Self::Line(..) => 30.0,
+        }
+    }
 }
 
 /// The title, wrapped; gives the place below it.
@@ -352,34 +367,39 @@ fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Opt
         })
 }
 
-/// Names in lines as wide as the figure; gives the place below.
-pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Key)]) -> f64 {
+/// Names in lines as wide as the figure, each after its signs; gives the place below.
+pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Vec<Key>)]) -> f64 {
     let (mut x, mut y) = (EDGE, top);
-    for (i, (name, key)) in entries.iter().enumerate() {
-        let sign = 26.0;
-        let needed = sign + 6.0 + width(name, TEXT) + 16.0;
+    for (i, (name, keys)) in entries.iter().enumerate() {
+        let signs: f64 = keys.iter().map(|key| key.width()).sum();
+        let needed = signs + 4.0 + width(name, TEXT) + 14.0;
         if i > 0 && x + needed > WIDTH {
             x = EDGE;
             y += TEXT + 8.0;
         }
         let level = y + TEXT * 0.1;
-        let line = |color, width, dash| Mark::Line {
-            points: vec![(x, level), (x + sign, level)],
-            color,
-            width,
-            dash,
-        };
-        match key {
-            Key::Dot(style, joined) => {
-                if *joined {
-                    marks.push(line(style.color, style.line(), style.dash));
+        let mut left = x;
+        for key in keys {
+            let right = left + key.width();
+            let line = |color, width, dash| Mark::Line {
+                points: vec![(left, level), (right - 2.0, level)],
+                color,
+                width,
+                dash,
+            };
+            match key {
+                Key::Dot(style, joined) => {
+                    if *joined {
+                        marks.push(line(style.color, style.line(), style.dash));
+                    }
+                    marks.push(dot(*style, ((left + right) / 2.0 - 1.0, level)));
                 }
-                marks.push(dot(*style, (x + sign / 2.0, level)));
+                Key::Line(color, dash) => marks.push(line(color, 1.6, *dash)),
             }
-            Key::Line(color, dash) => marks.push(line(color, 1.6, *dash)),
+            left = right;
         }
         marks.push(word(
-            (x + sign + 6.0, y + TEXT * 0.45),
+            (left + 4.0, y + TEXT * 0.45),
             name,
             TEXT,
             Anchor::Start,
@@ -487,6 +507,23 @@ mod tests {
             .marks
             .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
         assert!(figure.faults().len() >= 2);
+    }
+
+    #[test]
+    fn series_of_one_name_share_an_entry() {
+        let mut chart = crowded();
+        chart.series.truncate(3);
+        for (k, series) in chart.series.iter_mut().enumerate() {
+            series.name = ["hull", "hull", "live"][k].to_owned();
+        }
+        let keys: Vec<_> = chart
+            .legend()
+            .into_iter()
+            .map(|(n, k)| (n, k.len()))
+            .collect();
+        let wanted = [("hull", 2), ("live", 1), ("Pareto front", 1)];
+        assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
+        assert_eq!(chart.figure().faults(), Vec::<String>::new());
     }
 
     #[test]
