@@ -12,6 +12,7 @@ mod device;
 pub mod folder;
 pub mod framing;
 pub mod glossary;
+pub mod limits;
 pub mod looks;
 pub mod machine;
 pub mod map_error;

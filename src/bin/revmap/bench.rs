@@ -8,7 +8,7 @@ use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
 use revmap::report::machine::Machine;
-use revmap::report::measure::{Limits, Measured, Watch, measure};
+use revmap::report::measure::{Limits, Measured, Seen, Watch, measure};
 use revmap::report::pictures::Album;
 use revmap::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
 use revmap::report::scaling::Ranges;
@@ -81,7 +81,8 @@ impl Bench {
         }
         plan.add_papers_loop();
         let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(&plan, &self.lists.limits(&limits), |_| true)?;
+        let (measured, album) =
+            session.measure(&plan, &self.lists.limits(&limits), |_| true, &mut |_| {})?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&text::summary(&measured.rows));
@@ -110,8 +111,12 @@ impl Bench {
             Limits::CHART
         };
         let session = Session::open(&self.lists)?;
-        let (measured, album) =
-            session.measure(&plan, &self.lists.limits(&limits), is_papers_loop)?;
+        let (measured, album) = session.measure(
+            &plan,
+            &self.lists.limits(&limits),
+            is_papers_loop,
+            &mut |_| {},
+        )?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
@@ -131,7 +136,8 @@ impl Bench {
         };
         let plan = scaling::plan(&axes.stages, &axes.solvers, ranges)?;
         let session = Session::open(&self.lists)?;
-        let (measured, _) = session.measure(&plan, &self.lists.limits(&limits), |_| false)?;
+        let (measured, _) =
+            session.measure(&plan, &self.lists.limits(&limits), |_| false, &mut |_| {})?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));
@@ -180,11 +186,13 @@ impl Session {
     }
 
     /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt ends early and keeps what there is.
+    /// `also` is shown every picture.
     pub fn measure(
         &self,
         plan: &Plan,
         limits: &Limits,
         worth: fn(&Settings) -> bool,
+        also: &mut dyn FnMut(&Seen),
     ) -> Result<(Measured, Album)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.out, labels, worth)?;
@@ -200,7 +208,10 @@ impl Session {
                     progress.say(what);
                     progress.report(gone as usize, all as usize);
                 },
-                picture: &mut |seen| album.add(seen),
+                picture: &mut |seen| {
+                    also(seen);
+                    album.add(seen)
+                },
                 passed: &mut |rows| folder::write_rows(&self.out, rows, &self.machine),
             },
         )?;
