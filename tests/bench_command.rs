@@ -157,6 +157,49 @@ fn a_mesh_stands_beside_the_searches() {
     assert!(reason[4].contains("give the stage fragment"), "{reason:?}");
 }
 
+/// A close picture is one of its own: named so, and summed up by itself as well as with the others.
+#[test]
+fn close_pictures_are_measured_beside_whole_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "bench",
+        SCENE,
+        "--quick",
+        "--size",
+        "64x48",
+        "--solver",
+        "hull",
+        "--stage",
+        "fragment",
+        "--framing",
+        "close,whole",
+        "--passes",
+        "2",
+        "--rounds",
+        "1",
+        "--out",
+        "f",
+    ];
+    let out = run(folder.path(), &arguments);
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let said = text(&out.stdout);
+    for wanted in [
+        "all together: 2 pictures",
+        "whole: 1 picture",
+        "close: 1 picture",
+    ] {
+        assert!(said.contains(wanted), "{said}");
+    }
+    let made = folder.path().join("f");
+    let results = Table::load(&made.join("results.csv")).unwrap();
+    let mut scenes: Vec<&str> = results.records.iter().map(|r| r[0].as_str()).collect();
+    scenes.sort_unstable();
+    assert_eq!(scenes, ["sphere", "sphere", "sphere:close", "sphere:close"]);
+    for file in ["pictures/sphere-close.png", "charts/summary-close.png"] {
+        assert!(made.join(file).exists(), "{file}");
+    }
+}
+
 #[test]
 fn a_brief_chart_has_its_pages() {
     let folder = tempfile::tempdir().unwrap();
@@ -197,6 +240,8 @@ fn wrong_usage_is_told_in_one_line() {
         (&["bench", "--size", "64x48,0x3"], 2, "0x3"),
         (&["bench", "--elevation", "100"], 2, "-90 to 90"),
         (&["bench", "--quick", "--full"], 2, "--full"),
+        (&["bench", "--framing", "near"], 2, "near"),
+        (&["bench", "--tables", "--framing", "close"], 2, "--framing"),
         (&["bench", "--compare", "a"], 2, "--compare"),
         (
             &["bench", "--compare", "a", "b"],

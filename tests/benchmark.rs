@@ -49,6 +49,8 @@ struct StandIn {
     frames: Rc<RefCell<Vec<Solver>>>,
     /// How often something was made ready to be timed.
     made: usize,
+    /// Every picture of which the truth was asked: the view and the width.
+    truths: Vec<(String, u32)>,
     stop_after: Option<(usize, &'static AtomicBool)>,
 }
 
@@ -82,6 +84,7 @@ impl StandIn {
             fault,
             frames: Rc::default(),
             made: 0,
+            truths: Vec::new(),
             stop_after: None,
         }
     }
@@ -132,7 +135,7 @@ impl Bench for StandIn {
             let polygon = [[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]];
             view.scene.objects[0].profile = Arc::new(Profile::polygon(&polygon, radius)?);
         }
-        let mut frame = self.truth(&view, settings)?;
+        let mut frame = reference::draw(&view.scene, settings, &|_, _| {})?;
         // Nobody is perfect: a little error for all, or all would be on one front.
         let error = if settings.solver == Solver::Live {
             1e-6
@@ -144,6 +147,7 @@ impl Bench for StandIn {
     }
 
     fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame> {
+        self.truths.push((view.name.clone(), settings.width));
         reference::draw(&view.scene, settings, &|_, _| {})
     }
 }
@@ -356,6 +360,38 @@ fn samples_are_interleaved_and_passes_are_built_anew() {
         assert_eq!(pair[0], back.as_slice());
     }
     assert_ne!(rounds[0], rounds[1]);
+}
+
+/// The reference is slow: it draws each view at each size once, whatever the number of ways, passes and views that are measured in turn.
+#[test]
+fn no_truth_is_drawn_twice() {
+    for mixed in [false, true] {
+        let mut plan = plan();
+        let sizes: Vec<_> = plan.cases.clone();
+        for case in sizes {
+            plan.add(
+                case.view,
+                Settings {
+                    width: 32,
+                    height: 24,
+                    ..case.settings
+                },
+            );
+        }
+        plan.mixed = mixed;
+        let mut bench = StandIn::new(Fault::None);
+        let mut watch = Watch {
+            stop: &AtomicBool::new(false),
+            progress: &|_, _, _| {},
+            picture: &mut |_| Ok(()),
+            passed: &mut |_| Ok(()),
+        };
+        measure(&plan, &mut bench, &LIMITS, &mut watch).unwrap();
+        let mut asked = bench.truths.clone();
+        asked.sort();
+        asked.dedup();
+        assert_eq!((bench.truths.len(), asked.len()), (4, 4), "{mixed}");
+    }
 }
 
 #[test]

@@ -111,13 +111,53 @@ impl std::fmt::Display for Comparison {
 /// [`Stage::Frame`] when the frames differ in size, or an option is not a positive number.
 pub fn compare(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Comparison> {
     check(reference, frame, options)?;
+    Reference::new(reference, options)?.compare(frame)
+}
+
+/// A reference that several frames are compared with: what FLIP needs of it is found once.
+pub struct Reference<'a> {
+    frame: &'a Frame,
+    options: CompareOptions,
+    eye: flip::Eye,
+}
+
+impl<'a> Reference<'a> {
+    /// Makes ready to compare with `frame`.
+    ///
+    /// # Errors
+    /// [`Stage::Frame`] when an option is not a positive number.
+    pub fn new(frame: &'a Frame, options: &CompareOptions) -> Result<Self> {
+        check(frame, frame, options)?;
+        Ok(Self {
+            frame,
+            options: *options,
+            eye: flip::Eye::on(frame, options.pixels_per_degree),
+        })
+    }
+
+    /// Compares a drawn frame, as [`compare`] does.
+    ///
+    /// # Errors
+    /// [`Stage::Frame`] when the frames differ in size.
+    pub fn compare(&self, frame: &Frame) -> Result<Comparison> {
+        check(self.frame, frame, &self.options)?;
+        Ok(measured(self.frame, frame, &self.options, &self.eye))
+    }
+}
+
+fn measured(
+    reference: &Frame,
+    frame: &Frame,
+    options: &CompareOptions,
+    eye: &flip::Eye,
+) -> Comparison {
     let count = |f: &(dyn Fn(usize) -> bool + Sync)| {
         (0..reference.pixels())
             .into_par_iter()
             .filter(|&k| f(k))
             .count()
     };
-    Ok(Comparison {
+    Comparison {
         pixels: reference.pixels(),
         hits: count(&|k| reference.hits(k)),
         missed: count(&|k| reference.hits(k) && !frame.hits(k)),
@@ -127,8 +167,8 @@ pub fn compare(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Re
         }),
         normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
         silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
-        flip: flip::mean(&flip::flip_map(reference, frame, options.pixels_per_degree)),
-    })
+        flip: flip::mean(&eye.flip(frame)),
+    }
 }
 
 /// What every comparison needs: one size, and options that make sense.

@@ -16,23 +16,48 @@ use std::f64::consts::PI;
 /// `pixels_per_degree`. The frames must be of one size; else the list is empty.
 #[must_use]
 pub fn flip_map(reference: &Frame, frame: &Frame, pixels_per_degree: f64) -> Vec<f32> {
-    let size = (reference.width as usize, reference.height as usize);
-    if size != (frame.width as usize, frame.height as usize) {
-        return Vec::new();
+    Eye::on(reference, pixels_per_degree).flip(frame)
+}
+
+/// An eye on a reference: what it takes in of that is found once, for any number of frames to be flipped to.
+pub(super) struct Eye {
+    colors: Colors,
+    sight: Sight,
+    size: (usize, usize),
+    reference: Vec<Seen>,
+}
+
+impl Eye {
+    pub(super) fn on(reference: &Frame, pixels_per_degree: f64) -> Self {
+        let (colors, sight) = (Colors::new(), Sight::new(pixels_per_degree));
+        let size = (reference.width as usize, reference.height as usize);
+        let reference = sight.look(&colors, &reference.color, size);
+        Self {
+            colors,
+            sight,
+            size,
+            reference,
+        }
     }
-    let colors = Colors::new();
-    let sight = Sight::new(pixels_per_degree);
-    let [a, b] = [reference, frame].map(|f| sight.look(&colors, &f.color, size));
-    let most = colors.most_different();
-    a.into_par_iter()
-        .zip(b)
-        .map(|(a, b)| {
-            let color = redistribute(hyab(a.lab, b.lab).powf(COLOR_EXPONENT), most);
-            let feature = (a.edge - b.edge).abs().max((a.point - b.point).abs());
-            let feature = (feature / std::f64::consts::SQRT_2).powf(FEATURE_EXPONENT);
-            color.powf(1.0 - feature) as f32
-        })
-        .collect()
+
+    /// FLIP of every pixel; empty where the frame has another size.
+    pub(super) fn flip(&self, frame: &Frame) -> Vec<f32> {
+        if self.size != (frame.width as usize, frame.height as usize) {
+            return Vec::new();
+        }
+        let frame = self.sight.look(&self.colors, &frame.color, self.size);
+        let most = self.colors.most_different();
+        self.reference
+            .par_iter()
+            .zip(frame)
+            .map(|(a, b)| {
+                let color = redistribute(hyab(a.lab, b.lab).powf(COLOR_EXPONENT), most);
+                let feature = (a.edge - b.edge).abs().max((a.point - b.point).abs());
+                let feature = (feature / std::f64::consts::SQRT_2).powf(FEATURE_EXPONENT);
+                color.powf(1.0 - feature) as f32
+            })
+            .collect()
+    }
 }
 
 /// The mean of a map; 0 of an empty one.
@@ -243,13 +268,14 @@ fn separable(plane: &[f64], (w, h): (usize, usize), along_x: &[f64], along_y: &[
     rows.par_chunks_mut(w)
         .zip(plane.par_chunks(w))
         .for_each(|(out, line)| {
-            for (x, value) in out.iter_mut().enumerate() {
-                let at = |k: usize| line[(x + k).saturating_sub(rx).min(w - 1)];
-                *value = along_x
-                    .iter()
-                    .enumerate()
-                    .map(|(k, weight)| weight * at(k))
-                    .sum();
+            // The line with its border going on, so that each weight meets all of it at once.
+            let wide: Vec<f64> = (0..w + 2 * rx)
+                .map(|x| line[x.saturating_sub(rx).min(w - 1)])
+                .collect();
+            for (weight, moved) in along_x.iter().zip(wide.windows(w)) {
+                out.iter_mut()
+                    .zip(moved)
+                    .for_each(|(v, l)| *v += weight * l);
             }
         });
     let mut out = vec![0.0; plane.len()];

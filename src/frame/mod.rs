@@ -9,7 +9,7 @@ mod openexr;
 mod png;
 mod silhouette;
 
-pub use compare::{CompareOptions, Comparison, Spread, compare};
+pub use compare::{CompareOptions, Comparison, Reference, Spread, compare};
 pub use flip::flip_map;
 #[cfg(feature = "report")]
 pub(crate) use heat::ramp;

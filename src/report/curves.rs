@@ -3,24 +3,25 @@
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::front::{WORTH, front};
-use super::chart::style::{PALE, Style};
+use super::chart::style::{Dash, PALE, Style};
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
+use super::covered::parts;
 use super::folder::write_text;
+use super::looks::{Looks, of_line, of_source, style};
 use super::machine::Machine;
 use super::map_error::MapError;
 use super::measure::Measured;
 use super::names::{self, number, stage};
-use super::overview::{self, Looks, keep_figure, safe};
+use super::overview::{self, keep_figure, safe};
 use super::page::Page;
 use super::pictures::Album;
-use super::plan::{Labels, Plan, is_papers_loop, variant};
+use super::plan::{Labels, PAPERS_LOOP, Plan, is_papers_loop, variant};
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::Row;
 use super::sweep::{has_budget, has_rows};
 use super::text::percent;
 use crate::error::Result;
-use crate::maps::MapSource;
-use crate::settings::{DrawStage, Settings, Solver};
+use crate::settings::{Settings, Solver};
 use std::path::Path;
 
 /// An error that a chart can show.
@@ -98,25 +99,6 @@ fn budget(s: &Settings) -> Option<String> {
     has_budget(s.solver).then(|| steps.to_string())
 }
 
-/// A search in a stage looks the same in all charts.
-fn style(solver: Solver, stage: DrawStage) -> Style {
-    Style {
-        index: Solver::ALL
-            .iter()
-            .position(|s| *s == solver)
-            .unwrap_or(Solver::ALL.len() + 1), // of meshes, after the papers' loop
-        filled: stage != DrawStage::Compute,
-    }
-}
-
-/// The style of the papers' loop: one that no search has.
-fn papers_style(stage: DrawStage) -> Style {
-    Style {
-        index: Solver::ALL.len(),
-        filled: stage != DrawStage::Compute,
-    }
-}
-
 /// Error against time of every search swept over its steps, in both stages, with the front over all of them.
 #[must_use]
 pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -> Figure {
@@ -133,15 +115,9 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
         places.push((time.value, error));
         let s = &row.settings;
         let (name, style) = if papers {
-            (
-                format!("papers' loop, {}", stage(s.stage)),
-                papers_style(s.stage),
-            )
+            (PAPERS_LOOP.to_owned(), style(s))
         } else {
-            (
-                format!("{}, {}", s.solver.name(), stage(s.stage)),
-                style(s.solver, s.stage),
-            )
+            (s.solver.name().to_owned(), of_line(s))
         };
         let label = budget(s);
         let point = Point {
@@ -149,7 +125,10 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -
             y: error,
             label,
         };
-        match series.iter_mut().find(|known| known.name == name) {
+        match series
+            .iter_mut()
+            .find(|known| (&known.name, known.style.filled) == (&name, style.filled))
+        {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
@@ -200,7 +179,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
-                style: source_style(source),
+                style: of_source(source),
                 points: vec![point],
                 joined: false,
             }),
@@ -220,18 +199,6 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
     )
 }
 
-fn source_style(source: MapSource) -> Style {
-    let index = match source {
-        MapSource::Binary => 1,
-        MapSource::Coverage => 0,
-        MapSource::Exact => 2,
-    };
-    Style {
-        index,
-        filled: true,
-    }
-}
-
 fn chart(title: &str, measure: Measure, series: Vec<Series>, best: &[(f64, f64)]) -> Figure {
     XyChart {
         title: title.to_owned(),
@@ -242,7 +209,8 @@ fn chart(title: &str, measure: Measure, series: Vec<Series>, best: &[(f64, f64)]
             name: "Pareto front".into(),
             points: stairs(best),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()
@@ -280,7 +248,7 @@ pub fn resolution(
         if let Some(y) = measure.of(row) {
             add(
                 format!("{}, drawn", names::source(source)),
-                source_style(source),
+                of_source(source),
                 Point {
                     x: f64::from(count),
                     y,
@@ -298,7 +266,7 @@ pub fn resolution(
         if let Some(y) = value {
             let style = Style {
                 filled: false,
-                ..source_style(error.source)
+                ..of_source(error.source)
             };
             add(
                 format!("{}, the map alone", names::source(error.source)),
@@ -379,7 +347,7 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage, its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute), its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
                  in both time and error.",
             );
         }
@@ -439,22 +407,23 @@ fn summary(
     overview::begin(&mut page, machine, measured);
     page.chapter("All views together");
     page.text(
-        "Times are ratios to the papers' loop in the fragment stage where it was measured, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
+        "Times are ratios to the papers' loop in the same stage, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
          normals. A search that is fast because it misses the surface stands at the top.",
     );
-    let ratios = over_papers_loop(&measured.rows);
-    for measure in [Measure::Depth, Measure::Wrong, Measure::Normal] {
-        let figure = summed(&ratios, measure, base);
-        keep_figure(
-            folder,
-            &format!("summary-{}", measure.name().replace(' ', "-")),
-            &figure,
-        )?;
-        page.figure(
-            &figure,
-            "Each line is a search in one stage over its bound on steps, or the mesh over its tessellation (numbers on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
-             in both.",
-        );
+    let parts = parts(&measured.rows);
+    for part in &parts {
+        let ratios = over_papers_loop(&part.rows);
+        page.heading(&part.heading());
+        for measure in [Measure::Depth, Measure::Wrong, Measure::Normal] {
+            let figure = summed(part.views(), &ratios, measure, base);
+            let name = format!("summary-{}", measure.name().replace(' ', "-"));
+            keep_figure(folder, &format!("{name}{}", part.ending(&parts)), &figure)?;
+            page.figure(
+                &figure,
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute) over its bound on steps, or the mesh over its segments x rings (numbers: at meshes, and on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
+                 in both.",
+            );
+        }
     }
     page.chapter("Fronts");
     page.text("Ways of drawing that are on the front of depth error against time of at least one view, best first.");
@@ -462,14 +431,15 @@ fn summary(
     page.table(&header, &records, &[0, 1]);
     page.chapter("Views");
     page.links(pages);
+    overview::picture_table(&mut page, &measured.rows);
     overview::pictures(&mut page, plan, album);
     overview::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
 
-/// The chart that sums up: error against the ratio to the papers' loop.
+/// The chart that sums `views` up: error against the ratio to the papers' loop.
 #[must_use]
-pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
+pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
     let mut series: Vec<Series> = Vec::new();
     let mut places = Vec::new();
     for ratio in ratios {
@@ -488,19 +458,16 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
         let x = ratio.time.value;
         places.push((x, y));
         let (name, style) = if papers {
-            (
-                format!("papers' loop, {}", stage(s.stage)),
-                papers_style(s.stage),
-            )
+            (PAPERS_LOOP.to_owned(), style(s))
         } else {
-            (
-                format!("{}, {}", s.solver.name(), stage(s.stage)),
-                style(s.solver, s.stage),
-            )
+            (s.solver.name().to_owned(), of_line(s))
         };
         let label = budget(s);
         let point = Point { x, y, label };
-        match series.iter_mut().find(|known| known.name == name) {
+        match series
+            .iter_mut()
+            .find(|known| (&known.name, known.style.filled) == (&name, style.filled))
+        {
             Some(known) => known.points.push(point),
             None => series.push(Series {
                 name,
@@ -512,12 +479,13 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
     }
     let best = front(&places, WORTH);
     for point in series.iter_mut().flat_map(|s| &mut s.points) {
-        if !best.iter().any(|&i| places[i] == (point.x, point.y)) {
+        let mesh = point.label.as_ref().is_some_and(|l| l.contains('x'));
+        if !(mesh || best.iter().any(|&i| places[i] == (point.x, point.y))) {
             point.label = None;
         }
     }
     XyChart {
-        title: format!("All views: {} against time", measure.name()),
+        title: format!("{views}: {} against time", measure.name()),
         x: Axis::log("time / time of the papers' loop").with(1.0),
         y: measure.axis(),
         series,
@@ -525,7 +493,8 @@ pub fn summed(ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
             name: "Pareto front".into(),
             points: stairs(&best.into_iter().map(|i| places[i]).collect::<Vec<_>>()),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()

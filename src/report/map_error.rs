@@ -29,13 +29,49 @@ pub struct MapError {
 /// Samples along a ray are at most this many texels apart where the surface is near.
 const STRIDE: f64 = 0.25;
 
-/// Measures the maps that a plan sweeps over, for views of solids without repetition. `progress` is told what is done and how much there is.
+/// Distances of the reference, kept while a plan is measured: the reference is slow, and no picture is drawn with it twice.
+#[derive(Clone, Debug, Default)]
+pub struct Truths {
+    known: Vec<(usize, (u32, u32), Vec<f32>)>,
+}
+
+impl Truths {
+    /// Keeps what should be seen of a picture.
+    pub fn keep(&mut self, view: usize, truth: &Frame) {
+        let size = (truth.width, truth.height);
+        if self.find(view, size).is_none() {
+            self.known.push((view, size, truth.distance.clone()));
+        }
+    }
+
+    fn find(&self, view: usize, size: (u32, u32)) -> Option<&Vec<f32>> {
+        let same = |known: &&(usize, (u32, u32), Vec<f32>)| (known.0, known.1) == (view, size);
+        self.known.iter().find(same).map(|known| &known.2)
+    }
+
+    /// The frame of a view, of which distances alone are true.
+    fn frame(&self, view: usize, seen: &Scene, settings: &Settings) -> Result<Frame> {
+        let (width, height) = (settings.width, settings.height);
+        match self.find(view, (width, height)) {
+            Some(distance) => {
+                let mut frame = Frame::new(width, height, seen.background)?;
+                frame.distance.clone_from(distance);
+                Ok(frame)
+            }
+            None => reference::draw(seen, settings, &|_, _| {}),
+        }
+    }
+}
+
+/// Measures the maps that a plan sweeps over, for views of solids without repetition; the reference is drawn where `truths` has none. Of the
+/// errors depth and wrong pixels count: colours and normals are not compared. `progress` is told what is done and how much there is.
 ///
 /// # Errors
 /// Of baking and of the reference.
 pub fn measure(
     plan: &Plan,
     size: (u32, u32),
+    truths: &Truths,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<MapError>> {
     let mut wanted: Vec<(usize, MapSource, u32)> = Vec::new();
@@ -62,7 +98,7 @@ pub fn measure(
         progress(number, wanted.len());
         let seen = &plan.views[view];
         if truth.as_ref().is_none_or(|(known, _)| *known != view) {
-            truth = Some((view, reference::draw(&seen.scene, &settings, &|_, _| {})?));
+            truth = Some((view, truths.frame(view, &seen.scene, &settings)?));
         }
         let Some((_, truth)) = &truth else { continue };
         let frame = draw(&seen.scene, size, source, rows)?;
@@ -255,5 +291,32 @@ mod tests {
             errors.wrong() < 0.02 && errors.depth.unwrap().p99 < 1.0,
             "{errors}"
         );
+    }
+
+    /// A planted truth is taken for the reference; without one the reference itself is drawn.
+    #[test]
+    fn truths_that_are_known_are_not_drawn_again() {
+        let view = spindle().framed(20.0);
+        let settings = Settings {
+            width: 40,
+            height: 30,
+            map_source: Some(MapSource::Exact),
+            map_rows: Some(64),
+            ..Settings::default()
+        };
+        let plan = Plan::new(vec![view], &[settings]);
+        let wrong = |truths: &Truths| {
+            measure(&plan, (40, 30), truths, &mut |_, _| {}).unwrap()[0]
+                .errors
+                .wrong()
+        };
+        assert!(wrong(&Truths::default()) < 0.1);
+        let mut planted = Truths::default();
+        planted.keep(0, &Frame::new(40, 30, [0.0; 4]).unwrap());
+        assert!(wrong(&planted) > 10.0, "nothing is hit there");
+        // The first that is kept stays; another size is another picture.
+        let mut other = Truths::default();
+        other.keep(0, &Frame::new(80, 60, [0.0; 4]).unwrap());
+        assert!(wrong(&other) < 0.1);
     }
 }

@@ -4,13 +4,15 @@
 //! them. All groups are gone through several times (*passes*), each time with everything built anew: what one placement in memory,
 //! or one bout of work beside ours, does to a time shows as spread between passes (see [`stats`](super::stats)).
 
+pub use super::limits::Limits;
 use super::plan::{Case, Plan, together};
 use super::row::{Row, Steps};
 use super::view::View;
 use crate::error::{Error, Result, Stage};
-use crate::frame::{self, CompareOptions, Frame};
+use crate::frame::{self, CompareOptions, Comparison, Frame};
 use crate::settings::{Planes, Settings};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
 
 /// What one frame took.
@@ -52,53 +54,6 @@ pub trait Bench {
     fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame>;
 }
 
-/// How long and how often.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// The time that all is meant to take. The least number of rounds is drawn even if that takes longer.
-    pub time: Duration,
-    /// Least and most passes.
-    pub passes: (usize, usize),
-    /// Least and most rounds of a group in a pass.
-    pub rounds: (usize, usize),
-    /// Half the width of an interval, relative, below which no more samples are taken.
-    pub precision: f64,
-    /// Frames drawn before the first that counts: drivers compile at the first draw.
-    pub warm_up: usize,
-}
-
-impl Limits {
-    /// The default: within two minutes.
-    pub const DEFAULT: Self = Self {
-        time: Duration::from_secs(85),
-        passes: (5, 10),
-        rounds: (3, 20),
-        precision: 0.01,
-        warm_up: 1,
-    };
-    /// A look: within 20 seconds.
-    pub const QUICK: Self = Self {
-        time: Duration::from_secs(11),
-        passes: (4, 8),
-        rounds: (2, 5),
-        ..Self::DEFAULT
-    };
-    /// A chart of many ways of drawing: few samples of each.
-    pub const CHART: Self = Self {
-        time: Duration::from_secs(600),
-        passes: (4, 6),
-        rounds: (2, 5),
-        ..Self::DEFAULT
-    };
-    /// The whole sweep: as long as it takes to know.
-    pub const FULL: Self = Self {
-        time: Duration::from_secs(1500),
-        passes: (5, 12),
-        rounds: (3, 20),
-        ..Self::DEFAULT
-    };
-}
-
 /// Whoever waits for the measurement.
 pub struct Watch<'a> {
     /// Set from anywhere to end early; what was measured is kept.
@@ -137,6 +92,9 @@ pub struct Measured {
     /// How long it took.
     pub took: Duration,
 }
+
+/// A frame and how far it is from the reference.
+type Compared = (Frame, Result<Comparison>);
 
 /// Measures a plan.
 ///
@@ -268,42 +226,65 @@ impl Run<'_> {
             texel: view.texel(),
             ..CompareOptions::default()
         };
-        for &index in group {
-            if watch.stop.load(Ordering::Relaxed) {
-                break;
-            }
-            let case = &self.plan.cases[index];
-            self.tell(
-                watch,
-                &format!("{}: errors of {}", view.name, case.settings.solver),
-            );
-            let settings = Settings {
-                planes: Planes::All,
-                ..case.settings
-            };
-            let (frame, map_bytes) = match self.bench.picture(view, &settings) {
-                Ok(drawn) => drawn,
-                Err(error) => {
-                    self.leave_out(index, error)?;
-                    continue;
+        let reference = frame::Reference::new(&truth, &options)?;
+        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing is timed meanwhile.
+        std::thread::scope(|scope| {
+            let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
+            for &index in group {
+                if watch.stop.load(Ordering::Relaxed) {
+                    break;
                 }
-            };
-            let comparison = frame::compare(&truth, &frame, &options)?;
-            (watch.picture)(&Seen {
-                plan: self.plan,
-                case,
-                frame: &frame,
-                truth: &truth,
-                options: &options,
-            })?;
-            self.rows[index] = Some(Row::new(
-                view,
-                case,
-                comparison,
-                Steps::of(&frame),
-                map_bytes,
-            ));
-        }
+                let solver = self.plan.cases[index].settings.solver;
+                self.tell(watch, &format!("{}: errors of {solver}", view.name));
+                let settings = Settings {
+                    planes: Planes::All,
+                    ..self.plan.cases[index].settings
+                };
+                let drawn = self.bench.picture(view, &settings);
+                if let Some(one) = compared.take() {
+                    self.keep(one, (&truth, &options), watch)?;
+                }
+                match drawn {
+                    Ok((frame, map_bytes)) => {
+                        let reference = &reference;
+                        let work = scope.spawn(move || {
+                            let comparison = reference.compare(&frame);
+                            (frame, comparison)
+                        });
+                        compared = Some((index, map_bytes, work));
+                    }
+                    Err(error) => self.leave_out(index, error)?,
+                }
+            }
+            match compared.take() {
+                Some(one) => self.keep(one, (&truth, &options), watch),
+                None => Ok(()),
+            }
+        })
+    }
+
+    /// Takes over a frame that was compared.
+    fn keep(
+        &mut self,
+        (index, map_bytes, work): (usize, u64, ScopedJoinHandle<Compared>),
+        (truth, options): (&Frame, &CompareOptions),
+        watch: &mut Watch,
+    ) -> Result<()> {
+        let (frame, comparison) = work
+            .join()
+            .map_err(|_| Error::new(Stage::Report, "a comparison was given up; report this"))?;
+        let comparison = comparison?;
+        let case = &self.plan.cases[index];
+        (watch.picture)(&Seen {
+            plan: self.plan,
+            case,
+            frame: &frame,
+            truth,
+            options,
+        })?;
+        let view = &self.plan.views[case.view];
+        let steps = Steps::of(&frame);
+        self.rows[index] = Some(Row::new(view, case, comparison, steps, map_bytes));
         Ok(())
     }
 

@@ -5,10 +5,15 @@
 
 pub mod against;
 pub mod chart;
+pub mod covered;
 pub mod csv;
 pub mod curves;
 mod device;
 pub mod folder;
+pub mod framing;
+pub mod glossary;
+pub mod limits;
+pub mod looks;
 pub mod machine;
 pub mod map_error;
 pub mod measure;
@@ -23,6 +28,7 @@ pub mod row;
 pub mod scaling;
 pub mod stats;
 pub mod suite;
+pub mod summary;
 pub mod sweep;
 pub mod text;
 pub mod view;

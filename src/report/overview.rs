@@ -5,71 +5,28 @@ use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
 use super::chart::front::{WORTH, front};
 use super::chart::raster::raster;
-use super::chart::style::{PALE, Style};
+use super::chart::style::{Dash, PALE};
 use super::chart::svg::svg;
 use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
-use super::curves::{self, Measure};
+use super::covered;
 use super::folder::{left_out, make, write_bytes, write_text};
+use super::glossary;
+use super::looks::{Looks, of_line};
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
 use super::page::Page;
 use super::pictures::{Album, heat_key, png};
-use super::plan::{Labels, Plan, variant};
-use super::ratios::{Ratio, over_papers_loop};
+use super::plan::{Plan, variant};
 use super::row::{CLOCKS_APART, Row};
-use super::text::{self, interval, percent};
+use super::summary;
+use super::text;
 use crate::error::Result;
-use crate::settings::{DrawStage, Settings};
+use crate::settings::Settings;
 use std::path::Path;
 
 /// Errors below this many texels are drawn as this many: no eye and no other use tells them apart.
 pub const LEAST_DEPTH: f64 = 1e-4;
-
-/// Which way of drawing looks how: colour and marker by what is drawn, filled in the fragment stage.
-#[derive(Clone, Debug)]
-pub struct Looks {
-    labels: Labels,
-    ways: Vec<String>,
-}
-
-impl Looks {
-    /// Looks for these ways.
-    #[must_use]
-    pub fn new<'a>(settings: impl IntoIterator<Item = &'a Settings> + Clone) -> Self {
-        let labels = Labels::new(settings.clone());
-        let mut ways = Vec::new();
-        for s in settings {
-            let way = labels.way(s);
-            if !ways.contains(&way) {
-                ways.push(way);
-            }
-        }
-        Self { labels, ways }
-    }
-
-    /// The name of a way, without its stage.
-    #[must_use]
-    pub fn way(&self, s: &Settings) -> String {
-        self.labels.way(s)
-    }
-
-    /// The name of a way and its stage.
-    #[must_use]
-    pub fn name(&self, s: &Settings) -> String {
-        format!("{}, {}", self.labels.way(s), stage(s.stage))
-    }
-
-    /// How it looks.
-    #[must_use]
-    pub fn style(&self, s: &Settings) -> Style {
-        let way = self.labels.way(s);
-        Style {
-            index: self.ways.iter().position(|w| *w == way).unwrap_or(0),
-            filled: s.stage != DrawStage::Compute,
-        }
-    }
-}
 
 /// Writes a figure as SVG and as PNG of twice its size into `folder/charts`.
 ///
@@ -85,51 +42,24 @@ pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     )
 }
 
-/// The chart of ratios to the papers' loop.
-#[must_use]
-pub fn ratio_chart(ratios: &[Ratio], looks: &Looks) -> Figure {
-    let mut blocks = Vec::new();
-    for which in [DrawStage::Fragment, DrawStage::Compute] {
-        let lines: Vec<Line> = ratios
-            .iter()
-            .filter(|r| r.settings.stage == which)
-            .map(|r| Line {
-                name: looks.way(&r.settings),
-                value: r.time,
-                style: looks.style(&r.settings),
-            })
-            .collect();
-        if !lines.is_empty() {
-            blocks.push(Block {
-                name: format!("{} stage", stage(which)),
-                lines,
-            });
-        }
-    }
-    DotChart {
-        title: "Time of a frame, the papers' loop in the same stage being 1".into(),
-        axis: Axis::log("time / time of the papers' loop (left is faster)"),
-        mark: Some(1.0),
-        blocks,
-        legend: Vec::new(),
-    }
-    .figure()
-}
-
-/// The chart of times, a block for each picture.
+/// The chart of times, a block for each picture and stage.
 #[must_use]
 pub fn time_chart(rows: &[&Row], looks: &Looks) -> Figure {
     let mut blocks: Vec<Block> = Vec::new();
     for row in rows {
         let Some(value) = row.time() else { continue };
+        let s = &row.settings;
         let name = format!(
-            "{}, {}x{}",
-            row.scene, row.settings.width, row.settings.height
+            "{}, {}x{}, {} stage",
+            row.scene,
+            s.width,
+            s.height,
+            stage(s.stage)
         );
         let line = Line {
-            name: looks.name(&row.settings),
+            name: looks.way(s),
             value,
-            style: looks.style(&row.settings),
+            style: looks.style(s),
         };
         match blocks.iter_mut().find(|b| b.name == name) {
             Some(block) => block.lines.push(line),
@@ -149,6 +79,19 @@ pub fn time_chart(rows: &[&Row], looks: &Looks) -> Figure {
     .figure()
 }
 
+/// Pictures put together so that a chart of their times is no longer than a page.
+fn pages<'a>(pictures: &[Vec<&'a Row>]) -> Vec<Vec<&'a Row>> {
+    const LINES: usize = 44;
+    let mut pages: Vec<Vec<&Row>> = Vec::new();
+    for picture in pictures {
+        match pages.last_mut() {
+            Some(page) if page.len() + picture.len() <= LINES => page.extend(picture),
+            _ => pages.push(picture.clone()),
+        }
+    }
+    pages
+}
+
 /// The chart of depth error against time of rows that show one picture, with its Pareto front.
 #[must_use]
 pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
@@ -156,19 +99,39 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
         .iter()
         .filter_map(|r| Some((*r, r.time()?.value, r.errors.depth?.p99)))
         .collect();
-    let series = points
-        .iter()
-        .map(|(row, x, y)| Series {
-            name: looks.name(&row.settings),
-            style: looks.style(&row.settings),
-            points: vec![Point {
-                x: *x,
-                y: *y,
-                label: None,
-            }],
+    let mut series: Vec<Series> = Vec::new();
+    let mut meshes: Vec<(&Row, f64, f64)> = Vec::new();
+    for &(row, x, y) in &points {
+        let s = &row.settings;
+        if s.solver.is_mesh() {
+            meshes.push((row, x, y));
+            continue;
+        }
+        series.push(Series {
+            name: looks.way(s),
+            style: looks.style(s),
+            points: vec![Point { x, y, label: None }],
             joined: false,
-        })
-        .collect();
+        });
+    }
+    // Meshes differ by fineness alone: one line, each marker with its segments and rings.
+    meshes.sort_by_key(|(row, ..)| row.settings.solver.quads());
+    if let Some((coarsest, ..)) = meshes.first() {
+        let point = |&(row, x, y): &(&Row, f64, f64)| Point {
+            x,
+            y,
+            label: looks
+                .way(&row.settings)
+                .strip_prefix("mesh:")
+                .map(str::to_owned),
+        };
+        series.push(Series {
+            name: "mesh, segments x rings".into(),
+            style: of_line(&coarsest.settings),
+            points: meshes.iter().map(point).collect(),
+            joined: true,
+        });
+    }
     let places: Vec<(f64, f64)> = points.iter().map(|(_, x, y)| (*x, *y)).collect();
     let best: Vec<_> = front(&places, WORTH)
         .into_iter()
@@ -183,7 +146,8 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
             name: "Pareto front".into(),
             points: stairs(&best),
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     }
     .figure()
@@ -201,6 +165,7 @@ pub fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
     if measured.interrupted {
         page.note("The run was ended early: what is missing below was not measured.");
     }
+    glossary::chapter(page, measured);
 }
 
 /// What was left out and how times were taken: the end of every page.
@@ -249,118 +214,107 @@ pub fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
     );
 }
 
-/// The table of ratios.
-pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
-    let records: Vec<Vec<String>> = ratios
-        .iter()
-        .map(|r| {
-            vec![
-                looks.way(&r.settings),
-                stage(r.settings.stage).into(),
-                interval(&r.time, 3),
-                format!("{} to {}", number(r.range.0, 3), number(r.range.1, 3)),
-                r.pictures.to_string(),
-                percent(r.wrong),
-                r.depth_p99.map(|v| number(v, 3)).unwrap_or_default(),
-                r.normal_rms.map(|v| number(v, 3)).unwrap_or_default(),
-            ]
-        })
-        .collect();
-    page.table(
-        &[
-            "search",
-            "stage",
-            "time / papers' loop (95 % interval)",
-            "single pictures",
-            "pictures",
-            "wrong pixels",
-            "worst depth p99 (texels)",
-            "worst normal rms (degrees)",
-        ],
-        &records,
-        &[0, 1],
-    );
-}
-
-/// The default search against meshes, where both were measured.
-pub fn mesh_table(page: &mut Page, rows: &[Row]) {
-    let records = text::against_meshes(rows);
-    if records.is_empty() {
-        return;
-    }
-    page.chapter("Against meshes");
+/// The table of pictures, with the share of each that is solid.
+pub fn picture_table(page: &mut Page, rows: &[Row]) {
+    page.chapter("What was drawn");
     page.text(
-        "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
-         stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
-         (99th percentile) is no worse; the last column counts them. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
-         pictures without one.",
+        "Each picture, with the share of its pixels in which the reference hits a solid. Where that is small, what a frame costs anyhow (clearing, storing, ending it) \
+         weighs much in its time, and searches look more alike than they are.",
     );
-    page.table(&text::AGAINST_MESHES, &records, &[0, 1]);
+    page.table(&covered::PICTURES, &covered::pictures(rows), &[0, 1, 5]);
 }
 
-/// The table of all rows.
+/// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for paper.
 pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
-    let records: Vec<Vec<String>> = rows
-        .iter()
-        .map(|r| {
-            let e = &r.errors;
-            let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
-            let time = r.time();
-            let steps = Some(r.steps).filter(|_| !r.settings.solver.is_mesh());
-            vec![
-                r.scene.clone(),
-                looks.way(&r.settings),
-                stage(r.settings.stage).into(),
-                format!("{}x{}", r.settings.width, r.settings.height),
-                time.map(|t| interval(&t, 3))
-                    .unwrap_or_else(|| "clocks disagree".into()),
-                num(time.map(|t| 1e3 / t.value)),
-                num(steps.map(|s| s.mean)),
-                num(steps.map(|s| s.p99)),
-                num(steps.map(|s| s.max)),
-                if r.settings.solver.may_run_out() {
-                    r.steps.exhausted.to_string()
-                } else {
-                    "–".into()
-                },
-                e.missed.to_string(),
-                e.ghost.to_string(),
-                num(e.depth.map(|d| d.rms)),
-                num(e.depth.map(|d| d.p99)),
-                num(e.depth.map(|d| d.max)),
-                num(e.normal.map(|n| n.rms)),
-                num(Some(e.silhouette_hausdorff)),
-                num(Some(e.flip)),
-                format!("{} kB", number(r.map_bytes as f64 / 1e3, 3)),
-            ]
-        })
-        .collect();
-    page.table(
-        &[
-            "scene",
-            "search",
-            "stage",
-            "size",
-            "ms (95 % interval)",
-            "frames / s",
-            "steps mean",
-            "p99",
-            "max",
-            "out of steps",
-            "missed",
-            "ghost",
-            "depth rms (texels)",
-            "p99",
-            "max",
-            "normal rms (°)",
-            "silhouette (px)",
-            "FLIP",
-            "maps, mesh",
-        ],
-        &records,
-        &[0, 1, 2],
+    let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
+    let named = |r: &Row| {
+        let s = &r.settings;
+        vec![
+            r.scene.clone(),
+            looks.way(s),
+            stage(s.stage).to_owned(),
+            format!("{}x{}", s.width, s.height),
+        ]
+    };
+    let times = |r: &Row| {
+        let time = r.time();
+        let steps = Some(r.steps).filter(|_| !r.settings.solver.is_mesh());
+        let mut record = named(r);
+        record.extend([
+            time.map_or("clocks disagree".into(), |t| number(t.value, 3)),
+            time.map(|t| text::ends(&t)).unwrap_or_default(),
+            num(time.map(|t| 1e3 / t.value)),
+            num(steps.map(|s| s.mean)),
+            num(steps.map(|s| s.p99)),
+            num(steps.map(|s| s.max)),
+            if r.settings.solver.may_run_out() {
+                r.steps.exhausted.to_string()
+            } else {
+                "–".into()
+            },
+            number(r.map_bytes as f64 / 1e3, 3),
+        ]);
+        record
+    };
+    let errors = |r: &Row| {
+        let e = &r.errors;
+        let mut record = named(r);
+        record.extend([
+            e.missed.to_string(),
+            e.ghost.to_string(),
+            num(e.depth.map(|d| d.rms)),
+            num(e.depth.map(|d| d.p99)),
+            num(e.depth.map(|d| d.max)),
+            num(e.normal.map(|n| n.rms)),
+            num(Some(e.silhouette_hausdorff)),
+            num(Some(e.flip)),
+        ]);
+        record
+    };
+    let all = |of: &dyn Fn(&Row) -> Vec<String>| rows.iter().map(of).collect::<Vec<_>>();
+    page.heading("Times and look-ups");
+    page.text(
+        "Milliseconds of a frame with their 95 % interval; look-ups a pixel, over the pixels in which there were any (mean, 99th percentile, most), and the pixels in which a \
+         search ran out of steps; kilobytes of maps and tables, or of the mesh, on the device.",
     );
+    page.table(&TIMES, &all(&times), &[0, 1, 2]);
+    page.heading("Errors");
+    page.text(
+        "Pixels missed and ghosts; errors of depth in texels of a map of 512 rows; of normals in degrees; the Hausdorff distance of the silhouettes in pixels; FLIP, 0 (equal) to 1, \
+         its mean over the picture.",
+    );
+    page.table(&ERRORS, &all(&errors), &[0, 1, 2]);
 }
+
+const TIMES: [&str; 12] = [
+    "scene",
+    "search",
+    "stage",
+    "size",
+    "ms",
+    "95 % interval",
+    "frames / s",
+    "look-ups, mean",
+    "p99",
+    "most",
+    "out of steps",
+    "maps, mesh (kB)",
+];
+
+const ERRORS: [&str; 12] = [
+    "scene",
+    "search",
+    "stage",
+    "size",
+    "missed",
+    "ghosts",
+    "depth rms (texels)",
+    "p99",
+    "most",
+    "normals rms (°)",
+    "silhouette (px)",
+    "FLIP",
+];
 
 /// The pictures' chapter.
 pub fn pictures(page: &mut Page, plan: &Plan, album: &Album) {
@@ -401,31 +355,11 @@ pub fn write(
     let mut page = Page::new("revmap: frame rates, look-ups and errors");
     begin(&mut page, machine, measured);
 
-    let ratios = over_papers_loop(rows);
-    if !ratios.is_empty() {
-        page.chapter("Against the papers' loop");
-        page.text(
-            "The papers' loop is circle tracing of 20 steps (25 and 10 halvings under a bevel) over the distances of a binary image in 8 bits. Ratios are geometric means \
-             over all pictures; below 1 is faster.",
-        );
-        let figure = ratio_chart(&ratios, &looks);
-        keep_figure(folder, "ratios", &figure)?;
-        page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval; further left is faster.");
-        ratio_table(&mut page, &ratios, &looks);
-    }
-    mesh_table(&mut page, rows);
+    summary::chapters(&mut page, folder, rows, &looks)?;
 
     page.chapter("Speed and error");
     let all: Vec<&Row> = rows.iter().collect();
-    if !ratios.is_empty() {
-        let figure = curves::summed(&ratios, Measure::Depth, &Settings::default());
-        keep_figure(folder, "summary", &figure)?;
-        page.figure(
-            &figure,
-            "All pictures together: the time of each search over that of the papers' loop in the same stage, and its depth error in the worst picture. Filled in the fragment stage, hollow in the \
-             compute stage; lower is more exact, further left is faster, and what lies on the dashed line is beaten by nothing in both.",
-        );
-    }
+    summary::speed_and_error(&mut page, folder, rows)?;
     for group in pictures_of(&all) {
         let Some(first) = group.first() else { continue };
         let size = format!("{}x{}", first.settings.width, first.settings.height);
@@ -441,13 +375,12 @@ pub fn write(
         )?;
         page.figure(
             &figure,
-            "Each marker is a search, filled in the fragment stage and hollow in the compute stage; lower is more exact, further left is faster, and what lies on the dashed \
+            "Each marker is a search, filled in the fragment stage and hollow in the compute stage, or a mesh; lower is more exact, further left is faster, and what lies on the dashed \
              line is beaten by nothing in both. Depth errors are the 99th percentile over the pixels hit, in texels of a map of 512 rows.",
         );
     }
     page.chapter("Times");
-    for chunk in pictures_of(&all).chunks(6) {
-        let chunk: Vec<&Row> = chunk.concat();
+    for chunk in pages(&pictures_of(&all)) {
         let Some(first) = chunk.first() else { continue };
         let figure = time_chart(&chunk, &looks);
         keep_figure(
@@ -460,8 +393,9 @@ pub fn write(
             ),
             &figure,
         )?;
-        page.figure(&figure, "Each marker is the time of a frame with its 95 % interval, by the device's clock where it has one; further left is faster.");
+        page.figure(&figure, "Each marker is the time of a frame with its 95 % interval, by the device's clock where it has one, and its number in ms at the right; further left is faster.");
     }
+    picture_table(&mut page, rows);
     page.chapter("All rows");
     row_table(&mut page, rows, &looks);
     pictures(&mut page, plan, album);
@@ -498,4 +432,71 @@ pub fn safe(name: &str) -> String {
             }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::{ALL_MESHES, papers_loop};
+    use super::super::row::tests::row;
+    use super::super::view::tests::spindle;
+    use super::*;
+    use crate::frame::Spread;
+    use crate::settings::{DrawStage, Solver};
+
+    /// As much as one picture can hold: every search in both stages, five meshes, the papers' loop.
+    fn crowded() -> Vec<Row> {
+        let mut rows = Vec::new();
+        let meshes = ALL_MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+        for (k, solver) in Solver::ALL.into_iter().chain(meshes).enumerate() {
+            for stage in [DrawStage::Fragment, DrawStage::Compute] {
+                let ms = 5.0 * 1.2f64.powi(k as i32) + f64::from(stage == DrawStage::Compute);
+                let mut one = row(&[&[(None, ms)], &[(None, 1.02 * ms)]]);
+                one.settings = Settings {
+                    solver,
+                    stage,
+                    ..one.settings
+                };
+                let p99 = 4.0 * 0.5f64.powi(k as i32);
+                one.errors.depth = Some(Spread {
+                    rms: p99,
+                    p99,
+                    max: p99,
+                });
+                rows.push(one.clone());
+                if solver == Solver::Circle {
+                    one.settings = papers_loop(&spindle(), &one.settings);
+                    rows.push(one);
+                }
+            }
+        }
+        rows.retain(|r| !r.settings.solver.is_mesh() || r.settings.stage == DrawStage::Fragment);
+        rows
+    }
+
+    #[test]
+    fn no_words_cover_each_other_in_the_fullest_charts() {
+        let rows = crowded();
+        let ways: Vec<Settings> = rows.iter().map(|r| r.settings).collect();
+        let looks = Looks::new(&ways);
+        let all: Vec<&Row> = rows.iter().collect();
+        for figure in [
+            error_chart("king@25:close, 1366x706", &all, &looks),
+            time_chart(&all, &looks),
+        ] {
+            assert_eq!(figure.faults(), Vec::<String>::new(), "{}", figure.title);
+        }
+        // Meshes are one line with a word at each, not an entry each in the legend.
+        let said = svg(&error_chart("t", &all, &looks));
+        assert_eq!(said.matches(">mesh").count(), 1);
+        assert!(said.contains(">512x1024<") || said.contains(">128x256<"));
+    }
+
+    #[test]
+    fn a_page_of_times_is_no_longer_than_paper() {
+        let rows = crowded();
+        let picture: Vec<&Row> = rows.iter().take(15).collect();
+        let pages = pages(&vec![picture; 5]);
+        let lengths: Vec<usize> = pages.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [30, 30, 15]);
+    }
 }

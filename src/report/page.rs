@@ -16,7 +16,8 @@ pub struct Page {
     figures: usize,
 }
 
-/// Style: one column as wide as a chart reads well, tables that scroll on their own, nothing cut apart in print.
+/// Style: one column as wide as a chart reads well; tables that scroll on their own, their first column staying, shadows telling that there is
+/// more; in print nothing cut apart that fits a page, headings with what follows them, two charts a page.
 const STYLE: &str = "
 :root{color-scheme:light}
 *{box-sizing:border-box}
@@ -27,16 +28,20 @@ h3{font-size:1.05rem;margin:1.4rem 0 .4rem}
 p{margin:.5rem 0;max-width:46rem}
 code{font:.9em ui-monospace,'DejaVu Sans Mono',monospace;background:#f3f3f3;padding:.1em .3em;overflow-wrap:anywhere}
 nav ul{padding-left:1.2rem;margin:.3rem 0}
+nav li{padding:.15rem 0}
 a{color:#0072b2}
 figure{margin:1rem 0}
-figure svg{display:block;width:100%;height:auto;max-width:46rem}
+figure svg{display:block;width:100%;height:auto;max-width:36rem}
 figcaption{font-size:.92rem;color:#444;max-width:46rem;margin-top:.4rem}
-.scroll{overflow-x:auto;max-width:100%}
-table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-nums}
-th,td{padding:.25rem .6rem;text-align:right;white-space:nowrap;border-bottom:1px solid #e5e5e5}
-th{border-bottom:2px solid #888;text-align:right;vertical-align:bottom;white-space:normal;min-width:4.5em}
+.scroll{overflow-x:auto;max-width:100%;margin:.6rem 0;background:linear-gradient(270deg,#fff 30%,#fff0) 100% 0/3rem 100% no-repeat local,\
+linear-gradient(270deg,#0003,#0000) 100% 0/.9rem 100% no-repeat scroll,#fff}
+table{border-collapse:separate;border-spacing:0;font-size:.88rem;font-variant-numeric:tabular-nums}
+th,td{padding:.25rem .6rem;text-align:right;white-space:nowrap;border-top:1px solid #e5e5e5}
+th{border-top:0;border-bottom:2px solid #888;text-align:right;vertical-align:bottom;white-space:normal;min-width:4.5em}
 th:first-child,td:first-child,th.l,td.l{text-align:left}
-dl{display:grid;grid-template-columns:max-content 1fr;gap:.15rem 1rem;margin:.5rem 0}
+th:first-child,td:first-child{position:sticky;left:0;background:#fff}
+td.w{white-space:normal;min-width:16em;max-width:34em;overflow-wrap:break-word}
+dl{display:grid;grid-template-columns:max-content 1fr;gap:.15rem 1rem;margin:.5rem 0;max-width:46rem}
 dt{color:#555}
 dd{margin:0;overflow-wrap:anywhere}
 .shots{display:grid;grid-template-columns:repeat(4,1fr);gap:.8rem;margin:.8rem 0}
@@ -45,9 +50,12 @@ dd{margin:0;overflow-wrap:anywhere}
 .shots img{display:block;width:100%;height:auto;border:1px solid #ccc}
 .shots figcaption{font-size:.85rem}
 .note{border-left:4px solid #d55e00;padding:.3rem .8rem;background:#fdf4ee}
-@media(max-width:44rem){.shots{grid-template-columns:repeat(2,1fr)}}
+@media(max-width:44rem){.shots{grid-template-columns:repeat(2,1fr)}th,td{padding:.25rem .35rem}table{font-size:.82rem}th{min-width:3.6em}}
 @media(max-width:34rem){dl{grid-template-columns:1fr}dt{margin-top:.4rem}body{padding:.8rem}}
-@media print{body{max-width:none;font-size:10.5pt}h2{break-after:avoid}figure,.shots figure{break-inside:avoid}.scroll{overflow:visible}th,td{padding:.1rem .3rem;white-space:normal}table{font-size:7.5pt}nav{display:none}}
+@media print{@page{size:A4;margin:14mm}body{max-width:none;padding:0;font-size:10pt;line-height:1.35}h1{font-size:16pt}h2{font-size:13pt}h3{font-size:11pt}h2,h3{break-after:avoid}\
+p{orphans:3;widows:3}figure,.shots figure{break-inside:avoid}figure svg{width:auto;max-width:10.5cm;max-height:20cm}figcaption{max-width:none;font-size:9pt}.scroll{overflow:visible;background:none}\
+thead{display:table-header-group}tr{break-inside:avoid}th,td{padding:.06rem .22rem;white-space:normal}td.n,td:first-child{white-space:nowrap}th{min-width:0}td.w{min-width:0}table{font-size:7.5pt;line-height:1.25}\
+th:first-child,td:first-child{position:static}.shots{gap:.4rem}.shots:has(:only-child){grid-template-columns:minmax(0,8cm)}nav{display:none}a{color:inherit;text-decoration:none}code{background:none;padding:0}}
 ";
 
 impl Page {
@@ -136,15 +144,20 @@ impl Page {
 
     /// A table; columns named in `left` are aligned left.
     pub fn table(&mut self, header: &[&str], records: &[Vec<String>], left: &[usize]) {
-        let class = |c: usize| {
-            if left.contains(&c) {
-                " class=\"l\""
-            } else {
-                ""
-            }
+        // Sentences wrap; numbers and names stay in one line.
+        let wide = |c: usize| {
+            records
+                .iter()
+                .any(|r| r.get(c).is_some_and(|f| f.len() > 60))
+        };
+        let class = |c: usize| match (left.contains(&c), wide(c)) {
+            (true, true) => " class=\"l w\"",
+            (true, false) => " class=\"l\"",
+            (false, true) => " class=\"w\"",
+            (false, false) => " class=\"n\"",
         };
         self.body
-            .push_str("<div class=\"scroll\"><table><thead><tr>");
+            .push_str("<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>");
         for (c, name) in header.iter().enumerate() {
             let _ = write!(self.body, "<th{}>{}</th>", class(c), escape(name));
         }
@@ -261,7 +274,7 @@ mod tests {
         for wanted in [
             "A &lt;title&gt; &amp; more",
             "1 &lt; 2",
-            "<td>&quot;x&quot;</td>",
+            ">&quot;x&quot;</td>",
             "href=\"#c1\"",
             "&lt;script&gt;",
         ] {

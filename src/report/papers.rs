@@ -2,13 +2,14 @@
 
 use super::chart::Figure;
 use super::chart::axis::Axis;
-use super::chart::style::PALE;
+use super::chart::style::{Dash, PALE};
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, Looks, keep_figure};
+use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Plan, variant};
@@ -215,6 +216,9 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
     header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
     let mut records = Vec::new();
     for (size, rates) in SIZES.iter().zip(&table.rates) {
+        if lines(rows, index).iter().all(|l| l.size != *size) {
+            continue;
+        }
         let mut print = vec![
             format!("{}x{}", size.0, size.1),
             "print, GT 630M".into(),
@@ -386,7 +390,7 @@ fn chart(
         };
         let point = |(x, y)| Point { x, y, label: None };
         series.push(Series {
-            name: looks.name(&line.way),
+            name: looks.way(&line.way),
             style: looks.style(&line.way),
             points: points.into_iter().map(point).collect(),
             joined: true,
@@ -426,7 +430,8 @@ fn chart(
             name: "print, GeForce GT 630M".into(),
             points: print,
             color: PALE,
-            dashed: true,
+            dash: Dash::Guide,
+            width: 1.8,
         }],
     };
     Some(figure.figure())
@@ -495,7 +500,8 @@ mod tests {
                 .collect::<Vec<_>>(),
         );
         let (_, records) = records(&rows, 1, &looks);
-        assert_eq!(records.len(), 3);
+        // The print stands above what was measured at its size, and nowhere else.
+        assert_eq!(records.len(), 2);
         assert_eq!(records[0][3..], ["200", "210", "230", "1.15", "rises"]);
         assert_eq!(records[1][3..7], ["100", "125", "200", "2 (2 to 2)"]);
     }

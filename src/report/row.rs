@@ -1,5 +1,6 @@
 //! One measurement with all that was found out about it, as a line of `results.csv`.
 
+use super::framing::Framing;
 use super::measure::Sample;
 use super::names::{self, number};
 use super::plan::Case;
@@ -103,6 +104,8 @@ pub struct Row {
     pub view: usize,
     /// The view's name.
     pub scene: String,
+    /// How much of the picture its solids take.
+    pub framing: Framing,
     /// Form of the offset.
     pub technique: Technique,
     /// The offset, where all objects have the same.
@@ -135,6 +138,7 @@ impl Row {
         Self {
             view: case.view,
             scene: view.name.clone(),
+            framing: view.framing,
             technique: view.technique(),
             offset: view.offset(),
             settings,
@@ -152,6 +156,12 @@ impl Row {
             map_bytes,
             passes: Vec::new(),
         }
+    }
+
+    /// The share of the picture's pixels in which the reference hits, 0 to 1.
+    #[must_use]
+    pub fn covered(&self) -> f64 {
+        self.errors.hits as f64 / self.errors.pixels.max(1) as f64
     }
 
     /// The bound on steps.

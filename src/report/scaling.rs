@@ -4,15 +4,17 @@ use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, Looks, keep_figure};
+use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::plan::{Plan, papers_loop, variant};
 use super::row::Row;
 use super::stats::{self, Interval, PowerLaw};
 use super::suite::{self, Extent};
+use super::sweep::has_rows;
 use super::text;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
@@ -50,13 +52,15 @@ impl Quantity {
     fn setting(self) -> &'static str {
         match self {
             Self::Pixels => {
-                "One solid that fills nine tenths of the picture, at sizes from 320x240 to 3840x2160."
+                "One solid that fills nine tenths of the picture's height, in pictures of growing size."
             }
             Self::Solids => {
                 "A square field of copies at 800x600, seen from above so that the field always fills the picture: the pixels covered stay about the same while the copies grow smaller \
                  and more. Meshes keep their tessellation, and are drawn as long as all copies together have at most 8 million quads."
             }
-            Self::Rows => "One solid at 800x600, its map of 64 to 4096 rows.",
+            Self::Rows => {
+                "One solid at 800x600, its map of more and more rows; searches that read no map are not in it."
+            }
         }
     }
 }
@@ -151,7 +155,7 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
                 plan.add(0, sized(way, size));
             }
             for &rows in ROWS.iter().take(ranges.rows) {
-                if way.solver.is_mesh() {
+                if !(way.solver.reads_map() || has_rows(way.solver)) {
                     continue;
                 }
                 plan.add(
@@ -343,7 +347,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     let series = all
         .iter()
         .map(|g| Series {
-            name: looks.name(&g.way),
+            name: looks.way(&g.way),
             style: looks.style(&g.way),
             points: g
                 .points
@@ -365,8 +369,9 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             Some(Guide {
                 name: String::new(),
                 points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
-                color: looks.style(&g.way).color(),
-                dashed: g.way.stage == DrawStage::Compute,
+                color: looks.style(&g.way).color,
+                dash: looks.style(&g.way).dash,
+                width: looks.style(&g.way).line(),
             })
         })
         .collect();
@@ -408,12 +413,14 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
         )?;
         page.figure(
             &figure,
-            "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, dashed in the compute stage.",
+            "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, thinner in the compute stage.",
         );
         page.table(&HEADER, &records(&all, &looks), &[0, 1]);
     }
     page.chapter("All rows");
-    overview::row_table(&mut page, rows, &looks);
+    // Here the rows of maps tell rows apart.
+    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+    overview::row_table(&mut page, rows, &Looks::new(&ways));
     overview::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }

@@ -1,5 +1,6 @@
 //! Tables as plain text, for standard output.
 
+use super::covered::{PICTURES, parts, pictures};
 use super::names::{number, stage};
 use super::plan::{Labels, PAPERS_LOOP};
 use super::ratios::{Duel, over_meshes, over_papers_loop};
@@ -98,8 +99,9 @@ pub fn ratios(rows: &[Row]) -> String {
     table(&lines)
 }
 
-/// An interval's ends.
-fn ends(i: &Interval) -> String {
+/// An interval's ends, as `0.40 to 0.44`.
+#[must_use]
+pub fn ends(i: &Interval) -> String {
     if i.high.is_finite() {
         format!("{} to {}", number(i.low, 3), number(i.high, 3))
     } else {
@@ -117,7 +119,7 @@ pub const AGAINST_MESHES: [&str; 9] = [
     "pictures",
     "depth p99 (texels)",
     "the mesh's",
-    "mesh no worse in",
+    "pictures, mesh no worse",
 ];
 
 /// Its records: the default search in each stage over each mesh, then over the coarsest that is no worse; none without both.
@@ -144,15 +146,21 @@ pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
     over_meshes(rows).into_iter().map(record).collect()
 }
 
-/// Both tables: over the papers' loop, and over meshes where there are any.
+/// The tables that sum a run up: over the papers' loop, and over meshes where there are any, of all pictures and of each framing; then the
+/// pictures themselves.
 #[must_use]
-pub fn both(rows: &[Row]) -> String {
-    let mut out = ratios(rows);
-    let against = against_meshes(rows);
-    if !against.is_empty() {
-        let header = AGAINST_MESHES.map(str::to_owned).to_vec();
-        out.push('\n');
-        out += &table(&[vec![header], against].concat());
+pub fn summary(rows: &[Row]) -> String {
+    let mut out = String::new();
+    for part in parts(rows) {
+        out += &format!("{}\n\n{}\n", part.title(), ratios(&part.rows));
+        let against = against_meshes(&part.rows);
+        if !against.is_empty() {
+            let header = AGAINST_MESHES.map(str::to_owned).to_vec();
+            out += &table(&[vec![header], against].concat());
+            out.push('\n');
+        }
     }
+    let header = PICTURES.map(str::to_owned).to_vec();
+    out += &table(&[vec![header], pictures(rows)].concat());
     out
 }

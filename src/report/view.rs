@@ -1,7 +1,8 @@
 //! What is looked at: a scene and its name, seen from one place.
 
-use crate::scene::{Camera, Light, Offset, Scene};
-use glam::{DQuat, DVec3};
+use super::framing::Framing;
+use crate::scene::{Offset, Scene};
+use glam::DVec3;
 
 /// A scene to be measured.
 #[derive(Clone, Debug)]
@@ -10,6 +11,8 @@ pub struct View {
     pub name: String,
     /// The scene.
     pub scene: Scene,
+    /// How much of the picture its solids take.
+    pub framing: Framing,
 }
 
 /// Which form of the offset a scene's objects have (articles of 2022 and 2025).
@@ -68,6 +71,7 @@ impl View {
         Self {
             name: name.into(),
             scene,
+            framing: Framing::Whole,
         }
     }
 
@@ -133,73 +137,6 @@ impl View {
         self.name = format!("{}@{}", self.name, super::names::number(degrees, 4));
         self
     }
-
-    /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill nine tenths of the picture's
-    /// height, as the papers' pictures do, and lights them from the front and the side.
-    #[must_use]
-    pub fn framed(mut self, elevation: f64) -> Self {
-        let corners = self.corners();
-        let count = corners.len().max(1) as f64;
-        let middle = corners.iter().sum::<DVec3>() / count;
-        let size = corners
-            .iter()
-            .fold(0.0f64, |m, c| m.max((*c - middle).length()));
-        let mut camera = Camera::new(
-            middle + DVec3::new(0.93, -0.37, 0.0) * (4.0 * size.max(1e-3)),
-            middle,
-        );
-        camera.up = DVec3::Z;
-        self.scene.camera = camera;
-        let name = self.name.clone();
-        let mut view = self.at_elevation(elevation);
-        view.name = name;
-        let Camera {
-            eye, target, up, ..
-        } = view.scene.camera;
-        let forward = (target - eye).normalize();
-        let right = forward.cross(up).normalize();
-        let above = right.cross(forward);
-        let widest = corners.iter().fold(0.0f64, |most, c| {
-            let way = *c - eye;
-            let depth = way.dot(forward).max(1e-9);
-            // A picture of 4:3 is the narrowest that is drawn.
-            most.max((way.dot(above) / depth).abs())
-                .max((way.dot(right) / depth).abs() * 0.75)
-        });
-        view.scene.camera.fov_y = 2.0 * (widest / 0.9).atan().to_degrees();
-        let turned = |degrees: f64| {
-            DQuat::from_rotation_z(degrees.to_radians())
-                * DVec3::new(forward.x, forward.y, 0.0).normalize_or(DVec3::X)
-        };
-        view.scene.lights = vec![
-            Light {
-                direction: turned(35.0) - DVec3::Z * 0.8,
-                color: [0.95, 0.9, 0.8],
-            },
-            Light {
-                direction: turned(-60.0) - DVec3::Z * 0.3,
-                color: [0.2, 0.24, 0.3],
-            },
-        ];
-        view
-    }
-
-    /// The corners of all boxes, in the world.
-    fn corners(&self) -> Vec<DVec3> {
-        let mut all = Vec::new();
-        for object in &self.scene.objects {
-            let r = object.profile.radius;
-            for p in object.placements() {
-                for k in 0..8u32 {
-                    let pick =
-                        |bit: u32, low: f64, high: f64| if k & bit == 0 { low } else { high };
-                    let corner = DVec3::new(pick(1, -r, r), pick(2, -r, r), pick(4, 0.0, 1.0));
-                    all.push(p.position + p.rotation * (p.scale * corner));
-                }
-            }
-        }
-        all
-    }
 }
 
 #[cfg(test)]
@@ -207,7 +144,7 @@ pub(crate) mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::profile::Profile;
-    use crate::scene::{Object, Placement};
+    use crate::scene::{Camera, Object, Placement};
     use std::sync::Arc;
 
     /// A double cone.
@@ -262,24 +199,6 @@ pub(crate) mod tests {
             );
         }
         assert_eq!(spindle().at_elevation(25.0).name, "spindle@25");
-    }
-
-    #[test]
-    fn framing_fills_the_picture() {
-        for elevation in [0.0, 25.0, 60.0] {
-            let view = spindle().framed(elevation);
-            let frame = crate::scene::CameraFrame::new(&view.scene.camera, 400, 300).unwrap();
-            let mut reach = 0.0f64;
-            for corner in view.corners() {
-                let way = corner - frame.eye;
-                let depth = way.dot(frame.forward);
-                let per = frame.right.length_squared();
-                reach = reach
-                    .max((way.dot(frame.right) / depth / per).abs() / 200.0)
-                    .max((way.dot(frame.up) / depth / per).abs() / 150.0);
-            }
-            assert!((reach - 0.9).abs() < 0.01, "{elevation}: {reach}");
-        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
 use revmap::report::machine::Machine;
-use revmap::report::measure::{Limits, Measured, Watch, measure};
+use revmap::report::measure::{Limits, Measured, Seen, Watch, measure};
 use revmap::report::pictures::Album;
 use revmap::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
 use revmap::report::scaling::Ranges;
@@ -25,14 +25,15 @@ pub struct Bench {
     /// A look within 20 seconds: one solid unless scenes are named
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// The whole suite from three elevations at two sizes, every search, five meshes: takes more than half an hour on two cores
+    /// The whole suite from three elevations at two sizes, every search, five meshes: takes about an hour on two cores, above two with
+    /// --framing whole,close
     #[arg(long)]
     full: bool,
     /// The papers' tables: extended, beveled and chamfered solids at their two sizes, our rates beside theirs
-    #[arg(long, conflicts_with_all = ["full", "scenes"])]
+    #[arg(long, conflicts_with_all = ["full", "scenes", "framing"])]
     tables: bool,
     /// How time grows with pixels, with solids and with rows of the map
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "tables"])]
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "framing", "tables"])]
     scaling: bool,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling"])]
@@ -80,10 +81,11 @@ impl Bench {
         }
         plan.add_papers_loop();
         let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(&plan, &self.lists.limits(&limits), |_| true)?;
+        let (measured, album) =
+            session.measure(&plan, &self.lists.limits(&limits), |_| true, &mut |_| {})?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
-        print(&text::both(&measured.rows));
+        print(&text::summary(&measured.rows));
         session.finish(&measured)
     }
 
@@ -109,8 +111,12 @@ impl Bench {
             Limits::CHART
         };
         let session = Session::open(&self.lists)?;
-        let (measured, album) =
-            session.measure(&plan, &self.lists.limits(&limits), is_papers_loop)?;
+        let (measured, album) = session.measure(
+            &plan,
+            &self.lists.limits(&limits),
+            is_papers_loop,
+            &mut |_| {},
+        )?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
@@ -130,7 +136,8 @@ impl Bench {
         };
         let plan = scaling::plan(&axes.stages, &axes.solvers, ranges)?;
         let session = Session::open(&self.lists)?;
-        let (measured, _) = session.measure(&plan, &self.lists.limits(&limits), |_| false)?;
+        let (measured, _) =
+            session.measure(&plan, &self.lists.limits(&limits), |_| false, &mut |_| {})?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));
@@ -179,11 +186,13 @@ impl Session {
     }
 
     /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt ends early and keeps what there is.
+    /// `also` is shown every picture.
     pub fn measure(
         &self,
         plan: &Plan,
         limits: &Limits,
         worth: fn(&Settings) -> bool,
+        also: &mut dyn FnMut(&Seen),
     ) -> Result<(Measured, Album)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.out, labels, worth)?;
@@ -199,7 +208,10 @@ impl Session {
                     progress.say(what);
                     progress.report(gone as usize, all as usize);
                 },
-                picture: &mut |seen| album.add(seen),
+                picture: &mut |seen| {
+                    also(seen);
+                    album.add(seen)
+                },
                 passed: &mut |rows| folder::write_rows(&self.out, rows, &self.machine),
             },
         )?;

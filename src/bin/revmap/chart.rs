@@ -6,7 +6,7 @@ use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::Result;
-use revmap::report::measure::Limits;
+use revmap::report::measure::{Limits, Seen};
 use revmap::report::plan::{Axes, Plan, is_papers_loop};
 use revmap::report::suite::Extent;
 use revmap::report::sweep::Sweep;
@@ -74,16 +74,25 @@ impl Chart {
         };
         plan.add_papers_loop();
         let session = Session::open(lists)?;
-        let (measured, album) = session.measure(&plan, &lists.limits(&limits), worth_a_picture)?;
+        let size = plan
+            .cases
+            .first()
+            .map_or(sweep.size, |c| (c.settings.width, c.settings.height));
+        let mut truths = map_error::Truths::default();
+        let mut keep = |seen: &Seen| {
+            if (seen.truth.width, seen.truth.height) == size {
+                truths.keep(seen.case.view, seen.truth);
+            }
+        };
+        let (measured, album) =
+            session.measure(&plan, &lists.limits(&limits), worth_a_picture, &mut keep)?;
         let alone = if measured.interrupted {
             Vec::new()
         } else {
             let progress = Progress::start("errors of the maps alone", lists.quiet);
-            let size = plan
-                .cases
-                .first()
-                .map_or(sweep.size, |c| (c.settings.width, c.settings.height));
-            map_error::measure(&plan, size, &mut |done, all| progress.report(done, all))?
+            map_error::measure(&plan, size, &truths, &mut |done, all| {
+                progress.report(done, all)
+            })?
         };
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         curves::write(
@@ -95,7 +104,7 @@ impl Chart {
             &alone,
         )?;
         let summary: PathBuf = session.out.join("charts").join("summary-depth-error.png");
-        for line in text::both(&measured.rows).lines() {
+        for line in text::summary(&measured.rows).lines() {
             output::result(line);
         }
         output::result(&summary.display().to_string());

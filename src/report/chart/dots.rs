@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Scale};
 use super::letters::width;
-use super::style::{GRID, INK, PALE, Style};
+use super::style::{Dash, GRID, INK, PALE, Style};
 use super::xy::{Key, TEXT, WIDTH, dot, legend, title, word};
 use super::{Anchor, Figure, Mark};
 use crate::report::names::number;
@@ -76,17 +76,22 @@ impl DotChart {
             .map(|b| b.lines.len() + usize::from(!b.name.is_empty()))
             .sum::<usize>();
         let bottom = top + STEP * count as f64 + 6.0;
-        let straight = |points, color, width, dashed| Mark::Line {
+        let straight = |points, color, width, dash| Mark::Line {
             points,
             color,
             width,
-            dashed,
+            dash,
         };
 
         let mut end = f64::NEG_INFINITY;
         for (value, text) in &scale.ticks {
             let Some(x) = at(*value) else { continue };
-            marks.push(straight(vec![(x, top), (x, bottom)], GRID, 1.0, false));
+            marks.push(straight(
+                vec![(x, top), (x, bottom)],
+                GRID,
+                1.0,
+                Dash::Solid,
+            ));
             let half = width(text, TEXT) / 2.0;
             if x - half > end + 6.0 {
                 marks.push(word(
@@ -100,13 +105,18 @@ impl DotChart {
             }
         }
         if let Some(x) = self.mark.and_then(at) {
-            marks.push(straight(vec![(x, top), (x, bottom)], PALE, 1.5, true));
+            marks.push(straight(
+                vec![(x, top), (x, bottom)],
+                PALE,
+                1.5,
+                Dash::Guide,
+            ));
         }
         marks.push(straight(
             vec![(left, bottom), (right, bottom)],
             INK,
             1.0,
-            false,
+            Dash::Solid,
         ));
         let mut y = top;
         for block in &self.blocks {
@@ -141,9 +151,9 @@ impl DotChart {
                 if let (true, Some(a), Some(b)) = (i.high.is_finite(), at(i.low), at(i.high)) {
                     marks.push(straight(
                         vec![(a, level), (b, level)],
-                        line.style.color(),
-                        2.2,
-                        false,
+                        line.style.color,
+                        if line.style.heavy { 3.0 } else { 2.0 },
+                        Dash::Solid,
                     ));
                 }
                 if let Some(x) = at(i.value) {
@@ -165,7 +175,7 @@ impl DotChart {
         let entries: Vec<_> = self
             .legend
             .iter()
-            .map(|(name, style)| (name.clone(), Key::Dot(*style, false)))
+            .map(|(name, style)| (name.clone(), vec![Key::Dot(*style, false)]))
             .collect();
         let below = legend(&mut marks, bottom + 2.0 * TEXT + 30.0, &entries);
         Figure {
@@ -179,6 +189,7 @@ impl DotChart {
 
 #[cfg(test)]
 mod tests {
+    use super::super::style::{Marker, color};
     use super::*;
 
     fn chart(values: &[f64]) -> DotChart {
@@ -190,8 +201,8 @@ mod tests {
                 high: if k == 1 { f64::INFINITY } else { v * 1.2 },
             },
             style: Style {
-                index: k,
                 filled: k % 2 == 0,
+                ..Style::new(color::ALL[k], Marker::ALL[k])
             },
         };
         DotChart {
@@ -209,18 +220,12 @@ mod tests {
                 },
             ],
             legend: vec![
-                (
-                    "fragment".into(),
-                    Style {
-                        index: 0,
-                        filled: true,
-                    },
-                ),
+                ("fragment".into(), Style::new(color::BLUE, Marker::Disk)),
                 (
                     "compute".into(),
                     Style {
-                        index: 0,
                         filled: false,
+                        ..Style::new(color::BLUE, Marker::Disk)
                     },
                 ),
             ],

@@ -1,7 +1,7 @@
 //! Charts as plain figures of polygons, lines and words, written as SVG for pages and as pixels for places that show no SVG.
 //!
-//! Colours are those of Okabe and Ito (Color Universal Design, 2008), which people of every kind of colour vision tell apart; each
-//! series has a marker of its own as well, so that a print in grey still reads.
+//! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each series has a marker of its own as well, so
+//! that a print in grey still reads.
 
 pub mod axis;
 pub mod dots;
@@ -10,9 +10,12 @@ pub mod letters;
 pub mod raster;
 pub mod style;
 pub mod svg;
+#[cfg(test)]
+mod vision;
 pub mod xy;
 
 use letters::width;
+use style::Dash;
 
 /// Where a word stands to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +48,8 @@ pub enum Mark {
         color: &'static str,
         /// Width.
         width: f64,
-        /// Whether it is dashed.
-        dashed: bool,
+        /// How it is broken.
+        dash: Dash,
     },
     /// A word.
     Word {

@@ -1,6 +1,7 @@
 //! Figures as pixels, letters drawn from their outlines: the same on every machine, whatever fonts it has.
 
 use super::letters::{Stroke, outline, width};
+use super::style::Dash;
 use super::{Anchor, Figure, Mark};
 use crate::error::{Error, Result, Stage};
 use crate::frame::Picture;
@@ -34,7 +35,13 @@ pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
                 if let Some(path) = polygon(points, true) {
                     map.fill_path(&path, &paint(fill), FillRule::Winding, view, None);
                     if let Some((color, width)) = stroke {
-                        map.stroke_path(&path, &paint(color), &pen(*width, false), view, None);
+                        map.stroke_path(
+                            &path,
+                            &paint(color),
+                            &pen(*width, Dash::Solid),
+                            view,
+                            None,
+                        );
                     }
                 }
             }
@@ -42,10 +49,10 @@ pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
                 points,
                 color,
                 width,
-                dashed,
+                dash,
             } => {
                 if let Some(path) = polygon(points, false) {
-                    map.stroke_path(&path, &paint(color), &pen(*width, *dashed), view, None);
+                    map.stroke_path(&path, &paint(color), &pen(*width, *dash), view, None);
                 }
             }
             Mark::Word {
@@ -112,16 +119,13 @@ fn letters(text: &str, size: f64) -> Option<Path> {
     path.finish()
 }
 
-fn pen(width: f64, dashed: bool) -> Pen {
+fn pen(width: f64, dash: Dash) -> Pen {
     Pen {
         width: width as f32,
         line_cap: LineCap::Butt,
         line_join: LineJoin::Round,
-        dash: if dashed {
-            StrokeDash::new(vec![5.0, 4.0], 0.0)
-        } else {
-            None
-        },
+        // None where there are no lengths.
+        dash: StrokeDash::new(dash.pattern().to_vec(), 0.0),
         ..Pen::default()
     }
 }

@@ -1,4 +1,4 @@
-//! Colours and markers of series.
+//! Colours, markers and dashes of series. Which search has which is told elsewhere: here is what there is to choose from.
 
 /// Ink of words and axes.
 pub const INK: &str = "#222222";
@@ -9,59 +9,98 @@ pub const GRID: &str = "#dddddd";
 /// Paper.
 pub const PAPER: &str = "#ffffff";
 
-/// Okabe and Ito's colours, darkest first, without yellow, which is too pale for lines on paper.
-const COLORS: [&str; 7] = [
-    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9",
-];
-
-/// Corners of each marker in a square of side 2 about the origin.
-const MARKERS: usize = 8;
-
-/// How a series looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Style {
-    /// Its number among the series: decides colour and marker. Seven colours and eight markers give 56 different pairs.
-    pub index: usize,
-    /// Whether its markers are filled.
-    pub filled: bool,
+/// Colours of series. They were searched for, by simulated annealing, as those whose least distance is greatest to normal and to each kind of
+/// dichromatic eyes at once, each dark enough on paper (contrast 3:1); orange, blue and black were given. A test demands the distance.
+pub mod color {
+    /// The one that stands out.
+    pub const ORANGE: &str = "#e8590c";
+    /// Blue.
+    pub const BLUE: &str = "#0072b2";
+    /// Black.
+    pub const BLACK: &str = "#000000";
+    /// Violet.
+    pub const VIOLET: &str = "#9f00ff";
+    /// A dark blue.
+    pub const NAVY: &str = "#150695";
+    /// A light brown.
+    pub const TAN: &str = "#bf8968";
+    /// Grey.
+    pub const GREY: &str = "#9592a5";
+    /// A dark red.
+    pub const RED: &str = "#8f0000";
+    /// A dark purple.
+    pub const PURPLE: &str = "#46004f";
+    /// Wine red.
+    pub const WINE: &str = "#8b354a";
+    /// All of them.
+    pub const ALL: [&str; 10] = [
+        ORANGE, BLUE, BLACK, VIOLET, NAVY, TAN, GREY, RED, PURPLE, WINE,
+    ];
 }
 
-impl Style {
-    /// The colour.
-    #[must_use]
-    pub fn color(self) -> &'static str {
-        COLORS[self.index % COLORS.len()]
-    }
+/// Shapes of markers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Marker {
+    /// A disk.
+    Disk,
+    /// A square.
+    Square,
+    /// A triangle that points up.
+    Up,
+    /// A square on its corner.
+    Diamond,
+    /// A star of four points, upright.
+    Plus,
+    /// A triangle that points down.
+    Down,
+    /// A star of four points, slanting.
+    Cross,
+    /// A star of five points.
+    Star,
+    /// A triangle that points to the left.
+    Left,
+    /// A triangle that points to the right.
+    Right,
+}
 
-    /// The marker's corners about `(x, y)`, of the area of a square of side `size`.
+impl Marker {
+    /// All shapes.
+    pub const ALL: [Self; 10] = [
+        Self::Disk,
+        Self::Square,
+        Self::Up,
+        Self::Diamond,
+        Self::Plus,
+        Self::Down,
+        Self::Cross,
+        Self::Star,
+        Self::Left,
+        Self::Right,
+    ];
+
+    /// Its corners about `(x, y)`, of about the area of a square of side `size`.
     #[must_use]
-    pub fn marker(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
-        let regular = |corners: usize, turn: f64, radius: f64| -> Vec<(f64, f64)> {
+    pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
+        let ring = |corners: usize, turn: f64, radius: f64, inner: f64| -> Vec<(f64, f64)> {
             (0..corners)
                 .map(|k| {
                     let angle = std::f64::consts::TAU * (k as f64 / corners as f64 + turn);
+                    let radius = if k % 2 == 0 { radius } else { radius * inner };
                     (radius * angle.sin(), -radius * angle.cos())
                 })
                 .collect()
         };
-        let star = |points: usize, inner: f64, turn: f64, outer: f64| -> Vec<(f64, f64)> {
-            (0..2 * points)
-                .map(|k| {
-                    let angle = std::f64::consts::TAU * (k as f64 / (2 * points) as f64 + turn);
-                    let radius = if k % 2 == 0 { outer } else { outer * inner };
-                    (radius * angle.sin(), -radius * angle.cos())
-                })
-                .collect()
-        };
-        let corners = match self.index % MARKERS {
-            0 => regular(24, 0.0, 1.1),
-            1 => regular(4, 0.125, 1.35),
-            2 => regular(3, 0.0, 1.5),
-            3 => regular(4, 0.0, 1.4),
-            4 => star(4, 0.45, 0.125, 1.6),
-            5 => regular(3, 0.5, 1.5),
-            6 => star(4, 0.45, 0.0, 1.6),
-            _ => star(5, 0.45, 0.0, 1.5),
+        let corners = match self {
+            Self::Disk => ring(24, 0.0, 1.1, 1.0),
+            Self::Square => ring(4, 0.125, 1.35, 1.0),
+            Self::Up => ring(3, 0.0, 1.5, 1.0),
+            Self::Diamond => ring(4, 0.0, 1.4, 1.0),
+            Self::Plus => ring(8, 0.0, 1.6, 0.45),
+            Self::Down => ring(3, 0.5, 1.5, 1.0),
+            Self::Cross => ring(8, 0.125, 1.6, 0.45),
+            Self::Star => ring(10, 0.0, 1.5, 0.45),
+            Self::Left => ring(3, 0.75, 1.5, 1.0),
+            Self::Right => ring(3, 0.25, 1.5, 1.0),
         };
         corners
             .into_iter()
@@ -70,29 +109,145 @@ impl Style {
     }
 }
 
+/// How a line is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dash {
+    /// It is not.
+    Solid,
+    /// Into dashes: of guides alone, fronts and prints, so that no search is taken for one.
+    Guide,
+    /// Into long dashes.
+    Long,
+    /// Into short dashes.
+    Short,
+    /// Into dots.
+    Dots,
+    /// Into dashes and dots.
+    DashDot,
+}
+
+impl Dash {
+    /// Lengths of dashes and gaps in turn, pixels; empty of a solid line.
+    #[must_use]
+    pub fn pattern(self) -> &'static [f32] {
+        match self {
+            Self::Solid => &[],
+            Self::Guide => &[5.0, 4.0],
+            Self::Long => &[12.0, 3.0],
+            Self::Short => &[3.0, 2.0],
+            Self::Dots => &[1.5, 3.0],
+            Self::DashDot => &[8.0, 3.0, 1.5, 3.0],
+        }
+    }
+}
+
+/// How a series looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Colour of its markers and lines, `#rrggbb`.
+    pub color: &'static str,
+    /// Shape of its markers.
+    pub marker: Marker,
+    /// How its lines are broken.
+    pub dash: Dash,
+    /// Whether it stands out: larger markers, thicker lines.
+    pub heavy: bool,
+    /// Whether its markers are filled.
+    pub filled: bool,
+}
+
+impl Style {
+    /// A filled marker on a solid line.
+    #[must_use]
+    pub const fn new(color: &'static str, marker: Marker) -> Self {
+        Self {
+            color,
+            marker,
+            dash: Dash::Solid,
+            heavy: false,
+            filled: true,
+        }
+    }
+
+    /// Width of its lines, pixels: thinner where markers are hollow.
+    #[must_use]
+    pub fn line(self) -> f64 {
+        let full = if self.heavy { 2.6 } else { 1.6 };
+        if self.filled { full } else { 0.7 * full }
+    }
+
+    /// The marker's corners about `(x, y)`, of the area of a square of side `size`, larger where it stands out.
+    #[must_use]
+    pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
+        let size = if self.heavy { 1.3 * size } else { size };
+        self.marker.corners(x, y, size)
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::vision::{EYES, contrast, distance, lab, rgb};
     use super::*;
 
+    /// Distances in CIE Lab, where black and white are 100 apart.
+    const APART: f64 = 25.0;
+
     #[test]
-    fn every_pair_of_colour_and_marker_is_another() {
-        let look = |index| {
-            let style = Style {
-                index,
-                filled: true,
-            };
-            (
-                style.color(),
-                format!("{:.2?}", style.marker(0.0, 0.0, 10.0)),
-            )
+    fn every_kind_of_eyes_tells_colours_apart() {
+        for eyes in EYES {
+            for (i, a) in color::ALL.iter().enumerate() {
+                for b in &color::ALL[..i] {
+                    let apart = distance(a, b, eyes);
+                    assert!(apart > APART, "{}: {a} and {b} are {apart:.1}", eyes.name);
+                }
+                for ground in [PAPER, GRID] {
+                    let apart = distance(a, ground, eyes);
+                    assert!(apart > APART, "{}: {a} on {ground}: {apart:.1}", eyes.name);
+                }
+                assert!(contrast(a, PAPER) >= 3.0, "{a}: {}", contrast(a, PAPER));
+            }
+        }
+        for word in [INK, PALE] {
+            assert!(contrast(word, PAPER) >= 4.5);
+        }
+    }
+
+    /// The ruler itself: red and green as red-blind and green-blind eyes see them, values of the standard illuminant.
+    #[test]
+    fn the_simulation_knows_what_is_confused() {
+        let [normal, protan, deutan, tritan] = EYES;
+        let white = lab(rgb("#ffffff"));
+        assert!((white[0] - 100.0).abs() < 0.1 && white[1].abs() < 0.1 && white[2].abs() < 0.1);
+        assert!((lab(rgb("#ff0000"))[1] - 80.1).abs() < 0.2);
+        let pair = ("#b05050", "#707050");
+        assert!(distance(pair.0, pair.1, normal) > 30.0);
+        assert!(distance(pair.0, pair.1, deutan) < 16.0);
+        assert!(distance("#008888", "#0080a0", tritan) < distance("#008888", "#0080a0", normal));
+        // Greys are greys to all.
+        for eyes in [protan, deutan, tritan] {
+            assert!(distance("#808080", "#808080", eyes) < 1e-9);
+            let seen = eyes.see(rgb("#808080"));
+            assert!(
+                seen.iter()
+                    .all(|v| (v - rgb("#808080")[0]).abs() < 2.0 / 255.0)
+            );
+        }
+        assert!((contrast("#000000", "#ffffff") - 21.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn every_marker_and_dash_is_another() {
+        let look = |m: Marker| format!("{:.2?}", m.corners(0.0, 0.0, 10.0));
+        for (i, a) in Marker::ALL.iter().enumerate() {
+            assert!(Marker::ALL[..i].iter().all(|b| look(*a) != look(*b)));
+        }
+        let heavy = Style {
+            heavy: true,
+            ..Style::new(color::ORANGE, Marker::Disk)
         };
-        let all: Vec<_> = (0..56).map(look).collect();
-        for (i, a) in all.iter().enumerate() {
-            assert!(!all[..i].contains(a), "{i}");
-        }
-        // Neighbours differ in both.
-        for pair in all.windows(2) {
-            assert!(pair[0].0 != pair[1].0 && pair[0].1 != pair[1].1);
-        }
+        let light = Style::new(color::ORANGE, Marker::Disk);
+        assert!(heavy.line() > light.line());
+        assert!(heavy.corners(0.0, 0.0, 10.0)[0].1 < light.corners(0.0, 0.0, 10.0)[0].1);
     }
 }

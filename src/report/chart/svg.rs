@@ -54,12 +54,13 @@ pub fn svg(figure: &Figure) -> String {
                 points,
                 color,
                 width,
-                dashed,
+                dash,
             } => {
-                let dash = if *dashed {
-                    " stroke-dasharray=\"5 4\""
+                let lengths: Vec<String> = dash.pattern().iter().map(f32::to_string).collect();
+                let dash = if lengths.is_empty() {
+                    String::new()
                 } else {
-                    ""
+                    format!(" stroke-dasharray=\"{}\"", lengths.join(" "))
                 };
                 writeln!(
                     out,

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Scale};
 use super::letters::{width, wrap};
-use super::style::{GRID, INK, PALE, PAPER, Style};
+use super::style::{Dash, GRID, INK, PALE, PAPER, Style};
 use super::{Anchor, Bounds, Figure, Mark, overlap};
 
 /// A point of a series.
@@ -19,7 +19,7 @@ pub struct Point {
 /// Points of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; empty: not listed.
+    /// Its name in the legend; empty: not listed. Series of one name share an entry there.
     pub name: String,
     /// How it looks.
     pub style: Style,
@@ -38,8 +38,10 @@ pub struct Guide {
     pub points: Vec<(f64, f64)>,
     /// Colour.
     pub color: &'static str,
-    /// Whether it is dashed.
-    pub dashed: bool,
+    /// How it is broken.
+    pub dash: Dash,
+    /// Width, pixels.
+    pub width: f64,
 }
 
 /// A chart of points.
@@ -57,8 +59,8 @@ pub struct XyChart {
     pub guides: Vec<Guide>,
 }
 
-/// Width of every chart, pixels: read well on a phone, where it is shown at two thirds of that.
-pub const WIDTH: f64 = 540.0;
+/// Width of every chart, pixels: read well on a phone, where it is shown at four fifths of that.
+pub const WIDTH: f64 = 460.0;
 const PLOT: f64 = 330.0;
 const EDGE: f64 = 14.0;
 /// Sizes of words.
@@ -112,8 +114,8 @@ impl XyChart {
                 marks.push(Mark::Line {
                     points,
                     color: guide.color,
-                    width: 1.8,
-                    dashed: guide.dashed,
+                    width: guide.width,
+                    dash: guide.dash,
                 });
             }
         }
@@ -147,21 +149,23 @@ impl XyChart {
                 let points = places.iter().map(|(place, _)| *place).collect();
                 marks.push(Mark::Line {
                     points,
-                    color: series.style.color(),
-                    width: 1.4,
-                    dashed: false,
+                    color: series.style.color,
+                    width: series.style.line(),
+                    dash: series.style.dash,
                 });
             }
             for (place, point) in places {
                 let dot = dot(series.style, place);
                 taken.push(dot.bounds());
-                dots.push(dot);
+                dots.push((series.style.heavy, dot));
                 if let Some(label) = &point.label {
                     labels.push((place, label));
                 }
             }
         }
-        marks.extend(dots);
+        // The larger ones below, or they would hide what is near.
+        let (above, below): (Vec<_>, Vec<_>) = dots.into_iter().partition(|(heavy, _)| !heavy);
+        marks.extend(below.into_iter().chain(above).map(|(_, dot)| dot));
         for (place, label) in labels {
             if let Some(word) = beside(place, label, plot, &taken) {
                 taken.push(word.bounds());
@@ -178,19 +182,23 @@ impl XyChart {
         }
     }
 
-    fn legend(&self) -> Vec<(String, Key)> {
-        let series = self
-            .series
-            .iter()
-            .map(|s| (s.name.clone(), Key::Dot(s.style, s.joined)));
+    fn legend(&self) -> Vec<(String, Vec<Key>)> {
+        let series = self.series.iter().map(|s| {
+            (
+                s.name.clone(),
+                Key::Dot(s.style, s.joined && s.points.len() > 1),
+            )
+        });
         let guides = self
             .guides
             .iter()
-            .map(|g| (g.name.clone(), Key::Line(g.color, g.dashed)));
-        let mut all: Vec<(String, Key)> = Vec::new();
-        for entry in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
-            if !all.contains(&entry) {
-                all.push(entry);
+            .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
+        let mut all: Vec<(String, Vec<Key>)> = Vec::new();
+        for (name, key) in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
+            match all.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, keys)) if keys.contains(&key) => {}
+                Some((_, keys)) => keys.push(key),
+                None => all.push((name, vec![key])),
             }
         }
         all
@@ -203,7 +211,16 @@ pub enum Key {
     /// A marker, with or without its line.
     Dot(Style, bool),
     /// A line.
-    Line(&'static str, bool),
+    Line(&'static str, Dash),
+}
+
+impl Key {
+    fn width(self) -> f64 {
+        match self {
+            Self::Dot(_, false) => 18.0,
+            Self::Dot(_, true) | Self::Line(..) => 30.0,
+        }
+    }
 }
 
 /// The title, wrapped; gives the place below it.
@@ -245,7 +262,7 @@ fn axes(
         points,
         color,
         width: 1.0,
-        dashed: false,
+        dash: Dash::Solid,
     };
     let mut end = f64::NEG_INFINITY;
     for (value, text) in &x.ticks {
@@ -312,12 +329,12 @@ fn axes(
 
 pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
     let (fill, stroke) = if style.filled {
-        (style.color(), (PAPER, 0.8))
+        (style.color, (PAPER, 0.8))
     } else {
-        (PAPER, (style.color(), 1.8))
+        (PAPER, (style.color, 1.8))
     };
     Mark::Shape {
-        points: style.marker(x, y, MARKER),
+        points: style.corners(x, y, MARKER),
         fill,
         stroke: Some(stroke),
     }
@@ -350,34 +367,39 @@ fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Opt
         })
 }
 
-/// Names in lines as wide as the figure; gives the place below.
-pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Key)]) -> f64 {
+/// Names in lines as wide as the figure, each after its signs; gives the place below.
+pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Vec<Key>)]) -> f64 {
     let (mut x, mut y) = (EDGE, top);
-    for (i, (name, key)) in entries.iter().enumerate() {
-        let sign = 26.0;
-        let needed = sign + 6.0 + width(name, TEXT) + 16.0;
+    for (i, (name, keys)) in entries.iter().enumerate() {
+        let signs: f64 = keys.iter().map(|key| key.width()).sum();
+        let needed = signs + 4.0 + width(name, TEXT) + 14.0;
         if i > 0 && x + needed > WIDTH {
             x = EDGE;
             y += TEXT + 8.0;
         }
         let level = y + TEXT * 0.1;
-        let line = |color, dashed| Mark::Line {
-            points: vec![(x, level), (x + sign, level)],
-            color,
-            width: 1.6,
-            dashed,
-        };
-        match key {
-            Key::Dot(style, joined) => {
-                if *joined {
-                    marks.push(line(style.color(), false));
+        let mut left = x;
+        for key in keys {
+            let right = left + key.width();
+            let line = |color, width, dash| Mark::Line {
+                points: vec![(left, level), (right - 2.0, level)],
+                color,
+                width,
+                dash,
+            };
+            match key {
+                Key::Dot(style, joined) => {
+                    if *joined {
+                        marks.push(line(style.color, style.line(), style.dash));
+                    }
+                    marks.push(dot(*style, ((left + right) / 2.0 - 1.0, level)));
                 }
-                marks.push(dot(*style, (x + sign / 2.0, level)));
+                Key::Line(color, dash) => marks.push(line(color, 1.6, *dash)),
             }
-            Key::Line(color, dashed) => marks.push(line(color, *dashed)),
+            left = right;
         }
         marks.push(word(
-            (x + sign + 6.0, y + TEXT * 0.45),
+            (left + 4.0, y + TEXT * 0.45),
             name,
             TEXT,
             Anchor::Start,
@@ -428,14 +450,16 @@ fn clip(points: &[(f64, f64)], plot: Bounds) -> Vec<Vec<(f64, f64)>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::style::{Marker, color};
     use super::*;
 
     fn crowded() -> XyChart {
         let series = |index: usize| Series {
             name: format!("a search of some length, number {index}"),
             style: Style {
-                index,
                 filled: index.is_multiple_of(2),
+                heavy: index == 3,
+                ..Style::new(color::ALL[index], Marker::ALL[index])
             },
             points: (0..7)
                 .map(|k| Point {
@@ -451,7 +475,7 @@ mod tests {
             x: Axis::log("time of a frame (ms)"),
             y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
             series: (0..9).map(series).collect(),
-            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dashed: true }],
+            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dash: Dash::Guide, width: 1.8 }],
         }
     }
 
@@ -486,14 +510,28 @@ mod tests {
     }
 
     #[test]
+    fn series_of_one_name_share_an_entry() {
+        let mut chart = crowded();
+        chart.series.truncate(3);
+        for (k, series) in chart.series.iter_mut().enumerate() {
+            series.name = ["hull", "hull", "live"][k].to_owned();
+        }
+        let keys: Vec<_> = chart
+            .legend()
+            .into_iter()
+            .map(|(n, k)| (n, k.len()))
+            .collect();
+        let wanted = [("hull", 2), ("live", 1), ("Pareto front", 1)];
+        assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
+        assert_eq!(chart.figure().faults(), Vec::<String>::new());
+    }
+
+    #[test]
     fn points_stand_where_their_values_are() {
         let mut chart = crowded();
         chart.series = vec![Series {
             name: String::new(),
-            style: Style {
-                index: 0,
-                filled: true,
-            },
+            style: Style::new(color::BLUE, Marker::Disk),
             joined: false,
             points: vec![],
         }];
