@@ -179,13 +179,26 @@ fn a_crowd_in_one_depth_buffer() {
                 placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]),
             ];
         }
+        // Copies too small for lists of tiles of their own.
+        if n == 4 {
+            object.instances = (0..7)
+                .map(|k| {
+                    let turn = 0.9 * f64::from(k);
+                    placement(
+                        [0.7 * turn.cos(), 0.7 * turn.sin(), 0.5],
+                        [0.0; 3],
+                        [0.1; 3],
+                    )
+                })
+                .collect();
+        }
         if n % 3 == 2 {
             object.repeat = [2, 1, 1];
         }
         crowd.objects.push(object);
         let [fragment, compute] = [
             [Way::Hull, Way::Beams],
-            [Way::Hull, Way::Bins],
+            [Way::Hull, if n == 4 { Way::Bins } else { Way::Beams }],
             [Way::Box, Way::Rectangle],
         ][n % 3];
         ways[0].push(fragment);

@@ -42,17 +42,15 @@ fn is_whole(object: &Object, cut: &Cut) -> bool {
     object.repeat == [1; 3] && cut.extent()[0] <= side_face
 }
 
-/// Whether rays of an object's one copy can be taken between the ends that beams give: they begin outside the solid and no face
+/// Whether rays of all of an object's copies can be taken between the ends that beams give: they begin outside the solid and no face
 /// of the box shows.
 pub(crate) fn takes_beams(object: &Object, cut: &Cut, camera: &CameraFrame) -> bool {
-    let [placement] = object.placements() else {
-        return false;
-    };
-    let (eye, _) = seen_from(object, placement, camera);
-    let eye = flat(eye);
     let [r_max, z_min, z_max] = cut.extent();
-    let apart = eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE;
-    apart && is_whole(object, cut)
+    let apart = |copy: &Placement| {
+        let eye = flat(seen_from(object, copy, camera).0);
+        eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE
+    };
+    is_whole(object, cut) && object.placements().iter().all(apart)
 }
 
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.
@@ -97,7 +95,7 @@ pub(crate) fn of<'a>(object: &Object, cut: &'a Cut, view: &View) -> Option<Wrapp
     let bands = if eyes.len() == copies.len() {
         hull.seen_from(&eyes)
     } else {
-        vec![0..hull.bands.len() as u32]
+        std::iter::once(0..hull.bands.len() as u32).collect()
     };
     let drawn: usize = bands.iter().map(ExactSizeIterator::len).sum();
     if covered < u64::from(view.from) * (drawn * count) as u64 {

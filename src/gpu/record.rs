@@ -4,7 +4,7 @@ use super::bins::Rectangle;
 use super::hulls;
 use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
-use super::work::{Batch, Work};
+use super::work::{Batch, Tiles, Work};
 use crate::settings::DrawStage;
 use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS};
 use ash::vk;
@@ -32,13 +32,23 @@ impl Renderer {
         if let Some(meshes) = &self.meshes {
             for &number in meshes.order() {
                 let batch = &self.batches[number];
-                self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
+                self.bind(
+                    cmd,
+                    batch,
+                    vk::PipelineBindPoint::GRAPHICS,
+                    batch.block_offset,
+                );
                 meshes.draw(cmd, number, &batch.instances);
             }
             return;
         }
         for batch in &self.batches {
-            self.bind(cmd, batch, vk::PipelineBindPoint::GRAPHICS);
+            self.bind(
+                cmd,
+                batch,
+                vk::PipelineBindPoint::GRAPHICS,
+                batch.block_offset,
+            );
             let count = batch.instances.end - batch.instances.start;
             let first = batch.instances.start;
             let raw = &self.device.raw;
@@ -67,10 +77,9 @@ impl Renderer {
         let groups = BIN_PIXELS / GROUP_PIXELS;
         let most = self.device.limits.max_compute_work_group_count[1];
         let mut first = true;
-        let seen = |b: &&Batch| !matches!(b.work, Work::Nothing);
-        for batch in self.batches.iter().filter(seen) {
-            if !first {
-                // The next batch reads the depths that this one wrote.
+        // What is next reads the depths that were written before.
+        let mut after_the_last = || {
+            if !std::mem::take(&mut first) {
                 let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
                 let barrier = vk::MemoryBarrier::default()
                     .src_access_mask(vk::AccessFlags::SHADER_WRITE)
@@ -80,19 +89,26 @@ impl Renderer {
                 // SAFETY: `cmd` is recording, outside a render pass.
                 unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
             }
-            first = false;
-            self.bind(cmd, batch, vk::PipelineBindPoint::COMPUTE);
+        };
+        for batch in &self.batches {
+            let point = vk::PipelineBindPoint::COMPUTE;
             match &batch.work {
-                Work::Beams {
-                    rectangle,
-                    list,
-                    at,
-                } => self.record_beams(cmd, batch, *rectangle, (*list, *at)),
+                Work::Beams { list, copies } => {
+                    for tiles in copies {
+                        after_the_last();
+                        self.bind(cmd, batch, point, tiles.block_offset);
+                        self.record_beams(cmd, batch, *list, tiles);
+                    }
+                }
                 Work::Rectangle(Rectangle { low, high }) => {
+                    after_the_last();
+                    self.bind(cmd, batch, point, batch.block_offset);
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
                     self.dispatch(cmd, [0, low.0 | low.1 << 16], groups);
                 }
                 Work::Bins(bins) => {
+                    after_the_last();
+                    self.bind(cmd, batch, point, batch.block_offset);
                     for start in bins.clone().step_by(most.max(1) as usize) {
                         let count = (bins.end - start).min(most);
                         self.dispatch(cmd, [start, 0], [groups * groups, count]);
@@ -108,9 +124,10 @@ impl Renderer {
         &self,
         cmd: vk::CommandBuffer,
         batch: &Batch,
-        Rectangle { low, high }: Rectangle,
-        (list, at): (vk::Pipeline, u32),
+        list: vk::Pipeline,
+        tiles: &Tiles,
     ) {
+        let (at, Rectangle { low, high }) = (tiles.at, tiles.rectangle);
         let raw = &self.device.raw;
         let words = &self.buffers.bins;
         let none: [u32; 4] = [0, 1, 1, 0];
@@ -166,7 +183,14 @@ impl Renderer {
         }
     }
 
-    fn bind(&self, cmd: vk::CommandBuffer, batch: &Batch, point: vk::PipelineBindPoint) {
+    /// Binds a batch's pipeline and sets, and the block at `block_offset`.
+    fn bind(
+        &self,
+        cmd: vk::CommandBuffer,
+        batch: &Batch,
+        point: vk::PipelineBindPoint,
+        block_offset: u32,
+    ) {
         let sets = [
             self.descriptors.frame,
             batch.textures,
@@ -183,7 +207,7 @@ impl Renderer {
                 self.pipelines.layout,
                 0,
                 &sets,
-                &[batch.block_offset, batch.tables_offset],
+                &[block_offset, batch.tables_offset],
             );
         }
     }

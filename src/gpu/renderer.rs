@@ -11,7 +11,7 @@ use super::meshes::Meshes;
 use super::pipelines::Pipelines;
 use super::target::Target;
 use super::textures::Textures;
-use super::work::{Batch, Way, Work};
+use super::work::{Batch, MOST_BEAMED, Way, Work};
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::Scene;
@@ -72,7 +72,10 @@ impl Renderer {
         let textures = Textures::new(&device, &commands, scene, settings)?;
         let mut batches = Vec::new();
         let mut instances = 0u32;
+        let mut blocks = scene.objects.len();
         for object in &scene.objects {
+            let copies = object.placements().len();
+            blocks += if copies <= MOST_BEAMED { copies } else { 0 };
             let end = u32::try_from(object.placements().len())
                 .ok()
                 .and_then(|n| instances.checked_add(n))
@@ -89,7 +92,7 @@ impl Renderer {
         }
         let contours = Contours::of(scene, settings)?;
         let mut renderer = Self {
-            buffers: Buffers::new(&device, batches.len(), instances)?,
+            buffers: Buffers::new(&device, blocks, instances)?,
             descriptors: Descriptors::new(&device, &pipelines, batches.len())?,
             pipelines,
             target,

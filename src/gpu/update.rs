@@ -1,7 +1,7 @@
 //! What changes from frame to frame: looked at as a whole first, then taken over.
 
 use super::batch::{check_format, frame_block, instance_block, solid_block};
-use super::bins::{Bins, rectangle};
+use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock};
 use super::buffers::write;
 use super::cuts::Cut;
@@ -11,7 +11,7 @@ use super::parts::{Of, Parts};
 use super::pipelines::Kind;
 use super::renderer::Renderer;
 use super::searches::Searches;
-use super::work::{Batch, Work};
+use super::work::{Batch, MOST_BEAMED, Tiles, Work};
 use crate::error::{Error, Result, Stage};
 use crate::scene::{CameraFrame, Object, Placement, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
@@ -33,11 +33,16 @@ struct Lists {
     bins: Bins,
     /// Words of the lists that beams fill, behind those of the bins.
     tiles: usize,
+    /// Blocks of copies, behind those of the objects.
+    blocks: u32,
     pieces: Parts,
     /// Of the hull that has most.
     bands: usize,
     shadows: ShadowBlock,
 }
+
+/// Tiles that each of several copies should cover for a list of its own to pay.
+const LEAST_TILES: u64 = 64;
 
 impl Renderer {
     /// Takes over camera, lights, placements and parameters of `scene`, whose objects must be those the renderer was made with.
@@ -137,6 +142,7 @@ impl Renderer {
         let mut lists = Lists {
             bins: Bins::default(),
             tiles: 0,
+            blocks: scene.objects.len() as u32,
             pieces: Parts::default(),
             bands: 0,
             shadows: bytemuck::Zeroable::zeroed(),
@@ -148,8 +154,10 @@ impl Renderer {
         // Lists of tiles stand behind all bins, whose number is known only now.
         let bins = lists.bins.words();
         for batch in &mut batches {
-            if let Work::Beams { at, .. } = &mut batch.work {
-                *at += bins.len() as u32;
+            if let Work::Beams { copies, .. } = &mut batch.work {
+                for tiles in copies {
+                    tiles.at += bins.len() as u32;
+                }
             }
         }
         self.buffers.write_bins(&bins, bins.len() + lists.tiles)?;
@@ -190,10 +198,14 @@ impl Renderer {
                     meshes.update(number, object, planned, &plan.camera, &self.commands)?;
                 (Kind::Mesh { both_sides }, Work::Mesh)
             } else if self.settings.stage == DrawStage::Compute {
-                variant.depth_test = u32::from(number > 0);
-                variant.depth_keep = u32::from(number + 1 < scene.objects.len());
-                let work = self.compute_work(object, instances.start, wrapped, plan, lists)?;
-                variant.beam = u32::from(matches!(work, Work::Beams { .. }));
+                let work = self.compute_work(number, object, wrapped, plan, lists)?;
+                let mut several = false;
+                if let Work::Beams { copies, .. } = &work {
+                    (variant.beam, variant.single) = (1, 1);
+                    several = copies.len() > 1;
+                }
+                variant.depth_test = u32::from(number > 0 || several);
+                variant.depth_keep = u32::from(number + 1 < scene.objects.len() || several);
                 (Kind::Compute, work)
             } else if let Some(cut) = wrapped
                 && let Some(Wrapped { hull, bands }) = self.hull(object, cut, plan)
@@ -218,6 +230,16 @@ impl Renderer {
         }
         let block_offset = number as u32 * self.buffers.stride;
         write(&mut self.buffers.batches, block_offset as usize, &block)?;
+        if let Work::Beams { copies, .. } = &work {
+            for tiles in copies {
+                block.single = instance_block(&object.placements()[tiles.instance]);
+                write(
+                    &mut self.buffers.batches,
+                    tiles.block_offset as usize,
+                    &block,
+                )?;
+            }
+        }
         if casts {
             lists.shadows.shadow_batches[0] = scene.objects.len() as u32;
             lists.shadows.shadow_solids[number] = block;
@@ -237,47 +259,89 @@ impl Renderer {
         })
     }
 
-    /// How the compute stage draws an object; `at` of beams counts from the last bin's words on.
+    /// How the compute stage draws object `number`; `at` of beams counts from the last bin's words on.
     fn compute_work(
         &mut self,
+        number: usize,
         object: &Object,
-        first: u32,
         wrapped: Option<&Arc<Cut>>,
         plan: &Plan,
         lists: &mut Lists,
     ) -> Result<Work> {
         let size = (self.settings.width, self.settings.height);
         let radius = object.profile.radius;
-        let [one] = object.placements() else {
-            let placements = object.placements();
-            let bins = lists
-                .bins
-                .add(&plan.camera, size, radius, first, placements);
-            return Ok(if bins.is_empty() {
-                Work::Nothing
-            } else {
-                Work::Bins(bins)
-            });
-        };
-        let Some(rectangle) = rectangle(&plan.camera, size, GROUP_PIXELS, radius, one) else {
-            return Ok(Work::Nothing);
-        };
-        // A tile listed is a work group.
-        let tiles = rectangle.padded();
-        let most = self.device.limits.max_compute_work_group_count[0];
-        match wrapped {
-            Some(cut) if hulls::takes_beams(object, cut, &plan.camera) && tiles <= most => {
-                let at = lists.tiles as u32;
-                lists.tiles += 4 + 4 * tiles as usize;
-                let list = self.pipelines.beam()?;
-                Ok(Work::Beams {
-                    rectangle,
-                    list,
-                    at,
+        let placements = object.placements();
+        if let Some(cut) = wrapped
+            && placements.len() <= MOST_BEAMED
+            && hulls::takes_beams(object, cut, &plan.camera)
+        {
+            let shown: Vec<(usize, Rectangle)> = placements
+                .iter()
+                .enumerate()
+                .filter_map(|(n, copy)| {
+                    let seen = rectangle(&plan.camera, size, GROUP_PIXELS, radius, copy)?;
+                    Some((n, seen))
                 })
+                .collect();
+            if shown.is_empty() {
+                return Ok(Work::Nothing);
             }
-            _ => Ok(Work::Rectangle(rectangle)),
+            // A tile listed is a work group.
+            let most = self.device.limits.max_compute_work_group_count[0];
+            let fits = shown.iter().all(|(_, r)| r.padded() <= most);
+            let squares: u64 = shown.iter().map(|(_, r)| r.squares()).sum();
+            let pays = placements.len() == 1 || squares >= LEAST_TILES * shown.len() as u64;
+            if fits && pays {
+                return self.beams(number, placements.len(), &shown, lists);
+            }
         }
+        Ok(match placements {
+            [one] => match rectangle(&plan.camera, size, GROUP_PIXELS, radius, one) {
+                Some(rectangle) => Work::Rectangle(rectangle),
+                None => Work::Nothing,
+            },
+            _ => {
+                let first = self.batches[number].instances.start;
+                let bins = lists
+                    .bins
+                    .add(&plan.camera, size, radius, first, placements);
+                if bins.is_empty() {
+                    Work::Nothing
+                } else {
+                    Work::Bins(bins)
+                }
+            }
+        })
+    }
+
+    /// Lists of tiles for the copies of object `number` that show.
+    fn beams(
+        &mut self,
+        number: usize,
+        copies: usize,
+        shown: &[(usize, Rectangle)],
+        lists: &mut Lists,
+    ) -> Result<Work> {
+        let mut tiles = Vec::with_capacity(shown.len());
+        for &(instance, rectangle) in shown {
+            let at = lists.tiles as u32;
+            lists.tiles += 4 + 4 * rectangle.padded() as usize;
+            let mut block = number as u32;
+            if copies > 1 {
+                block = lists.blocks;
+                lists.blocks += 1;
+            }
+            tiles.push(Tiles {
+                rectangle,
+                at,
+                block_offset: block * self.buffers.stride,
+                instance,
+            });
+        }
+        Ok(Work::Beams {
+            list: self.pipelines.beam()?,
+            copies: tiles,
+        })
     }
 
     /// The hull of an object, where it is drawn by it.

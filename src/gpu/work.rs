@@ -4,6 +4,9 @@ use super::bins::Rectangle;
 use ash::vk;
 use std::ops::Range;
 
+/// Most copies of an object to which beams are sent one by one: each costs two dispatches.
+pub(crate) const MOST_BEAMED: usize = 64;
+
 /// One draw or dispatch: instances that share shape, look and variant.
 pub(crate) struct Batch {
     /// Among those of all batches.
@@ -35,15 +38,26 @@ pub(crate) enum Work {
     Rectangle(Rectangle),
     /// Of several: those bins.
     Bins(Range<u32>),
-    /// Of a single instance: the work groups that beams list.
+    /// Of one instance or a few: the work groups that beams list for each.
     Beams {
-        /// What they choose from.
-        rectangle: Rectangle,
         /// The pipeline that lists them.
         list: vk::Pipeline,
-        /// The word where their list begins.
-        at: u32,
+        /// One an instance that shows.
+        copies: Vec<Tiles>,
     },
+}
+
+/// The tiles of one instance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tiles {
+    /// What beams choose from.
+    pub rectangle: Rectangle,
+    /// The word where their list begins.
+    pub at: u32,
+    /// Bytes before a block that holds this instance.
+    pub block_offset: u32,
+    /// Among the object's.
+    pub instance: usize,
 }
 
 /// How an object was drawn, which is chosen anew with every update: [`Renderer::ways`](super::Renderer::ways).
@@ -63,7 +77,7 @@ pub enum Way {
     Rectangle,
     /// Compute stage, several copies: the squares of the screen that they cover are searched.
     Bins,
-    /// Compute stage, a single copy: the tiles of its rectangle that beams have found to be near it are searched.
+    /// Compute stage, one copy or a few large ones: the tiles of each rectangle that beams have found to be near the copy are searched.
     Beams,
     /// As triangles.
     Mesh,

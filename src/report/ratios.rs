@@ -18,8 +18,11 @@ pub struct Ratio {
     pub pictures: usize,
     /// Missed and ghost pixels over the pixels hit, all pictures together.
     pub wrong: f64,
-    /// The worst 99th percentile of the depth error, texels of a 512-row map; `None` where nothing was hit.
+    /// The 99th percentile of the depth error, texels of a 512-row map: the geometric mean over the pictures, of none less than [`LEAST_DEPTH`];
+    /// `None` where nothing was hit.
     pub depth_p99: Option<f64>,
+    /// That of the worst picture.
+    pub depth_worst: Option<f64>,
     /// The worst root mean square of the normals' angles, degrees.
     pub normal_rms: Option<f64>,
 }
@@ -39,7 +42,7 @@ pub struct Duel {
     pub ours: Ratio,
     /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth, pictures without one left out.
     pub mesh: Option<Solver>,
-    /// The worst 99th percentile of the mesh's depth error.
+    /// The 99th percentile of the mesh's depth error: as [`Ratio::depth_p99`].
     pub mesh_p99: Option<f64>,
     /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of equals.
     pub no_worse: usize,
@@ -75,13 +78,23 @@ fn duel(rows: &[Row], way: &Settings, mesh: Option<Solver>) -> Option<Duel> {
         .filter(|r| r.time().is_some())
         .filter_map(|r| Some((rival(r)?, r)))
         .collect();
-    let depths = pairs.iter().filter_map(|(m, _)| m.errors.depth);
     Some(Duel {
         ours,
         mesh,
-        mesh_p99: depths.map(|d| d.p99).reduce(f64::max),
+        mesh_p99: typical_depth(pairs.iter().map(|(m, _)| *m)),
         no_worse: pairs.iter().filter(|(m, r)| errs_no_more(m, r)).count(),
     })
+}
+
+/// What an error of depth counts for at least, texels: roundings of 32 bits.
+pub const LEAST_DEPTH: f64 = 1e-4;
+
+/// The geometric mean of the rows' depth errors.
+fn typical_depth<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
+    let logs: Vec<f64> = rows
+        .filter_map(|r| Some(r.errors.depth?.p99.max(LEAST_DEPTH).ln()))
+        .collect();
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
 }
 
 /// Whether the depth error of `mesh` (99th percentile) is no more than that of `row`.
@@ -147,7 +160,8 @@ fn of_way<'a>(
             .fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(*v), h.max(*v))),
         pictures: pairs.len(),
         wrong: sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0),
-        depth_p99: worst(|r| r.errors.depth.map(|d| d.p99)),
+        depth_p99: typical_depth(pairs.iter().map(|(a, _)| *a)),
+        depth_worst: worst(|r| r.errors.depth.map(|d| d.p99)),
         normal_rms: worst(|r| r.errors.normal.map(|n| n.rms)),
     })
 }
@@ -240,6 +254,17 @@ mod tests {
         assert!((ratio.time.value - 0.5).abs() < 1e-12);
         assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
         assert_eq!(ratio.pictures, 2);
+        // So are depths, beside the worst.
+        for (row, p99) in rows.iter_mut().step_by(2).zip([0.01, 0.04]) {
+            row.errors.depth = Some(crate::frame::Spread {
+                rms: p99,
+                p99,
+                max: p99,
+            });
+        }
+        let ratio = &over_papers_loop(&rows)[0];
+        assert!(ratio.depth_p99.is_some_and(|p| (p - 0.02).abs() < 1e-12));
+        assert_eq!(ratio.depth_worst, Some(0.04));
     }
 
     #[test]
@@ -310,7 +335,7 @@ mod tests {
                 (None, 50.0, 1)
             ]
         );
-        assert_eq!(duels[0].mesh_p99, Some(0.5));
+        assert!(duels[0].mesh_p99.is_some_and(|p| (p - 0.5).abs() < 1e-12));
         // Without a mesh that errs no more there is no such ratio, and without the default search none at all.
         assert_eq!(over_meshes(&rows[..2]).len(), 1);
         assert!(over_meshes(&rows[1..]).is_empty());

@@ -26,7 +26,7 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
         page.chapter("Against the papers' loop");
         page.text(
             "Times over that of the papers' loop in the same stage. Ratios are geometric means \
-             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together, errors of depth (99th percentile) and of normals those of the \
+             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together; depth p99 is the geometric mean over the pictures of each one's 99th percentile, with that of the worst beside it; errors of normals are those of the \
              worst picture.",
         );
         for part in &parts {
@@ -61,7 +61,7 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
         page.figure(
             &figure,
             &format!(
-                "{}: the time of each search over that of the papers' loop in the same stage, and its depth error in the worst picture. Filled in the fragment stage, hollow in the \
+                "{}: the time of each search over that of the papers' loop in the same stage, and its depth error (the geometric mean over the pictures). Filled in the fragment stage, hollow in the \
                  compute stage; lower is more exact, further left is faster, and what lies on the dashed line is beaten by nothing in both.",
                 part.heading()
             ),
@@ -115,6 +115,7 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
                 r.pictures.to_string(),
                 percent(r.wrong),
                 r.depth_p99.map(|v| number(v, 3)).unwrap_or_default(),
+                r.depth_worst.map(|v| number(v, 3)).unwrap_or_default(),
                 r.normal_rms.map(|v| number(v, 3)).unwrap_or_default(),
             ]
         })
@@ -128,7 +129,8 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
             "single pictures",
             "pictures",
             "wrong pixels",
-            "worst depth p99 (texels)",
+            "depth p99 (texels)",
+            "worst picture's (texels)",
             "worst normal rms (degrees)",
         ],
         &records,
@@ -150,7 +152,7 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
     page.text(
         "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
          stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
-         (99th percentile) is no worse; the last column counts them. Depths are those of the worst picture, of the search and of the mesh. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
+         (99th percentile) is no worse; the last column counts them. Depths (99th percentile) are geometric means over the pictures, of the search and of the mesh. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
          pictures without one.",
     );
     for (part, records) in tables {

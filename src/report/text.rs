@@ -74,6 +74,7 @@ pub fn ratios(rows: &[Row]) -> String {
             "single pictures",
             "wrong pixels",
             "depth p99 (texels)",
+            "worst picture's",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -91,6 +92,7 @@ pub fn ratios(rows: &[Row]) -> String {
             ),
             percent(ratio.wrong),
             ratio.depth_p99.map(|p| number(p, 3)).unwrap_or_default(),
+            ratio.depth_worst.map(|p| number(p, 3)).unwrap_or_default(),
         ]);
     }
     if lines.len() == 1 {
