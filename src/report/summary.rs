@@ -26,7 +26,7 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
         page.chapter("Against the papers' loop");
         page.text(
             "Times over that of the papers' loop in the same stage. Ratios are geometric means \
-             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together; depth p99 is the geometric mean over the pictures of each one's 99th percentile, with that of the worst beside it; errors of normals are those of the \
+             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together; depth p99 is the geometric mean over the pictures of each one's 99th percentile, with that of the worst beside it; errors of normals are the root mean square of the \
              worst picture.",
         );
         for part in &parts {
@@ -130,8 +130,8 @@ pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
             "pictures",
             "wrong pixels",
             "depth p99 (texels)",
-            "worst picture's (texels)",
-            "worst normal rms (degrees)",
+            "worst (texels)",
+            "normals (degrees)",
         ],
         &records,
         &[0, 1],
