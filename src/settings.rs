@@ -214,7 +214,7 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
-    /// Pixels that an object's box covers for each band of its hull, from which on [`Solver::Hull`] draws the hull: triangles cost the same
+    /// Pixels that an object's box covers for each band of its hull that may be seen, from which on [`Solver::Hull`] draws the hull: triangles cost the same
     /// however small they are.
     pub hull_from: u32,
 }

@@ -49,7 +49,7 @@ struct Solid {
     uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
                      // of the cone search's: where they begin, rows, bits of the largest radius
     uvec4 hull;      // first band
-    Instance single; // the batch's instance, where it has but one
+    Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
 };
 
 layout(set = 0, binding = 1, std140) uniform BatchBlock {

@@ -26,11 +26,6 @@ vec3 ray_direction(PixelRays rays, uvec2 pixel)
     return rays.dir_00 + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
 }
 
-vec3 world_direction(uvec2 pixel)
-{
-    return frame.dir_00.xyz + float(pixel.x) * frame.dir_x.xyz + float(pixel.y) * frame.dir_y.xyz;
-}
-
 float depth_of(float t)
 {
     return clamp(frame.dir_x.w + frame.dir_y.w / t, 0.0, 1.0);

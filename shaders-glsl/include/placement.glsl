@@ -35,10 +35,4 @@ vec3 direction_to_object(Instance i, vec3 d)
     return rotate(conjugate(i.rotation), d) / scale_of(i);
 }
 
-// Normals go by the inverse transpose.
-vec3 normal_to_world(Instance i, vec3 n)
-{
-    return normalize(rotate(i.rotation, n / scale_of(i)));
-}
-
 #endif

@@ -13,7 +13,7 @@ layout(constant_id = 7) const uint BUMP = 0u;       // one of BUMP_*
 layout(constant_id = 8) const uint SHADOW = 0u;     // one of SHADOW_*
 layout(constant_id = 9) const uint LIGHTS = 1u;     // number of lights: a loop of known length costs software drivers a third
 layout(constant_id = 10) const uint OWN_TABLES = 0u; // 1: the batch's pieces fit into a uniform buffer
-layout(constant_id = 11) const uint SINGLE = 0u;    // 1: the batch is one instance, which its block holds
+layout(constant_id = 11) const uint SINGLE = 0u;    // 1: what is drawn is one instance, which the block holds
 
 layout(constant_id = 12) const uint BEAM = 0u;      // 1: tiles and where their rays begin and end come from beam.comp
 layout(constant_id = 13) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared

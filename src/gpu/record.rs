@@ -13,8 +13,10 @@ impl Renderer {
     /// Records a whole frame.
     pub(super) fn record(&self, cmd: vk::CommandBuffer) {
         self.clock.start(cmd);
-        self.target
-            .clear(cmd, self.background, self.batches.len() > 1);
+        // Depths are compared where there is more than one draw or dispatch.
+        let several = |b: &Batch| matches!(&b.work, Work::Beams { copies, .. } if copies.len() > 1);
+        let compared = self.batches.len() > 1 || self.batches.iter().any(several);
+        self.target.clear(cmd, self.background, compared);
         if self.settings.stage == DrawStage::Compute {
             self.record_compute(cmd);
         } else {

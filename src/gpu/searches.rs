@@ -37,9 +37,7 @@ impl Searches {
         if settings.solver.reads_map() || settings.solver.is_mesh() {
             return Ok(searches);
         }
-        let all = searches.cut(kept, contours, scene, settings);
-        kept.forget_unused();
-        all?;
+        searches.cut(kept, contours, scene, settings)?;
         // A shadow's ray meets every solid by one search.
         if scene.shadow != Shadow::Off && searches.cuts.iter().any(Option::is_none) {
             searches.cuts.clear();

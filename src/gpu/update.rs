@@ -41,12 +41,18 @@ struct Lists {
     shadows: ShadowBlock,
 }
 
+/// Words of the list of a rectangle's tiles: the dispatch, and four a tile.
+fn words_of(rectangle: Rectangle) -> usize {
+    4 + 4 * rectangle.padded() as usize
+}
+
 /// Tiles that each of several copies should cover for a list of its own to pay.
 const LEAST_TILES: u64 = 64;
 
 impl Renderer {
     /// Takes over camera, lights, placements and parameters of `scene`, whose objects must be those the renderer was made with.
-    /// No map is computed again, but for a solid whose contour no longer closes under its offset ([`Renderer::notes`]).
+    /// No map is computed again, but for a solid whose contour no longer closes under its offset ([`Renderer::notes`]), and where shadows
+    /// become soft.
     ///
     /// # Errors
     /// Of the scene's values ([`Stage::Scene`]), and of objects or instances other than those the renderer was made with
@@ -125,6 +131,7 @@ impl Renderer {
 
     fn apply(&mut self, scene: &Scene, plan: &Plan) -> Result<()> {
         self.background = scene.background;
+        self.cuts.forget_unused();
         for note in plan.searches.notes() {
             if !self.notes.contains(note) {
                 self.notes.push(note.clone());
@@ -288,7 +295,11 @@ impl Renderer {
             }
             // A tile listed is a work group.
             let most = self.device.limits.max_compute_work_group_count[0];
-            let fits = shown.iter().all(|(_, r)| r.padded() <= most);
+            // All lists stand in one buffer, of which a quarter is for them: bins need the rest.
+            let words: u64 = shown.iter().map(|(_, r)| words_of(*r) as u64).sum();
+            let room = u64::from(self.device.limits.max_storage_buffer_range) / 16;
+            let fits =
+                lists.tiles as u64 + words <= room && shown.iter().all(|(_, r)| r.padded() <= most);
             let squares: u64 = shown.iter().map(|(_, r)| r.squares()).sum();
             let pays = placements.len() == 1 || squares >= LEAST_TILES * shown.len() as u64;
             if fits && pays {
@@ -325,7 +336,7 @@ impl Renderer {
         let mut tiles = Vec::with_capacity(shown.len());
         for &(instance, rectangle) in shown {
             let at = lists.tiles as u32;
-            lists.tiles += 4 + 4 * rectangle.padded() as usize;
+            lists.tiles += words_of(rectangle);
             let mut block = number as u32;
             if copies > 1 {
                 block = lists.blocks;

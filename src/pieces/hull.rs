@@ -31,15 +31,14 @@
 //!
 //! `6 n` corners for each band (a vertex shader makes the `2 n` different ones from their number, an index buffer repeats them). Of corner `v`: `band = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
 //! `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth
-//! `2 pi s / n`. Counter-clockwise is front. [`Band::corner`] is the same on the CPU.
+//! `2 pi s / n`. Counter-clockwise is front. [`Hull::trace`] does the same on the CPU.
 
 use super::rows::Record;
 use super::shell::Shell;
 use super::sight::Sight;
 use super::walk::entering_root;
 use super::{Piece, Walk};
-use bytemuck::{Pod, Zeroable};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// How shells are made.
@@ -67,9 +66,8 @@ impl Default for HullOptions {
     }
 }
 
-/// A ring of triangles between two regular polygons, in the layout of a storage buffer: 32 bytes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+/// A ring of triangles between two regular polygons.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Band {
     /// Radius of the corners and height of the ring where it begins.
     pub from: [f32; 2],
@@ -81,8 +79,6 @@ pub struct Band {
     pub count: u32,
     /// Number of the cell.
     pub cell: u32,
-    /// Keeps the next band at a multiple of 16 bytes.
-    pub pad: u32,
 }
 
 /// The shells of all cells.
@@ -101,16 +97,7 @@ pub struct Hull {
 pub const FLOOR: f32 = 1e-3;
 
 impl Band {
-    /// Corner number `corner` (0 to `6 n - 1`) of its triangles.
-    #[must_use]
-    pub fn corner(&self, corner: u32, sides: u32) -> Vec3 {
-        let (step, [r, z]) = self.place(corner);
-        let angle = step as f32 * (std::f32::consts::TAU / sides as f32);
-        let (sin, cos) = angle.sin_cos();
-        Vec3::new(r * cos, r * sin, z)
-    }
-
-    /// The step of a corner's azimuth, and its ring.
+    /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the ring.
     fn place(&self, corner: u32) -> (u32, [f32; 2]) {
         let (side, which) = (corner / 6, corner % 6);
         let step = side + u32::from(matches!(which, 1 | 2 | 4));
@@ -185,7 +172,6 @@ impl Hull {
                     first: first as u32,
                     count: count as u32,
                     cell: self.extents.len() as u32,
-                    pad: 0,
                 });
             }
         }

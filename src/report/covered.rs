@@ -4,6 +4,7 @@ use super::framing::Framing;
 use super::names::number;
 use super::overview::pictures_of;
 use super::row::Row;
+use super::text::percent;
 
 /// Rows of one framing, or of all.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,10 +70,6 @@ impl Part {
             _ => String::new(),
         }
     }
-}
-
-fn percent(share: f64) -> String {
-    format!("{} %", number(100.0 * share, 3))
 }
 
 /// All rows, then, where there are several framings, those of each: a summary over both alone would hide what differs between them.

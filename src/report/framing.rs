@@ -12,7 +12,7 @@ use glam::{DQuat, DVec3};
 pub enum Framing {
     /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of its width in a picture of 4:3.
     Whole,
-    /// The field of view narrowed until the boxes reach past the picture on all sides by the factor [`OVERFILL`].
+    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor [`OVERFILL`]; a wider one may show their sides.
     Close,
 }
 

@@ -54,7 +54,7 @@ pub struct Lists {
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
     /// How much of the picture is solid: whole as the camera stands (the program's own solids fill 9 to 23 % of it); close: the field of view
-    /// narrowed until the solid's box reaches past the picture by a quarter on all sides (30 to 80 %), views named so; a close picture takes two to four
+    /// narrowed until the solid's box is a quarter larger than a picture of 4:3 (30 to 80 %), views named so; a close picture takes two to four
     /// times as long [default: whole]
     #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&FRAMINGS))]
     pub framing: Vec<Framing>,
