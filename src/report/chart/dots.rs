@@ -1,9 +1,9 @@
 //! Charts of one value a line, each a marker on its interval: times and ratios side by side.
 
 use super::axis::{Axis, Scale};
+use super::legend::{Key, TEXT, WIDTH, dot, legend, title, word};
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
-use super::xy::{Key, TEXT, WIDTH, dot, legend, title, word};
 use super::{Anchor, Figure, Mark};
 use crate::report::names::number;
 use crate::report::stats::Interval;

@@ -6,6 +6,7 @@
 pub mod axis;
 pub mod dots;
 pub mod front;
+mod legend;
 pub mod letters;
 pub mod raster;
 pub mod style;
