@@ -160,3 +160,78 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
         page.table(&text::AGAINST_MESHES, &records, &[0, 1]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::framing::Framing;
+    use super::super::plan::papers_loop;
+    use super::super::row::tests::row;
+    use super::super::view::tests::spindle;
+    use super::*;
+    use crate::settings::Solver;
+
+    /// A view drawn by the papers' loop and in half its time by the default, as the clocks tell it.
+    fn drawn(view: usize, framing: Framing, gpu_over_frame: f64) -> [Row; 2] {
+        let timed = |ms: f64, settings| {
+            let row = row(&[&[(Some(gpu_over_frame * ms), ms)]]);
+            Row {
+                view,
+                framing,
+                settings,
+                ..row
+            }
+        };
+        let ours = Settings {
+            solver: Solver::Hull,
+            ..Settings::default()
+        };
+        [
+            timed(5.0, ours),
+            timed(10.0, papers_loop(&spindle(), &ours)),
+        ]
+    }
+
+    fn charts(rows: &[Row]) -> Vec<String> {
+        let folder = tempfile::tempdir().unwrap();
+        let mut page = Page::new("sums");
+        chapters(&mut page, folder.path(), rows, &Looks::new(rows.iter().map(|r| &r.settings))).unwrap();
+        speed_and_error(&mut page, folder.path(), rows).unwrap();
+        let mut names: Vec<String> = std::fs::read_dir(folder.path().join("charts"))
+            .unwrap()
+            .map(|file| file.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.retain(|name| name.ends_with(".png"));
+        names.sort_unstable();
+        names
+    }
+
+    #[test]
+    fn each_framing_has_its_charts() {
+        let whole = drawn(0, Framing::Whole, 1.0);
+        let close = drawn(1, Framing::Close, 1.0);
+        assert_eq!(charts(&whole), ["ratios.png", "summary.png"]);
+        assert_eq!(
+            charts(&[whole.clone(), close].concat()),
+            [
+                "ratios-close.png",
+                "ratios-whole.png",
+                "ratios.png",
+                "summary-close.png",
+                "summary-whole.png",
+                "summary.png"
+            ]
+        );
+        // What no clock tells is in no chart.
+        let untold = drawn(1, Framing::Close, 0.5);
+        assert_eq!(
+            charts(&[whole, untold].concat()),
+            [
+                "ratios-whole.png",
+                "ratios.png",
+                "summary-whole.png",
+                "summary.png"
+            ]
+        );
+    }
+}
