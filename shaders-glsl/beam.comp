@@ -31,8 +31,7 @@ void main()
     float end = -1e30;
     for (uint k = 0u; k < BEAM_NODES; ++k) {
         // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
-        uint node = BEAM_FIRST_NODE + k;
-        float most = node_extent(piece_tables[solid.pieces.x + (node >> 2)][node & 3u]).y;
+        float most = node_extent(piece_tables[solid.hull.y + (k >> 2)][k & 3u]).y;
         float radius = sqrt(max(most, 0.0)) + beam;
         float low = (float(k) / float(BEAM_NODES) - beam - o.z) * per_z;
         float high = (float(k + 1u) / float(BEAM_NODES) + beam - o.z) * per_z;

@@ -3,20 +3,15 @@
 // The hull of each instance: two rings of corners for every band, with what its fragments test.
 #include "include/vertex.glsl"
 #include "include/hull_varyings.glsl"
-#include "include/piece_tables.glsl"
+#include "include/bands.glsl"
 
 void main()
 {
     frame = frame_block;
     solid = batch_solid;
     Instance i = batch_instance(gl_InstanceIndex);
-    uint at = solid.hull.x + BAND_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
-    uint corner = uint(gl_VertexIndex) % (2u * HULL_SIDES);
-    vec4 rings = uintBitsToFloat(piece_tables[at]);
-    vec2 rz = corner < HULL_SIDES ? rings.xy : rings.zw;
-    float angle = float(corner % HULL_SIDES) * (6.28318530717958648 / float(HULL_SIDES));
-    vec3 p = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(solid.axis.xy, 0.0);
-    gl_Position = frame.clip_from_world * vec4(point_to_world(i, p), 1.0);
+    uint at = this_band();
+    gl_Position = frame.clip_from_world * vec4(point_to_world(i, band_corner(at)), 1.0);
 
     // Rays are counted from a depth near the solid, or r^2 would cancel.
     float base = dot(point_to_world(i, vec3(0.0, 0.0, 0.5)) - frame.eye.xyz, frame.forward.xyz);

@@ -28,9 +28,5 @@ void main()
     gl_Position.z = inside ? 0.0 : gl_Position.z;
 
     hand_over(i, gl_InstanceIndex, 0.0);
-    box_bounds = solid.bounds;
-    box_map = solid.map;
-    box_offset = solid.offset;
-    box_pieces = solid.pieces;
-    box_axis = solid.axis;
+    hand_over_box();
 }

@@ -214,8 +214,8 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
-    /// Pixels that an object's box covers for each band of its hull that may be seen, from which on [`Solver::Hull`] draws the hull: triangles cost the same
-    /// however small they are.
+    /// Pixels that an object's box covers for each band of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
+    /// [`Solver::Live`] the convex one: triangles cost the same however small they are. `u32::MAX`: boxes alone, and no beams either.
     pub hull_from: u32,
 }
 

@@ -115,6 +115,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             } else {
                 formats[(n + n / 3) % 3]
             },
+            hull_from: u32::MAX, // or rays would begin elsewhere in each stage
             ..Settings::default()
         };
         let compute = Settings {

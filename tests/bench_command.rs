@@ -93,11 +93,7 @@ fn a_brief_run_measures_every_combination() {
         raw.records.len() >= results.records.len() * 4 * 2,
         "four passes of two rounds at least"
     );
-    for file in [
-        "report.html",
-        "machine.txt",
-        "pictures/sphere@10.png",
-    ] {
+    for file in ["report.html", "machine.txt", "pictures/sphere@10.png"] {
         assert!(made.join(file).exists(), "{file}");
     }
     assert!(

@@ -4,23 +4,15 @@
 
 mod common;
 
+use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{device, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::frame::{CompareOptions, Frame, compare};
-use revmap::gpu::{self, Renderer, Way};
+use revmap::frame::{CompareOptions, compare};
+use revmap::gpu::{Renderer, Way};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use std::sync::Arc;
-
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
-
-/// How a scene's objects are to be drawn, in either stage.
-type Ways<'a> = [&'a [Way]; 2];
-
-/// By what is tested here, and by what it falls back to.
-const WRAPPED: Ways<'static> = [&[Way::Hull], &[Way::Beams]];
-const BOXED: Ways<'static> = [&[Way::Box], &[Way::Rectangle]];
 
 fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
@@ -31,28 +23,6 @@ fn settings(solver: Solver, stage: DrawStage) -> Settings {
         stage,
         ..Settings::default()
     }
-}
-
-/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart than half a texel of 512 rows.
-fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
-    let both = || a.distance.iter().zip(&b.distance);
-    let hits = both().filter(|(a, _)| a.is_finite()).count();
-    let edge = both()
-        .filter(|(a, b)| a.is_finite() != b.is_finite())
-        .count();
-    let far = both()
-        .filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 0.5 / 512.0)
-        .count();
-    (hits, edge, far)
-}
-
-/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box would be right too, and say nothing.
-#[track_caller]
-fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
-    let drawn = gpu::draw(device(), scene, settings).unwrap();
-    let wanted = ways[usize::from(settings.stage == DrawStage::Compute)];
-    assert_eq!(drawn.ways, wanted, "{name}, {:?}", settings.stage);
-    drawn.frame
 }
 
 /// Share of the pixels hit, beyond 2 pixels, that hulls or beams may see otherwise than the box: silhouettes of grazing rays.

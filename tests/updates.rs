@@ -157,7 +157,7 @@ fn only_what_has_changed_is_cut() {
             let cuts = if solver.reads_map() { 0 } else { cuts };
             assert_eq!(renderer.cuts(), cuts, "{solver}, {stage:?}: {what}");
             let way = match (solver, stage) {
-                (Solver::Hull, DrawStage::Fragment) => Way::Hull,
+                (Solver::Hull | Solver::Live, DrawStage::Fragment) => Way::Hull,
                 (Solver::Hull, _) => Way::Beams,
                 (Solver::Mesh { .. }, _) => Way::Mesh,
                 _ => Way::Box,

@@ -33,7 +33,7 @@ void begin()
 // A single instance needs no bins: the work groups are those of its rectangle.
 Bin this_bin()
 {
-    if (BEAM != 0u) {
+    if (AHEAD != 0u) {
         uint at = pushed.first_bin + 4u + 4u * gl_WorkGroupID.x;
         return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
     }
@@ -46,7 +46,7 @@ Bin this_bin()
 
 uvec2 this_pixel(Bin bin)
 {
-    if (BEAM != 0u) {
+    if (AHEAD != 0u) {
         return uvec2(bin.corner & 0xffffu, bin.corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
     }
     if (SINGLE != 0u) {
@@ -80,10 +80,11 @@ bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
         PixelRays rays = SINGLE != 0u ? single_rays : pixel_rays(instances[index]);
         Hit hit;
         bool met;
-        if (BEAM != 0u) {
-            met = trace_between(rays.eye, ray_direction(rays, pixel), uintBitsToFloat(bin.first), uintBitsToFloat(bin.count), hit);
+        vec2 span = AHEAD != 0u ? uintBitsToFloat(uvec2(bin.first, bin.count)) : EVERYWHERE;
+        if (AHEAD != 0u && TABLES) {
+            met = trace_between(rays.eye, ray_direction(rays, pixel), span, hit);
         } else {
-            met = trace(rays.eye, ray_direction(rays, pixel), hit);
+            met = trace(rays.eye, ray_direction(rays, pixel), span, hit);
         }
         nearest.steps += hit.steps;
         nearest.exhausted = nearest.exhausted || hit.exhausted;

@@ -48,7 +48,7 @@ struct Solid {
     uvec4 instances; // first, number, index of the shape map among those of shadows
     uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
                      // of the cone search's: where they begin, rows, bits of the largest radius
-    uvec4 hull;      // first band
+    uvec4 hull;      // first band; first vector of the nodes that beams are asked against
     Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
 };
 

@@ -5,13 +5,13 @@
 #define CELLS_GLSL
 #include "trace.glsl"
 
-bool trace(vec3 eye, vec3 v, out Hit hit)
+bool trace(vec3 eye, vec3 v, vec2 span, out Hit hit)
 {
     hit.steps = 0u;
     hit.exhausted = false;
     hit.sense = vec3(1.0);
     if (CELLS == 0u) {
-        return trace_solid(eye, v, hit);
+        return trace_solid(eye, v, span, hit);
     }
     // In units in which a cell is as large as the box is without repetition; its lower corner at 0.
     vec3 count = vec3(solid.cells.xyz);
@@ -34,7 +34,7 @@ bool trace(vec3 eye, vec3 v, out Hit hit)
         vec3 sense = 1.0 - 2.0 * mirrored;
         // Into the cell's own object space: its middle to the box's middle, reflected where it is mirrored.
         vec3 local = ((o - cell - 0.5) * sense + 0.5) * size - vec3(solid.axis.xy + solid.bounds.xx, 0.0);
-        if (trace_solid(local, d * sense * size, hit)) {
+        if (trace_solid(local, d * sense * size, EVERYWHERE, hit)) {
             hit.sense = sense;
             hit.normal = normalize(hit.normal * sense * count);
             return true;

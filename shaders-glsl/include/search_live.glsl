@@ -2,8 +2,9 @@
 //
 // Steps never pass the surface (proof in docs/searches.md). In the half-plane the ray moves away from a sample by at most
 // sigma x + kappa x^2 / 2 after x units of s, and w, being concave along the ray, stays below its tangent; so as long as both
-// together do not use up F, nothing is met. Near the surface a least step brackets it, and the secant through the bracket is the
-// hit: a ray that only comes near is no hit, however near.
+// together do not use up F, nothing is met. Where the last two samples say that the surface is less than a texel beyond, the step goes
+// there at once. Near the surface a least step brackets it, and the secant through the bracket is the hit: a ray that only comes near is
+// no hit, however near.
 #ifndef SEARCH_LIVE_GLSL
 #define SEARCH_LIVE_GLSL
 #include "surface.glsl"
@@ -22,13 +23,17 @@ float safe_step(Meridian m, Way way, float side, float s, vec2 rz, float f)
     float moment = m.a * s + m.b;
     float r = max(rz.x, 1e-6);
     float closest = max(moment >= 0.0 ? r : way.nearest, r - f);
-    float kappa = way.j2 / max(closest * closest * closest, 1e-12);
+    float cube = closest * closest * closest;
+    if (OFFSET != OFFSET_BEVELED) {
+        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the sample, swept around the axis,
+        // f / sqrt(sigma^2 + kappa f), with one division for all.
+        float rr = r * r;
+        float sigma2_rr = max(way.speed2 * rr - way.j2, m.v.z * m.v.z * rr);
+        return f * max(m.inverse_speed, sqrt(cube * rr / (cube * sigma2_rr + way.j2 * f * rr + 1e-30)));
+    }
+    float kappa = way.j2 / max(cube, 1e-12);
     // The ray's speed in the half-plane, squared.
     float sigma2 = max(way.speed2 - way.j2 / (r * r), m.v.z * m.v.z);
-    if (OFFSET != OFFSET_BEVELED) {
-        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the sample, swept around the axis.
-        return f * max(m.inverse_speed, inversesqrt(max(sigma2 + kappa * f, 1e-12 * way.speed2)));
-    }
     // From within, the tangent to w bounds nothing: take the steepest.
     float slope = side < 0.0 ? solid.offset.y * abs(m.v.z) : offset_slope(rz.y) * m.v.z; // dw/ds
     float ball = f / max(way.speed + slope, 1e-3 * way.speed);
@@ -46,15 +51,21 @@ uint search_live(Meridian m, float side, float f, float t_pixel, inout float s, 
     way.j2 = max(m.a * m.c - m.b * m.b, 0.0);
     way.nearest = sqrt(way.j2 / max(m.a, 1e-20));
     // A quarter of a texel, or a tenth of a pixel where texels are smaller.
-    float least = max(0.25 * solid.map.z * m.inverse_speed, 0.1 * t_pixel);
+    float texel = solid.map.z * m.inverse_speed;
+    float least = max(0.25 * texel, 0.1 * t_pixel);
     vec2 rz = point_rz(m, s);
-    // The last step: where it began, and F at both of its ends.
+    // The last step: where it began, and F at both of its ends. Of none the secant shows the surface where the ray is.
     float before = s;
-    float f_before = f;
+    float f_before = f + 1.0;
     for (uint i = 1u; i < MAX_STEPS && (i == 1u || (f > 0.0 && s < m.s_end)); ++i) {
+        float safe = safe_step(m, way, side, s, rz, f);
+        // A little beyond where the secant meets the surface, so that the next step does not end before it again.
+        float beyond = f * (s - before) / (f_before - f) + least;
+        beyond = min(beyond, safe + texel);
+        float stride = beyond > safe ? beyond : safe;
         before = s;
         f_before = f;
-        s = min(s + max(safe_step(m, way, side, s, rz, f), least), m.s_end);
+        s = min(s + max(stride, least), m.s_end);
         rz = point_rz(m, s);
         f = side * field(rz);
         ++steps;

@@ -51,7 +51,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     // The start is known to a few roundings of the distance from the eye: a face of the box that is the solid's own must not be passed there.
     float slack = 4e-6 * m.inverse_speed + 4e-7 * m.t_start;
     const int top = 3;
-    int level = BEAM != 0u ? 1 : top;
+    int level = AHEAD != 0u ? 1 : top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
     float t = 0.0;
     float most = square_at(m, 0.0);

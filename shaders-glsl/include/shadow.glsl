@@ -45,7 +45,7 @@ float light_reaching(vec3 point, vec3 towards)
                 open = min(open, solid_openness(eye, v));
             } else {
                 Hit hit;
-                open = trace(eye, v, hit) ? 0.0 : open;
+                open = trace(eye, v, EVERYWHERE, hit) ? 0.0 : open;
             }
         }
     }

@@ -32,8 +32,10 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
 }
 
 // Of a ray that is known to begin outside of the solid, none of which the box cuts: pieces alone, between two t.
-bool trace_between(vec3 eye, vec3 v, float t_in, float t_out, out Hit hit)
+bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
 {
+    float t_in = span.x;
+    float t_out = span.y;
     // Above the ceiling and below the floor another sheet of a quadric may pass the guard.
     float per_z = 1.0 / (abs(v.z) > 1e-20 ? v.z : 1e-20);
     float low = (solid.bounds.z - eye.z) * per_z;
@@ -61,11 +63,14 @@ bool trace_between(vec3 eye, vec3 v, float t_in, float t_out, out Hit hit)
     return end == FOUND;
 }
 
-// Look-ups are counted in `hit.steps` even when nothing is met.
-bool trace_solid(vec3 eye, vec3 v, inout Hit hit)
+// Look-ups are counted in `hit.steps` even when nothing is met. `span`: two t, before and after which nothing of the solid is.
+bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
 {
     Meridian m;
     if (!clip_ray(eye, v, m)) {
+        return false;
+    }
+    if (AHEAD != 0u && !narrow(m, span)) {
         return false;
     }
     float s = 0.0;

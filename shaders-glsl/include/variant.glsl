@@ -15,7 +15,7 @@ layout(constant_id = 9) const uint LIGHTS = 1u;     // number of lights: a loop 
 layout(constant_id = 10) const uint OWN_TABLES = 0u; // 1: the batch's pieces fit into a uniform buffer
 layout(constant_id = 11) const uint SINGLE = 0u;    // 1: what is drawn is one instance, which the block holds
 
-layout(constant_id = 12) const uint BEAM = 0u;      // 1: tiles and where their rays begin and end come from beam.comp
+layout(constant_id = 12) const uint AHEAD = 0u;     // 1: where rays begin comes from beam.comp, and where they end and which tiles, or from a convex hull
 layout(constant_id = 13) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 14) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 15) const uint TESTS = 8u;     // pieces of the hull's largest cell, at most HULL_TESTS

@@ -2,6 +2,7 @@
 
 use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
 use crate::error::{Error, Result, Stage};
+use crate::maps::envelope::Envelope;
 use crate::maps::{Bounds, MapFormat, MapSource};
 use crate::profile::{Profile, Shape};
 use crate::scene::{CameraFrame, Object, Offset, Placement, Scene};
@@ -53,7 +54,7 @@ impl MapKey {
 }
 
 /// The largest offset that the surface takes in the box.
-fn largest_width(offset: &Offset) -> f64 {
+pub(crate) fn largest_width(offset: &Offset) -> f64 {
     offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
 }
 
@@ -103,13 +104,15 @@ fn farthest_corner(object: &Object) -> f64 {
 }
 
 /// A shape map on the device, as far as a batch must know it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MapFacts {
     pub columns: u32,
     pub rows: u32,
     pub scale: f32,
     pub bounds: Bounds,
     pub arc_length: f64,
+    /// Of a map that is there.
+    pub envelope: Option<Arc<Envelope>>,
 }
 
 /// The batch's block; `instances` are its range, `shadow_map` its map's index among those that shadows read.

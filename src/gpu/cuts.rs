@@ -1,19 +1,21 @@
-//! Contours as they were last cut: kept while an object uses them, shared by objects of one profile and offset.
+//! Contours as they were last cut, and envelopes as they were last grown: kept while an object uses them, shared by objects of one profile
+//! and offset.
 
 use super::contours::ProfileContour;
 use super::hulls::Shell;
 use super::tables::Packed;
 use crate::error::Result;
+use crate::maps::envelope::Envelope;
 use crate::pieces::{Cones, Piece, cut};
 use crate::scene::Offset;
 use crate::shader::generated::PIECE_ROWS;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-/// One contour under one offset, and what is made of it when first wanted.
+/// One contour or envelope under one offset, and what is made of it when first wanted.
 pub(crate) struct Cut {
     made: Made,
-    /// Largest radius, least and largest `z`; of cones not asked for.
+    /// Largest radius, least and largest `z`; of cones and envelopes not asked for.
     extent: [f64; 3],
     tables: OnceLock<Packed>,
     shell: OnceLock<Shell>,
@@ -22,6 +24,7 @@ pub(crate) struct Cut {
 enum Made {
     Pieces(Vec<Piece>),
     Cones(Cones),
+    Envelope(Envelope),
 }
 
 impl Cut {
@@ -54,6 +57,7 @@ impl Cut {
         self.tables.get_or_init(|| match &self.made {
             Made::Pieces(pieces) => Packed::pieces(pieces),
             Made::Cones(cones) => Packed::cones(cones),
+            Made::Envelope(envelope) => Packed::envelope(envelope),
         })
     }
 
@@ -62,10 +66,16 @@ impl Cut {
         self.shell.get_or_init(|| match &self.made {
             Made::Pieces(pieces) => Shell::new(pieces),
             Made::Cones(_) => Shell::new(&[]),
+            Made::Envelope(envelope) => Shell::convex(envelope),
         })
     }
 
-    /// Largest radius of the pieces, least and largest `z`.
+    /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays are searched as in the box.
+    pub fn is_boundary(&self) -> bool {
+        !matches!(self.made, Made::Envelope(_))
+    }
+
+    /// Largest radius of the pieces, least and largest `z`; of pieces alone.
     pub fn extent(&self) -> [f64; 3] {
         self.extent
     }
@@ -80,6 +90,17 @@ struct Key {
     rows: u32,
 }
 
+impl Key {
+    fn new(contour: &ProfileContour, offset: &Offset, rows: u32) -> Self {
+        Self {
+            profile: contour.key(),
+            // Of both zeros one.
+            offset: [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits()),
+            rows,
+        }
+    }
+}
+
 struct Kept {
     /// Of a contour that does not close the reason, so that it is not tried in every frame.
     cut: Result<Arc<Cut>>,
@@ -90,6 +111,8 @@ struct Kept {
 #[derive(Default)]
 pub(crate) struct Cuts {
     kept: HashMap<Key, Kept>,
+    /// By the envelope, and the bits of what it is grown by; and whether it was used.
+    grown: HashMap<(usize, u64), (Arc<Cut>, bool)>,
     done: u64,
 }
 
@@ -99,9 +122,8 @@ impl Cuts {
     /// # Errors
     /// Where it does not close.
     pub fn pieces(&mut self, contour: &ProfileContour, offset: &Offset) -> Result<Arc<Cut>> {
-        self.get(contour, offset, PIECE_ROWS, || {
-            Cut::pieces_of(contour, offset)
-        })
+        let key = Key::new(contour, offset, PIECE_ROWS);
+        self.cut(key, || Cut::pieces_of(contour, offset))
     }
 
     /// A row of so many cones around a contour under an offset.
@@ -114,24 +136,22 @@ impl Cuts {
         offset: &Offset,
         rows: u32,
     ) -> Result<Arc<Cut>> {
-        self.get(contour, offset, rows, || {
-            Cut::cones_of(contour, offset, rows)
-        })
+        let key = Key::new(contour, offset, rows);
+        self.cut(key, || Cut::cones_of(contour, offset, rows))
     }
 
-    fn get(
-        &mut self,
-        contour: &ProfileContour,
-        offset: &Offset,
-        rows: u32,
-        make: impl FnOnce() -> Result<Cut>,
-    ) -> Result<Arc<Cut>> {
-        let key = Key {
-            profile: contour.key(),
-            // Of both zeros one.
-            offset: [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits()),
-            rows,
-        };
+    /// An envelope, which must live as long as this, grown by so much. No contour is cut for it, and none counted.
+    pub fn grown(&mut self, envelope: &Arc<Envelope>, by: f64) -> Arc<Cut> {
+        let key = (Arc::as_ptr(envelope) as usize, by.to_bits());
+        let grown = self.grown.entry(key).or_insert_with(|| {
+            let made = Made::Envelope(envelope.grown(by));
+            (Arc::new(Cut::new(made, [0.0; 3])), true)
+        });
+        grown.1 = true;
+        grown.0.clone()
+    }
+
+    fn cut(&mut self, key: Key, make: impl FnOnce() -> Result<Cut>) -> Result<Arc<Cut>> {
         let done = &mut self.done;
         let kept = self.kept.entry(key).or_insert_with(|| {
             *done += 1;
@@ -148,6 +168,8 @@ impl Cuts {
     pub fn forget_unused(&mut self) {
         self.kept
             .retain(|_, kept| std::mem::replace(&mut kept.used, false));
+        self.grown
+            .retain(|_, (_, used)| std::mem::replace(used, false));
     }
 
     /// How many have been made.

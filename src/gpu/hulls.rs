@@ -3,6 +3,7 @@
 use super::batch::axis_offset;
 use super::bins::{Rectangle, rectangle};
 use super::cuts::Cut;
+use crate::maps::envelope::Envelope;
 use crate::pieces::{Hull, HullOptions, Piece, Record};
 use crate::scene::{CameraFrame, Object, Placement};
 use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
@@ -32,10 +33,21 @@ impl Shell {
         let vectors = pack(&hull, pieces);
         Self { hull, vectors }
     }
+
+    /// The convex hull of an envelope.
+    pub fn convex(envelope: &Envelope) -> Self {
+        let hull = Hull::convex(&envelope.convex(), HULL_SIDES);
+        let vectors = pack(&hull, &[]);
+        Self { hull, vectors }
+    }
 }
 
-/// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas.
+/// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas. Rays that are searched
+/// as in the box may be cut by it.
 fn is_whole(object: &Object, cut: &Cut) -> bool {
+    if !cut.is_boundary() {
+        return object.repeat == [1; 3];
+    }
     let radius = object.profile.radius;
     let [x, y] = axis_offset(object);
     let side_face = radius - x.abs().max(y.abs());
@@ -50,7 +62,7 @@ pub(crate) fn takes_beams(object: &Object, cut: &Cut, camera: &CameraFrame) -> b
         let eye = flat(seen_from(object, copy, camera).0);
         eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE
     };
-    is_whole(object, cut) && object.placements().iter().all(apart)
+    is_whole(object, cut) && (!cut.is_boundary() || object.placements().iter().all(apart))
 }
 
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.

@@ -17,8 +17,10 @@ use std::sync::Arc;
 pub(crate) enum Kind {
     /// Shape boxes, rasterised.
     Box,
-    /// Hulls, rasterised.
+    /// Hulls of pieces, rasterised.
     Hull,
+    /// Convex hulls, in which fragments search as in boxes.
+    ConvexHull,
     /// Bins of pixels.
     Compute,
     /// Meshes, rasterised; `both_sides`: an eye may be inside.
@@ -147,7 +149,9 @@ impl Pipelines {
                 };
                 self.compute(words, &specialization)?
             }
-            Kind::Box | Kind::Hull | Kind::Mesh { .. } => self.graphics(kind, &specialization)?,
+            Kind::Box | Kind::Hull | Kind::ConvexHull | Kind::Mesh { .. } => {
+                self.graphics(kind, &specialization)?
+            }
         };
         self.made.insert(key, pipeline);
         Ok(pipeline)
@@ -208,6 +212,11 @@ impl Pipelines {
                 spirv::HULL_VERT,
                 spirv::HULL_COLOR_FRAG,
                 spirv::HULL_PLANES_FRAG,
+            ),
+            Kind::ConvexHull => (
+                spirv::CONVEX_HULL_VERT,
+                spirv::SHAPE_BOX_COLOR_FRAG,
+                spirv::SHAPE_BOX_PLANES_FRAG,
             ),
             _ => (
                 spirv::SHAPE_BOX_VERT,

@@ -1,7 +1,8 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
+use crate::maps::envelope::Envelope;
 use crate::pieces::{Cones, Piece, Tables};
-use crate::shader::generated::PIECE_ROWS;
+use crate::shader::generated::{BEAM_FIRST_NODE, PIECE_ROWS};
 
 /// A table that may stand anywhere in a buffer.
 pub(crate) struct Packed {
@@ -10,6 +11,8 @@ pub(crate) struct Packed {
     pub own: usize,
     /// What `Solid.pieces` of `blocks.glsl` holds behind the place where it begins.
     facts: [u32; 3],
+    /// The vector with which the nodes begin that beams are asked against.
+    beam_nodes: u32,
 }
 
 impl Packed {
@@ -19,26 +22,17 @@ impl Packed {
         [begin, a, b, c]
     }
 
+    /// `Solid.hull` likewise, as far as beams read it.
+    pub fn beams(&self, begin: u32) -> u32 {
+        begin + self.beam_nodes
+    }
+
     /// The layout of `piece_tables.glsl`.
     pub fn pieces(pieces: &[Piece]) -> Self {
         let tables = Tables::new(pieces, PIECE_ROWS);
-        let largest = tables.nodes.iter().fold(1e-6f32, |m, n| m.max(n[1]));
-        // A little more than what 16 bits hold, so that roundings of the product stay inside.
-        let unit = largest * (1.0 + 1e-6) / 65535.0;
-        let words: Vec<u32> = tables
-            .nodes
-            .iter()
-            .map(|[low, high]| {
-                let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;
-                let high = (high / unit).ceil().clamp(0.0, 65535.0) as u32;
-                low | high << 16
-            })
-            .chain(tables.rows.iter().copied())
-            .collect();
-        let mut vectors: Vec<_> = words
-            .chunks_exact(4)
-            .map(|w| [w[0], w[1], w[2], w[3]])
-            .collect();
+        let (mut words, unit) = nodes(&tables.nodes);
+        words.extend(&tables.rows);
+        let mut vectors = fours(&words);
         let first_record = vectors.len();
         for record in &tables.records {
             vectors.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
@@ -49,6 +43,7 @@ impl Packed {
             vectors,
             own,
             facts: [index(first_record), index(own), unit.to_bits()],
+            beam_nodes: BEAM_FIRST_NODE / 4,
         }
     }
 
@@ -60,8 +55,46 @@ impl Packed {
             vectors,
             own: rows,
             facts: [index(rows), cones.reach.to_bits(), 0],
+            beam_nodes: 0,
         }
     }
+
+    /// What beams ask of an envelope: nodes, and nothing that a search walks.
+    pub fn envelope(envelope: &Envelope) -> Self {
+        #[allow(clippy::cast_possible_truncation)]
+        let extents: Vec<[f32; 2]> = envelope
+            .radii
+            .iter()
+            .map(|r| [0.0, (r * r) as f32])
+            .collect();
+        let (words, unit) = nodes(&extents);
+        Self {
+            vectors: fours(&words),
+            own: 0,
+            facts: [0, 0, unit.to_bits()],
+            beam_nodes: 0,
+        }
+    }
+}
+
+/// Least and largest `r^2` of nodes as words of two halves, rounded outwards; and their unit.
+fn nodes(extents: &[[f32; 2]]) -> (Vec<u32>, f32) {
+    let largest = extents.iter().fold(1e-6f32, |m, n| m.max(n[1]));
+    // A little more than what 16 bits hold, so that roundings of the product stay inside.
+    let unit = largest * (1.0 + 1e-6) / 65535.0;
+    let word = |[low, high]: &[f32; 2]| {
+        let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;
+        let high = (high / unit).ceil().clamp(0.0, 65535.0) as u32;
+        low | high << 16
+    };
+    (extents.iter().map(word).collect(), unit)
+}
+
+fn fours(words: &[u32]) -> Vec<[u32; 4]> {
+    words
+        .chunks_exact(4)
+        .map(|w| [w[0], w[1], w[2], w[3]])
+        .collect()
 }
 
 fn index(n: usize) -> u32 {

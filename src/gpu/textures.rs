@@ -6,6 +6,7 @@ use super::descriptors::{Sampler, Wrap};
 use super::device::Shared;
 use super::memory::Image;
 use crate::error::{Error, Result, Stage};
+use crate::maps::envelope::Envelope;
 use crate::maps::{
     ArcLength, BakeOptions, Bounds, ColorMap, DisplacementMap, MapFormat, Projection, ShapeMap,
 };
@@ -199,7 +200,7 @@ impl Textures {
         self.shapes
             .iter()
             .position(|s| Arc::ptr_eq(&s.key.profile, profile) && s.key.fits(object, settings))
-            .map(|place| (place, self.shapes[place].facts))
+            .map(|place| (place, self.shapes[place].facts.clone()))
             .ok_or_else(|| {
                 Error::new(
                     Stage::Draw,
@@ -316,6 +317,7 @@ fn shape_map(
         scale: encoded.scale,
         bounds: map.bounds,
         arc_length: 1.0,
+        envelope: Some(Arc::new(Envelope::of(&map))),
     };
     Ok((facts, image))
 }
@@ -336,5 +338,6 @@ fn unmapped(key: &MapKey) -> MapFacts {
             z_max: 1.0,
         }),
         arc_length: 1.0,
+        envelope: None,
     }
 }

@@ -1,6 +1,8 @@
 //! What changes from frame to frame: looked at as a whole first, then taken over.
 
-use super::batch::{check_format, frame_block, instance_block, solid_block};
+use super::batch::{
+    MapFacts, check_format, frame_block, instance_block, largest_width, solid_block,
+};
 use super::bins::{Bins, Rectangle, rectangle};
 use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock};
 use super::buffers::write;
@@ -13,6 +15,8 @@ use super::renderer::Renderer;
 use super::searches::Searches;
 use super::work::{Batch, MOST_BEAMED, Tiles, Work};
 use crate::error::{Error, Result, Stage};
+use crate::maps::MapFormat;
+use crate::maps::envelope::SLACK;
 use crate::scene::{CameraFrame, Object, Placement, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
 use crate::shader::Variant;
@@ -196,7 +200,7 @@ impl Renderer {
         let bound = self.textures.of(object, shape);
         let mut block = solid_block(object, &facts, &instances, shape, settings.solver);
         let tables = plan.searches.tables(number);
-        let wrapped = tables.filter(|_| settings.solver == Solver::Hull);
+        let wrapped = self.wrapped(object, &settings, &facts, tables);
         let mut near_first = Vec::new();
         let (kind, work) =
             if let (Some(meshes), Some(planned)) = (&mut self.meshes, plan.meshes.get(number)) {
@@ -205,33 +209,41 @@ impl Renderer {
                     meshes.update(number, object, planned, &plan.camera, &self.commands)?;
                 (Kind::Mesh { both_sides }, Work::Mesh)
             } else if self.settings.stage == DrawStage::Compute {
-                let work = self.compute_work(number, object, wrapped, plan, lists)?;
+                let work = self.compute_work(number, object, wrapped.as_ref(), plan, lists)?;
                 let mut several = false;
                 if let Work::Beams { copies, .. } = &work {
-                    (variant.beam, variant.single) = (1, 1);
+                    (variant.ahead, variant.single) = (1, 1);
                     several = copies.len() > 1;
                 }
                 variant.depth_test = u32::from(number > 0 || several);
                 variant.depth_keep = u32::from(number + 1 < scene.objects.len() || several);
                 (Kind::Compute, work)
-            } else if let Some(cut) = wrapped
+            } else if let Some(cut) = &wrapped
                 && let Some(Wrapped { hull, bands }) = self.hull(object, cut, plan)
             {
                 block.hull[0] = lists.pieces.place(cut, Of::Bands, 1);
                 lists.bands = lists.bands.max(hull.bands.len());
-                variant.tests = hull.tests();
-                (Kind::Hull, Work::Hull { bands })
+                let kind = if cut.is_boundary() {
+                    variant.tests = hull.tests();
+                    Kind::Hull
+                } else {
+                    variant.ahead = 1;
+                    Kind::ConvexHull
+                };
+                (kind, Work::Hull { bands })
             } else {
                 (Kind::Box, Work::Box)
             };
         let mut tables_offset = 0;
-        // A hull's own fragments read none of the tree; shadows' rays do.
-        if let Some(cut) = tables
-            && (kind != Kind::Hull || casts)
-        {
+        // A hull's own fragments read none of the tree; shadows' rays do. Of an envelope beams alone read something.
+        let read = tables.filter(|_| kind != Kind::Hull || casts).or(wrapped
+            .as_ref()
+            .filter(|_| matches!(work, Work::Beams { .. })));
+        if let Some(cut) = read {
             let align = self.buffers.table_align();
             let begin = lists.pieces.place(cut, Of::Tables, align);
             block.pieces = cut.tables().block(begin);
+            block.hull[1] = cut.tables().beams(begin);
             variant.own_tables = u32::from(cut.tables().own <= PIECE_VECTORS as usize);
             tables_offset = 16 * begin;
         }
@@ -264,6 +276,28 @@ impl Renderer {
             instances,
             work,
         })
+    }
+
+    /// What rays of `object` can be held to before they are searched: its boundary; of a search on the map, where its solid may be.
+    fn wrapped(
+        &mut self,
+        object: &Object,
+        settings: &Settings,
+        facts: &MapFacts,
+        tables: Option<&Arc<Cut>>,
+    ) -> Option<Arc<Cut>> {
+        if settings.hull_from == u32::MAX {
+            return None;
+        }
+        match settings.solver {
+            Solver::Hull => tables.cloned(),
+            // A map of 8 bits bounds nothing.
+            Solver::Live if settings.map_format != MapFormat::Rgba8 => {
+                let by = largest_width(&object.offset).max(0.0) + SLACK / f64::from(facts.rows);
+                Some(self.cuts.grown(facts.envelope.as_ref()?, by))
+            }
+            _ => None,
+        }
     }
 
     /// How the compute stage draws object `number`; `at` of beams counts from the last bin's words on.
@@ -360,7 +394,7 @@ impl Renderer {
         let limits = &self.device.limits;
         let wraps = limits.max_fragment_input_components >= hulls::COMPONENTS
             && limits.max_vertex_output_components >= hulls::COMPONENTS + 4;
-        if !wraps {
+        if !wraps && cut.is_boundary() {
             return None;
         }
         let view = hulls::View {

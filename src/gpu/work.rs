@@ -63,7 +63,7 @@ pub(crate) struct Tiles {
 /// How an object was drawn, which is chosen anew with every update: [`Renderer::ways`](super::Renderer::ways).
 ///
 /// A search and what it searches are two things: a box may be drawn by any of the searches, a rectangle or bins too; hulls and beams are
-/// what [`Solver::Hull`](crate::settings::Solver::Hull) takes where it can.
+/// what [`Solver::Hull`](crate::settings::Solver::Hull) and [`Solver::Live`](crate::settings::Solver::Live) take where they can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Way {
     /// Not at all: it is beside the picture, or behind the eye. In the fragment stage the rasteriser finds that out, and no object is
@@ -71,7 +71,7 @@ pub enum Way {
     Nothing,
     /// Fragment stage: the fragments of its boxes are searched.
     Box,
-    /// Fragment stage: by the shells of its pieces.
+    /// Fragment stage: by the shells of its pieces; of a search on the map the fragments of its convex hull are searched.
     Hull,
     /// Compute stage, a single copy: the pixels of its rectangle on the screen are searched.
     Rectangle,

@@ -6,6 +6,7 @@ mod binary;
 mod color;
 mod coverage;
 mod displacement;
+pub(crate) mod envelope;
 mod exact;
 mod files;
 mod halving;

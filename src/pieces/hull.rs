@@ -137,6 +137,24 @@ impl Hull {
         hull
     }
 
+    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to the other: a cell without pieces.
+    #[must_use]
+    pub(crate) fn convex(points: &[DVec2], sides: u32) -> Self {
+        let sides = sides.max(3);
+        let widen = DVec2::new(1.0 / (std::f64::consts::PI / f64::from(sides)).cos(), 1.0);
+        let mut hull = Self {
+            sides,
+            sight: Sight::new(&[], &[0..0]),
+            ..Self::default()
+        };
+        let lines: Vec<_> = points
+            .windows(2)
+            .map(|w| [w[0] * widen, w[1] * widen])
+            .collect();
+        hull.push(&lines, 0, 0);
+        hull
+    }
+
     /// Runs of bands that eyes at these `(r, z)` may see: cells in cavities that none of them looks into are left out, whose shells would
     /// be drawn in vain.
     #[must_use]

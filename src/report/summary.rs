@@ -195,7 +195,13 @@ mod tests {
     fn charts(rows: &[Row]) -> Vec<String> {
         let folder = tempfile::tempdir().unwrap();
         let mut page = Page::new("sums");
-        chapters(&mut page, folder.path(), rows, &Looks::new(rows.iter().map(|r| &r.settings))).unwrap();
+        chapters(
+            &mut page,
+            folder.path(),
+            rows,
+            &Looks::new(rows.iter().map(|r| &r.settings)),
+        )
+        .unwrap();
         speed_and_error(&mut page, folder.path(), rows).unwrap();
         let mut names: Vec<String> = std::fs::read_dir(folder.path().join("charts"))
             .unwrap()

@@ -32,8 +32,8 @@ pub struct Variant {
     pub own_tables: u32,
     /// 1 where the batch is one instance.
     pub single: u32,
-    /// 1 where beams say which tiles to trace.
-    pub beam: u32,
+    /// 1 where beams say which tiles to trace and from where, or the fragments of a convex hull.
+    pub ahead: u32,
     /// 0 where nothing was drawn before.
     pub depth_test: u32,
     /// 0 where nothing will be drawn after.
@@ -92,7 +92,7 @@ impl Variant {
             lights: u32::try_from(scene.lights.len()).unwrap_or(g::MAX_LIGHTS),
             own_tables: 0,
             single: 0,
-            beam: 0,
+            ahead: 0,
             depth_test: 1,
             depth_keep: 1,
             tests: g::HULL_TESTS,
@@ -120,7 +120,7 @@ impl Variant {
             (g::LIGHTS_ID, self.lights),
             (g::OWN_TABLES_ID, self.own_tables),
             (g::SINGLE_ID, self.single),
-            (g::BEAM_ID, self.beam),
+            (g::AHEAD_ID, self.ahead),
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
             (g::TESTS_ID, self.tests),

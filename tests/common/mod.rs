@@ -3,6 +3,7 @@
 
 pub mod passing;
 pub mod shapes;
+pub mod ways;
 
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;

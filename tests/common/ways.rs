@@ -1,0 +1,38 @@
+//! How objects are drawn, by hulls, beams or boxes, and how far two frames are apart.
+
+use super::device;
+use revmap::frame::Frame;
+use revmap::gpu::{self, Way};
+use revmap::scene::Scene;
+use revmap::settings::{DrawStage, Settings};
+
+pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+
+/// How a scene's objects are to be drawn, in either stage.
+pub type Ways<'a> = [&'a [Way]; 2];
+
+/// By what is tested here, and by what it falls back to.
+pub const WRAPPED: Ways<'static> = [&[Way::Hull], &[Way::Beams]];
+pub const BOXED: Ways<'static> = [&[Way::Box], &[Way::Rectangle]];
+
+/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart than half a texel of 512 rows.
+pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
+    let both = || a.distance.iter().zip(&b.distance);
+    let hits = both().filter(|(a, _)| a.is_finite()).count();
+    let edge = both()
+        .filter(|(a, b)| a.is_finite() != b.is_finite())
+        .count();
+    let far = both()
+        .filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 0.5 / 512.0)
+        .count();
+    (hits, edge, far)
+}
+
+/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box would be right too, and say nothing.
+#[track_caller]
+pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
+    let drawn = gpu::draw(device(), scene, settings).unwrap();
+    let wanted = ways[usize::from(settings.stage == DrawStage::Compute)];
+    assert_eq!(drawn.ways, wanted, "{name}, {:?}", settings.stage);
+    drawn.frame
+}
