@@ -1,11 +1,13 @@
 //! Two folders of results held against each other: two versions of the program, or two devices.
 
-use super::csv::Table;
+mod run;
+
 use super::names::number;
 use super::row::COLUMNS;
 use super::stats::{self, Interval};
 use super::text;
 use crate::error::{Error, Result, Stage};
+use run::Run;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -25,11 +27,14 @@ pub struct Pair {
     /// The same, each time first put over that of the papers' loop of the same picture, stage and run: what is left when one run had the
     /// slower machine. `None` where a run lacks that loop, and for the loop itself.
     pub relative: Option<Interval>,
-    /// What of the errors has grown: column, old, new.
-    pub worse: Vec<(&'static str, f64, f64)>,
+    /// What of the errors has grown.
+    pub worse: Vec<Change>,
     /// What of the errors has shrunk.
-    pub better: Vec<(&'static str, f64, f64)>,
+    pub better: Vec<Change>,
 }
+
+/// An error that differs: column, old, new.
+pub type Change = (&'static str, f64, f64);
 
 /// What became of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,131 +71,6 @@ pub struct Against {
     pub alone: (usize, usize),
     /// Device and driver of each.
     pub devices: [String; 2],
-}
-
-/// A run as read.
-struct Run {
-    results: Table,
-    /// Each row's medians by pass.
-    medians: HashMap<usize, Vec<f64>>,
-}
-
-/// Columns that make a row the papers' loop, and their values.
-const LOOP: [(&str, &[&str]); 4] = [
-    ("solver", &["circle"]),
-    ("max_steps", &["20", "25"]),
-    ("map_source", &["binary"]),
-    ("map_format", &["rgba8"]),
-];
-
-impl Run {
-    fn load(folder: &Path) -> Result<Self> {
-        let results = Table::load(&folder.join("results.csv"))?;
-        if results.header != COLUMNS {
-            return Err(Error::new(
-                Stage::Report,
-                "has other columns than this version writes; measure again",
-            )
-            .in_file(folder.join("results.csv")));
-        }
-        let raw_file = folder.join("raw.csv");
-        let raw = Table::load(&raw_file)?;
-        let named = |name: &str| raw.column(name).map_err(|e| e.in_file(&raw_file));
-        let (row, pass, gpu, frame) = (
-            named("row")?,
-            named("pass")?,
-            named("gpu_ms")?,
-            named("frame_ms")?,
-        );
-        let mut samples: HashMap<usize, HashMap<usize, Vec<f64>>> = HashMap::new();
-        let gpu_column = results.column("gpu_ms_median")?;
-        for record in &raw.records {
-            let whole = |at: usize| {
-                record[at].parse::<usize>().map_err(|_| {
-                    Error::new(
-                        Stage::Report,
-                        format!("{:?} is no number; measure again", record[at]),
-                    )
-                    .in_file(&raw_file)
-                })
-            };
-            let row = whole(row)?;
-            let told = results
-                .records
-                .get(row.wrapping_sub(1))
-                .is_some_and(|r| !r[gpu_column].is_empty());
-            let ms = record[if told { gpu } else { frame }].parse::<f64>();
-            // A device's clock that was rejected has its wall clock in doubt as well.
-            let rejected = !told && !record[gpu].is_empty();
-            if let (Ok(ms), false) = (ms, rejected) {
-                samples
-                    .entry(row)
-                    .or_default()
-                    .entry(whole(pass)?)
-                    .or_default()
-                    .push(ms);
-            }
-        }
-        let medians = samples.into_iter().map(|(row, passes)| {
-            let mut passes: Vec<_> = passes.into_iter().collect();
-            passes.sort_by_key(|(pass, _)| *pass);
-            (
-                row,
-                passes
-                    .iter()
-                    .filter_map(|(_, times)| stats::median(times))
-                    .collect(),
-            )
-        });
-        Ok(Self {
-            results,
-            medians: medians.collect(),
-        })
-    }
-
-    /// The passes' medians of a row (counted from 1), each over that of the papers' loop which shows the same picture in the same stage.
-    fn over_loop(&self, row: usize) -> Option<Vec<f64>> {
-        let at = |name: &str| COLUMNS.iter().position(|c| *c == name);
-        let record = self.results.records.get(row.checked_sub(1)?)?;
-        let is_loop = |r: &[String]| {
-            LOOP.iter()
-                .all(|(c, values)| at(c).is_some_and(|k| values.contains(&r[k].as_str())))
-        };
-        if is_loop(record) {
-            return None;
-        }
-        let picture = [
-            "scene",
-            "technique",
-            "extend",
-            "bevel",
-            "chamfer",
-            "stage",
-            "width",
-            "height",
-            "objects",
-        ];
-        let same = |r: &[String]| {
-            picture
-                .iter()
-                .all(|c| at(c).is_some_and(|k| r[k] == record[k]))
-        };
-        let rival = self
-            .results
-            .records
-            .iter()
-            .position(|r| is_loop(r) && same(r))?
-            + 1;
-        let (own, rival) = (self.medians.get(&row)?, self.medians.get(&rival)?);
-        Some(own.iter().zip(rival).map(|(a, b)| a / b).collect())
-    }
-
-    fn device(&self) -> String {
-        let Some(record) = self.results.records.first() else {
-            return String::new();
-        };
-        record[COLUMNS.len() - 2..].join(", ")
-    }
 }
 
 /// Reads two folders that `revmap bench` or `revmap chart` wrote.
@@ -243,11 +123,7 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
 }
 
 /// The errors that have grown and those that have shrunk.
-#[allow(clippy::type_complexity)]
-fn errors(
-    old: &[String],
-    new: &[String],
-) -> (Vec<(&'static str, f64, f64)>, Vec<(&'static str, f64, f64)>) {
+fn errors(old: &[String], new: &[String]) -> (Vec<Change>, Vec<Change>) {
     let (mut worse, mut better) = (Vec::new(), Vec::new());
     for name in [
         "missed",
@@ -362,155 +238,22 @@ pub fn as_text(against: &Against) -> String {
     {
         out += "the papers' loop itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";
     }
-    for (what, of) in [
-        (
-            "less exact",
-            (|p: &Pair| p.worse.clone()) as fn(&Pair) -> Vec<_>,
-        ),
-        ("more exact", |p| p.better.clone()),
-    ] {
-        for pair in against.pairs.iter().filter(|p| !of(p).is_empty()) {
-            let changes: Vec<String> = of(pair)
-                .iter()
-                .map(|(c, a, b)| format!("{c} {} to {}", number(*a, 4), number(*b, 4)))
-                .collect();
-            out += &format!("{what}: {}: {}\n", name(pair), changes.join(", "));
-        }
-    }
+    let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
+        let changed = against.pairs.iter().filter(|p| !of(p).is_empty());
+        changed
+            .map(|pair| {
+                let changes: Vec<String> = of(pair)
+                    .iter()
+                    .map(|(c, a, b)| format!("{c} {} to {}", number(*a, 4), number(*b, 4)))
+                    .collect();
+                format!("{what}: {}: {}\n", name(pair), changes.join(", "))
+            })
+            .collect()
+    };
+    out += &changes("less exact", |p| &p.worse);
+    out += &changes("more exact", |p| &p.better);
     out
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::super::folder::{raw, results, write_text};
-    use super::super::machine::Machine;
-    use super::super::row::Row;
-    use super::super::row::tests::row;
-    use super::*;
-    use crate::settings::DrawStage;
-
-    fn run(rows: &[Row]) -> tempfile::TempDir {
-        let folder = tempfile::tempdir().unwrap();
-        let machine = Machine::here("device, with a comma", "cpu", "driver", "revmap bench");
-        write_text(
-            &folder.path().join("results.csv"),
-            &results(rows, &machine).text(),
-        )
-        .unwrap();
-        write_text(&folder.path().join("raw.csv"), &raw(rows).text()).unwrap();
-        folder
-    }
-
-    fn timed(times: [f64; 4], stage: DrawStage) -> Row {
-        let passes = times.map(|t| {
-            [
-                (Some(t * 0.99), t),
-                (Some(t), t * 1.01),
-                (Some(t * 0.98), t),
-            ]
-        });
-        let mut row = row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>());
-        row.settings.stage = stage;
-        row
-    }
-
-    #[test]
-    fn planted_changes_are_found() {
-        let old = run(&[
-            timed([10.0, 10.2, 9.9, 10.1], DrawStage::Fragment),
-            timed([20.0, 21.0, 19.0, 20.5], DrawStage::Compute),
-        ]);
-        let mut slow = timed([12.0, 12.2, 11.9, 12.1], DrawStage::Fragment);
-        slow.errors.missed = 40;
-        let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
-        let found = compare(old.path(), new.path()).unwrap();
-        assert_eq!(
-            found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
-            [Verdict::Slower, Verdict::Same]
-        );
-        assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
-        assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
-        let text = as_text(&found);
-        assert!(
-            text.contains("1 slower, 0 faster, 1 within")
-                && text.contains("less exact: fragment: missed 0 to 40"),
-            "{text}"
-        );
-        let back = compare(new.path(), old.path()).unwrap();
-        assert_eq!(back.pairs[0].verdict(), Verdict::Faster);
-        assert_eq!(back.pairs[0].better.len(), 1);
-    }
-
-    /// One run had a machine of half the speed: the papers' loop, in both, tells so, and nothing counts as slower but what is.
-    #[test]
-    fn a_slower_machine_is_told_from_a_slower_search() {
-        let papers = |times| {
-            let mut row = timed(times, DrawStage::Fragment);
-            row.settings = crate::report::plan::papers_loop(
-                &crate::report::view::tests::spindle(),
-                &row.settings,
-            );
-            row.source = row.settings.map_source;
-            row
-        };
-        let search = |times, steps| {
-            let mut row = timed(times, DrawStage::Fragment);
-            row.settings.max_steps = Some(steps);
-            row
-        };
-        let old = run(&[
-            papers([10.0, 10.2, 9.9, 10.1]),
-            search([5.0, 5.1, 4.9, 5.0], 30),
-            search([5.0, 5.1, 4.9, 5.0], 40),
-        ]);
-        let new = run(&[
-            papers([20.0, 20.4, 19.8, 20.2]),
-            search([10.0, 10.2, 9.8, 10.0], 30),
-            search([15.0, 15.2, 14.8, 15.0], 40),
-        ]);
-        let found = compare(old.path(), new.path()).unwrap();
-        assert_eq!(
-            found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
-            [Verdict::Slower, Verdict::Same, Verdict::Slower]
-        );
-        assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
-        assert!(as_text(&found).contains("the papers' loop itself differs"));
-    }
-
-    #[test]
-    fn a_rejected_clock_gives_no_verdict() {
-        let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
-        let mut lies = timed([10.0; 4], DrawStage::Fragment);
-        lies.passes
-            .iter_mut()
-            .flatten()
-            .for_each(|s| s.gpu_ms = Some(0.036));
-        let lies = run(&[lies]);
-        let found = compare(fine.path(), lies.path()).unwrap();
-        assert_eq!(found.pairs[0].verdict(), Verdict::Unknown);
-    }
-
-    #[test]
-    fn what_cannot_be_compared_is_refused() {
-        let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
-        let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
-        assert!(
-            compare(a.path(), b.path())
-                .unwrap_err()
-                .to_string()
-                .contains("in common")
-        );
-        let empty = tempfile::tempdir().unwrap();
-        let error = compare(a.path(), empty.path()).unwrap_err();
-        assert!(error.file.unwrap().ends_with("results.csv"));
-        std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
-        assert!(
-            compare(a.path(), b.path())
-                .unwrap_err()
-                .to_string()
-                .contains("other columns")
-        );
-        assert_eq!(KEY.last(), Some(&"objects"));
-    }
-}
+mod tests;
