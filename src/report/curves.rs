@@ -2,9 +2,9 @@
 
 use super::chart::Figure;
 use super::chart::axis::Axis;
-use super::chart::front::{WORTH, front};
-use super::chart::style::{Dash, PALE, Style};
-use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
+use super::chart::front::{WORTH, front, stairs};
+use super::chart::style::Style;
+use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::covered::parts;
 use super::folder::write_text;
 use super::looks::{Looks, of_line, of_source, style};
@@ -205,13 +205,7 @@ fn chart(title: &str, measure: Measure, series: Vec<Series>, best: &[(f64, f64)]
         x: Axis::log("time of a frame (ms)"),
         y: measure.axis(),
         series,
-        guides: vec![Guide {
-            name: "Pareto front".into(),
-            points: stairs(best),
-            color: PALE,
-            dash: Dash::Guide,
-            width: 1.8,
-        }],
+        guides: vec![Guide::dashed("Pareto front", stairs(best))],
     }
     .figure()
 }
@@ -489,13 +483,10 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) 
         x: Axis::log("time / time of the papers' loop").with(1.0),
         y: measure.axis(),
         series,
-        guides: vec![Guide {
-            name: "Pareto front".into(),
-            points: stairs(&best.into_iter().map(|i| places[i]).collect::<Vec<_>>()),
-            color: PALE,
-            dash: Dash::Guide,
-            width: 1.8,
-        }],
+        guides: vec![Guide::dashed(
+            "Pareto front",
+            stairs(&best.into_iter().map(|i| places[i]).collect::<Vec<_>>()),
+        )],
     }
     .figure()
 }

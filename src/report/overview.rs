@@ -3,11 +3,10 @@
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
-use super::chart::front::{WORTH, front};
+use super::chart::front::{WORTH, front, stairs};
 use super::chart::raster::raster;
-use super::chart::style::{Dash, PALE};
 use super::chart::svg::svg;
-use super::chart::xy::{Guide, Point, Series, XyChart, stairs};
+use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::covered;
 use super::folder::{left_out, make, write_bytes, write_text};
 use super::glossary;
@@ -142,13 +141,7 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
         x: Axis::log("time of a frame (ms)"),
         y: Axis::log("depth error, p99 (texels of 512 rows)").from(LEAST_DEPTH),
         series,
-        guides: vec![Guide {
-            name: "Pareto front".into(),
-            points: stairs(&best),
-            color: PALE,
-            dash: Dash::Guide,
-            width: 1.8,
-        }],
+        guides: vec![Guide::dashed("Pareto front", stairs(&best))],
     }
     .figure()
 }

@@ -2,7 +2,6 @@
 
 use super::chart::Figure;
 use super::chart::axis::Axis;
-use super::chart::style::{Dash, PALE};
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::write_text;
 use super::looks::Looks;
@@ -426,13 +425,7 @@ fn chart(
         x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
         y,
         series,
-        guides: vec![Guide {
-            name: "print, GeForce GT 630M".into(),
-            points: print,
-            color: PALE,
-            dash: Dash::Guide,
-            width: 1.8,
-        }],
+        guides: vec![Guide::dashed("print, GeForce GT 630M", print)],
     };
     Some(figure.figure())
 }

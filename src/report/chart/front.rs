@@ -30,6 +30,19 @@ pub fn front(points: &[(f64, f64)], gain: f64) -> Vec<usize> {
 /// The gain in error that is worth a place on a chart's front.
 pub const WORTH: f64 = 0.95;
 
+/// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
+#[must_use]
+pub fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut all = Vec::new();
+    for (i, p) in points.iter().enumerate() {
+        if i > 0 {
+            all.push((p.0, points[i - 1].1));
+        }
+        all.push(*p);
+    }
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,5 +81,13 @@ mod tests {
         for i in 0..points.len() {
             assert_eq!(found.contains(&i), !beaten(i), "{i}");
         }
+    }
+
+    #[test]
+    fn stairs_go_along_before_they_go_down() {
+        assert_eq!(
+            stairs(&[(1.0, 3.0), (2.0, 1.0)]),
+            [(1.0, 3.0), (2.0, 3.0), (2.0, 1.0)]
+        );
     }
 }

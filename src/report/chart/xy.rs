@@ -45,6 +45,19 @@ pub struct Guide {
     pub width: f64,
 }
 
+impl Guide {
+    /// A pale, dashed line, to compare points with.
+    pub(crate) fn dashed(name: &str, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            name: name.to_owned(),
+            points,
+            color: PALE,
+            dash: Dash::Guide,
+            width: 1.8,
+        }
+    }
+}
+
 /// A chart of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct XyChart {
@@ -58,19 +71,6 @@ pub struct XyChart {
     pub series: Vec<Series>,
     /// Lines below them.
     pub guides: Vec<Guide>,
-}
-
-/// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
-#[must_use]
-pub fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let mut all = Vec::new();
-    for (i, p) in points.iter().enumerate() {
-        if i > 0 {
-            all.push((p.0, points[i - 1].1));
-        }
-        all.push(*p);
-    }
-    all
 }
 
 impl XyChart {
@@ -97,8 +97,21 @@ impl XyChart {
         };
         axes(&mut marks, plot, (&self.x.label, &x), (&self.y.label, &y));
 
+        // Words keep off markers, each other, and level or upright lines.
+        let mut taken: Vec<Bounds> = Vec::new();
         for guide in &self.guides {
             let points: Vec<_> = guide.points.iter().filter_map(|p| at(p.0, p.1)).collect();
+            let straight = points
+                .windows(2)
+                .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1);
+            taken.extend(straight.map(|w| {
+                [
+                    w[0].0.min(w[1].0) - 1.0,
+                    w[0].1.min(w[1].1) - 1.0,
+                    w[0].0.max(w[1].0) + 1.0,
+                    w[0].1.max(w[1].1) + 1.0,
+                ]
+            }));
             for points in clip(&points, plot) {
                 marks.push(Mark::Line {
                     points,
@@ -107,24 +120,6 @@ impl XyChart {
                     dash: guide.dash,
                 });
             }
-        }
-        // Words keep off markers, each other, and level or upright lines.
-        let mut taken: Vec<Bounds> = Vec::new();
-        for guide in &self.guides {
-            let points: Vec<_> = guide.points.iter().filter_map(|p| at(p.0, p.1)).collect();
-            taken.extend(
-                points
-                    .windows(2)
-                    .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1)
-                    .map(|w| {
-                        [
-                            w[0].0.min(w[1].0) - 1.0,
-                            w[0].1.min(w[1].1) - 1.0,
-                            w[0].0.max(w[1].0) + 1.0,
-                            w[0].1.max(w[1].1) + 1.0,
-                        ]
-                    }),
-            );
         }
         let mut labels = Vec::new();
         let mut dots = Vec::new();
@@ -332,123 +327,4 @@ fn clip(points: &[(f64, f64)], plot: Bounds) -> Vec<Vec<(f64, f64)>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::style::{Marker, color};
-    use super::*;
-
-    fn crowded() -> XyChart {
-        let series = |index: usize| Series {
-            name: format!("a search of some length, number {index}"),
-            style: Style {
-                filled: index.is_multiple_of(2),
-                heavy: index == 3,
-                ..Style::new(color::ALL[index], Marker::ALL[index])
-            },
-            points: (0..7)
-                .map(|k| Point {
-                    x: 10.0 * 1.05f64.powi(k + index as i32),
-                    y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
-                    label: Some(format!("{k} steps")),
-                })
-                .collect(),
-            joined: true,
-        };
-        XyChart {
-            title: "A title that is long enough to need more than one line, since it says a great deal about what is shown below".into(),
-            x: Axis::log("time of a frame (ms)"),
-            y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
-            series: (0..9).map(series).collect(),
-            guides: vec![Guide { name: "Pareto front".into(), points: stairs(&[(10.0, 1.0), (12.0, 0.1)]), color: PALE, dash: Dash::Guide, width: 1.8 }],
-        }
-    }
-
-    #[test]
-    fn no_words_cover_each_other_however_crowded() {
-        assert_eq!(crowded().figure().faults(), Vec::<String>::new());
-        for (low, high) in [(1e-9, 1e9), (0.999, 1.001), (21.0, 26.0), (3.0, 3.0)] {
-            let mut chart = crowded();
-            chart.series.truncate(1);
-            chart.series[0].points = [low, high]
-                .map(|v| Point {
-                    x: v,
-                    y: v,
-                    label: None,
-                })
-                .to_vec();
-            assert_eq!(
-                chart.figure().faults(),
-                Vec::<String>::new(),
-                "{low} to {high}"
-            );
-        }
-        // The check itself finds what is planted.
-        let mut figure = crowded().figure();
-        figure
-            .marks
-            .push(word((20.0, 30.0), "planted", 14.0, Anchor::Start, INK));
-        figure
-            .marks
-            .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
-        assert!(figure.faults().len() >= 2);
-    }
-
-    #[test]
-    fn series_of_one_name_share_an_entry() {
-        let mut chart = crowded();
-        chart.series.truncate(3);
-        for (k, series) in chart.series.iter_mut().enumerate() {
-            series.name = ["hull", "hull", "live"][k].to_owned();
-        }
-        let keys: Vec<_> = chart
-            .legend()
-            .into_iter()
-            .map(|(n, k)| (n, k.len()))
-            .collect();
-        let wanted = [("hull", 2), ("live", 1), ("Pareto front", 1)];
-        assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
-        assert_eq!(chart.figure().faults(), Vec::<String>::new());
-    }
-
-    #[test]
-    fn points_stand_where_their_values_are() {
-        let mut chart = crowded();
-        chart.series = vec![Series {
-            name: String::new(),
-            style: Style::new(color::BLUE, Marker::Disk),
-            joined: false,
-            points: vec![],
-        }];
-        chart.series[0].points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
-            .map(|(x, y)| Point { x, y, label: None })
-            .to_vec();
-        chart.guides.clear();
-        let centers: Vec<_> = chart
-            .figure()
-            .marks
-            .iter()
-            .filter_map(|m| match m {
-                Mark::Shape { .. } => Some(m.bounds()),
-                _ => None,
-            })
-            .map(|b| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0))
-            .collect();
-        assert_eq!(centers.len(), 3);
-        // Equal ratios, equal ways; less error is further down.
-        assert!((centers[1].0 * 2.0 - centers[0].0 - centers[2].0).abs() < 1e-6);
-        assert!(centers[0].0 < centers[1].0 && centers[0].1 < centers[1].1);
-    }
-
-    #[test]
-    fn lines_are_cut_at_the_plot() {
-        let plot = [0.0, 0.0, 10.0, 10.0];
-        assert_eq!(
-            clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (20.0, 20.0)], plot),
-            [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]
-        );
-        assert!(clip(&[(-5.0, -5.0), (-1.0, 20.0)], plot).is_empty());
-        assert_eq!(
-            stairs(&[(1.0, 3.0), (2.0, 1.0)]),
-            [(1.0, 3.0), (2.0, 3.0), (2.0, 1.0)]
-        );
-    }
-}
+mod tests;

@@ -1,0 +1,115 @@
+use super::super::front::stairs;
+use super::super::style::{Marker, color};
+use super::*;
+
+fn crowded() -> XyChart {
+    let series = |index: usize| Series {
+        name: format!("a search of some length, number {index}"),
+        style: Style {
+            filled: index.is_multiple_of(2),
+            heavy: index == 3,
+            ..Style::new(color::ALL[index], Marker::ALL[index])
+        },
+        points: (0..7)
+            .map(|k| Point {
+                x: 10.0 * 1.05f64.powi(k + index as i32),
+                y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
+                label: Some(format!("{k} steps")),
+            })
+            .collect(),
+        joined: true,
+    };
+    XyChart {
+        title: "A title that is long enough to need more than one line, since it says a great deal about what is shown below".into(),
+        x: Axis::log("time of a frame (ms)"),
+        y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
+        series: (0..9).map(series).collect(),
+        guides: vec![Guide::dashed("Pareto front", stairs(&[(10.0, 1.0), (12.0, 0.1)]))],
+    }
+}
+
+#[test]
+fn no_words_cover_each_other_however_crowded() {
+    assert_eq!(crowded().figure().faults(), Vec::<String>::new());
+    for (low, high) in [(1e-9, 1e9), (0.999, 1.001), (21.0, 26.0), (3.0, 3.0)] {
+        let mut chart = crowded();
+        chart.series.truncate(1);
+        chart.series[0].points = [low, high]
+            .map(|v| Point {
+                x: v,
+                y: v,
+                label: None,
+            })
+            .to_vec();
+        assert_eq!(
+            chart.figure().faults(),
+            Vec::<String>::new(),
+            "{low} to {high}"
+        );
+    }
+    // The check itself finds what is planted.
+    let mut figure = crowded().figure();
+    figure
+        .marks
+        .push(word((20.0, 30.0), "planted", 14.0, Anchor::Start, INK));
+    figure
+        .marks
+        .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
+    assert!(figure.faults().len() >= 2);
+}
+
+#[test]
+fn series_of_one_name_share_an_entry() {
+    let mut chart = crowded();
+    chart.series.truncate(3);
+    for (k, series) in chart.series.iter_mut().enumerate() {
+        series.name = ["hull", "hull", "live"][k].to_owned();
+    }
+    let keys: Vec<_> = chart
+        .legend()
+        .into_iter()
+        .map(|(n, k)| (n, k.len()))
+        .collect();
+    let wanted = [("hull", 2), ("live", 1), ("Pareto front", 1)];
+    assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
+    assert_eq!(chart.figure().faults(), Vec::<String>::new());
+}
+
+#[test]
+fn points_stand_where_their_values_are() {
+    let mut chart = crowded();
+    chart.series = vec![Series {
+        name: String::new(),
+        style: Style::new(color::BLUE, Marker::Disk),
+        joined: false,
+        points: vec![],
+    }];
+    chart.series[0].points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
+        .map(|(x, y)| Point { x, y, label: None })
+        .to_vec();
+    chart.guides.clear();
+    let centers: Vec<_> = chart
+        .figure()
+        .marks
+        .iter()
+        .filter_map(|m| match m {
+            Mark::Shape { .. } => Some(m.bounds()),
+            _ => None,
+        })
+        .map(|b| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0))
+        .collect();
+    assert_eq!(centers.len(), 3);
+    // Equal ratios, equal ways; less error is further down.
+    assert!((centers[1].0 * 2.0 - centers[0].0 - centers[2].0).abs() < 1e-6);
+    assert!(centers[0].0 < centers[1].0 && centers[0].1 < centers[1].1);
+}
+
+#[test]
+fn lines_are_cut_at_the_plot() {
+    let plot = [0.0, 0.0, 10.0, 10.0];
+    assert_eq!(
+        clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (20.0, 20.0)], plot),
+        [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]
+    );
+    assert!(clip(&[(-5.0, -5.0), (-1.0, 20.0)], plot).is_empty());
+}
