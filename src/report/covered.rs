@@ -2,7 +2,6 @@
 
 use super::framing::Framing;
 use super::names::number;
-use super::overview::pictures_of;
 use super::row::Row;
 use super::text::percent;
 
@@ -93,6 +92,23 @@ pub fn parts(rows: &[Row]) -> Vec<Part> {
         each.insert(0, all);
     }
     each
+}
+
+/// Rows put together by the picture they show.
+#[must_use]
+pub fn pictures_of<'a>(rows: &[&'a Row]) -> Vec<Vec<&'a Row>> {
+    let mut groups: Vec<Vec<&Row>> = Vec::new();
+    for row in rows {
+        let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
+        match groups
+            .iter_mut()
+            .find(|g| g.first().is_some_and(|f| key(f) == key(row)))
+        {
+            Some(group) => group.push(row),
+            None => groups.push(vec![row]),
+        }
+    }
+    groups
 }
 
 /// Columns of the table of pictures.

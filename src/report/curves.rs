@@ -1,22 +1,22 @@
 //! Charts of error against time: one page for each view, and one that sums up.
 
+use super::chapters;
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::front::{WORTH, front, stairs};
 use super::chart::style::Style;
 use super::chart::xy::{Guide, Point, Series, XyChart};
-use super::covered::parts;
-use super::folder::write_text;
+use super::covered::{parts, pictures_of};
+use super::folder::{keep_figure, write_text};
 use super::looks::{Looks, of_line, of_source, style};
 use super::machine::Machine;
 use super::map_error::MapError;
 use super::measure::Measured;
-use super::names::{self, number, stage};
-use super::overview::{self, keep_figure, safe};
+use super::names::{self, number, safe, stage};
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Labels, PAPERS_LOOP, Plan, is_papers_loop, variant};
-use super::ratios::{Ratio, over_papers_loop};
+use super::ratios::{LEAST_DEPTH, Ratio, over_papers_loop};
 use super::row::Row;
 use super::sweep::{has_budget, has_rows};
 use super::text::percent;
@@ -56,9 +56,7 @@ impl Measure {
     #[must_use]
     pub fn axis(self) -> Axis {
         match self {
-            Self::Depth => {
-                Axis::log("depth error, p99 (texels of 512 rows)").from(overview::LEAST_DEPTH)
-            }
+            Self::Depth => Axis::log("depth error, p99 (texels of 512 rows)").from(LEAST_DEPTH),
             Self::Wrong => Axis::log("wrong pixels (% of pixels hit)").from(1e-4),
             Self::Normal => Axis::log("error of normals, rms (degrees)").from(1e-3),
             Self::Flip => Axis::log("FLIP, mean over the picture").from(1e-6),
@@ -320,12 +318,12 @@ pub fn write(
     let base = Settings::default();
     let all: Vec<&Row> = measured.rows.iter().collect();
     let mut pages = Vec::new();
-    for group in overview::pictures_of(&all) {
+    for group in pictures_of(&all) {
         let Some(first) = group.first() else { continue };
         let size = format!("{}x{}", first.settings.width, first.settings.height);
         let name = format!("{}-{size}", safe(&first.scene));
         let mut page = Page::new(format!("{}, {size}: error against time", first.scene));
-        overview::begin(&mut page, machine, measured);
+        chapters::begin(&mut page, machine, measured);
         page.chapter("Searches");
         for measure in Measure::ALL {
             let figure = searches(
@@ -380,7 +378,7 @@ pub fn write(
         page.chapter("Rows");
         let ways: Vec<Settings> = group.iter().map(|r| variant(&r.settings)).collect();
         let rows: Vec<Row> = group.iter().map(|r| (*r).clone()).collect();
-        overview::row_table(&mut page, &rows, &Looks::new(&ways));
+        chapters::row_table(&mut page, &rows, &Looks::new(&ways));
         let file = format!("{name}.html");
         write_text(&folder.join(&file), &page.html())?;
         pages.push((file, format!("{}, {size}", first.scene)));
@@ -398,7 +396,7 @@ fn summary(
     base: &Settings,
 ) -> Result<()> {
     let mut page = Page::new("revmap: speed against accuracy");
-    overview::begin(&mut page, machine, measured);
+    chapters::begin(&mut page, machine, measured);
     page.chapter("All views together");
     page.text(
         "Times are ratios to the papers' loop in the same stage, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
@@ -425,9 +423,9 @@ fn summary(
     page.table(&header, &records, &[0, 1]);
     page.chapter("Views");
     page.links(pages);
-    overview::picture_table(&mut page, &measured.rows);
-    overview::pictures(&mut page, plan, album);
-    overview::end(&mut page, plan, measured);
+    chapters::picture_table(&mut page, &measured.rows);
+    chapters::pictures(&mut page, plan, album);
+    chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
 
@@ -494,7 +492,7 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) 
 /// Which ways are on fronts: header and records, the most frequent first.
 fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
     let all: Vec<&Row> = rows.iter().collect();
-    let groups = overview::pictures_of(&all);
+    let groups = pictures_of(&all);
     let labels = Labels::new(rows.iter().map(|r| &r.settings));
     let mut counts: Vec<(Settings, usize, f64, f64)> = Vec::new();
     for group in &groups {

@@ -1,9 +1,13 @@
 //! The folder of a run: `results.csv`, `raw.csv`, `left-out.csv`, `machine.txt`, and whatever pictures and pages belong to it.
 
+use super::chart::Figure;
+use super::chart::raster::raster;
+use super::chart::svg::svg;
 use super::csv::Table;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
+use super::pictures::png;
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use crate::error::{Error, Result, Stage};
@@ -61,6 +65,20 @@ pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
             )
         })
     })
+}
+
+/// Writes a figure as SVG and as PNG of twice its size into `folder/charts`.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
+    let charts = folder.join("charts");
+    make(&charts)?;
+    write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;
+    write_bytes(
+        &charts.join(format!("{name}.png")),
+        &png(&raster(figure, 2.0)?)?,
+    )
 }
 
 /// `results.csv`: one record a row, with the columns of [`COLUMNS`].

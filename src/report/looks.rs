@@ -2,7 +2,8 @@
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::names::stage;
-use super::plan::{Labels, is_papers_loop};
+use super::plan::{Labels, is_papers_loop, variant};
+use super::row::Row;
 use crate::maps::MapSource;
 use crate::settings::{DrawStage, Settings, Solver};
 
@@ -115,6 +116,12 @@ impl Looks {
             ways.push((way, Style { marker, ..wanted }));
         }
         Self { labels, ways }
+    }
+
+    /// Looks for the ways in which rows were drawn.
+    pub(super) fn of(rows: &[Row]) -> Self {
+        let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+        Self::new(&ways)
     }
 
     /// The name of a way, without its stage.

@@ -1,4 +1,4 @@
-//! Names of settings, as options and results have them.
+//! Names of settings, numbers and files, as options and results have them.
 
 use crate::maps::{MapFormat, MapSource};
 use crate::settings::DrawStage;
@@ -54,6 +54,20 @@ pub fn number(value: f64, digits: usize) -> String {
     }
     let text = format!("{value:.*}", decimals as usize);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A name that may be part of a file's name.
+#[must_use]
+pub fn safe(name: &str) -> String {
+    name.chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_@.".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! The papers' tables of frame rates (article of 2022, tables 1 to 3), measured again here, each search beside the print.
 
+use super::chapters;
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::xy::{Guide, Point, Series, XyChart};
-use super::folder::write_text;
+use super::folder::{keep_figure, write_text};
 use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Plan, variant};
@@ -301,7 +301,7 @@ pub fn write(
     let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
     let looks = Looks::new(&ways);
     let mut page = Page::new("revmap: the papers' tables, measured again");
-    overview::begin(&mut page, machine, measured);
+    chapters::begin(&mut page, machine, measured);
     page.chapter("What can be compared");
     COMPARABLE.iter().for_each(|words| page.text(words));
     for (index, table) in TABLES.iter().enumerate() {
@@ -322,9 +322,9 @@ pub fn write(
         }
     }
     page.chapter("All rows");
-    overview::row_table(&mut page, rows, &looks);
-    overview::pictures(&mut page, plan, album);
-    overview::end(&mut page, plan, measured);
+    chapters::row_table(&mut page, rows, &looks);
+    chapters::pictures(&mut page, plan, album);
+    chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
 

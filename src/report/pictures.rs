@@ -2,7 +2,7 @@
 
 use super::folder::{make, write_bytes};
 use super::measure::Seen;
-use super::names;
+use super::names::{self, safe};
 use super::plan::Labels;
 use crate::error::{Error, Result, Stage};
 use crate::frame::{Frame, Heat, Picture, heat_map, ramp, srgb_pixels};
@@ -129,17 +129,10 @@ impl Album {
         picture: &Picture,
         caption: String,
     ) -> Result<()> {
-        let safe: String = name
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "-_@.".contains(c) {
-                    c
-                } else {
-                    '-'
-                }
-            })
-            .collect();
-        write_bytes(&self.folder.join(format!("{safe}.png")), &png(picture)?)?;
+        write_bytes(
+            &self.folder.join(format!("{}.png", safe(name))),
+            &png(picture)?,
+        )?;
         let small = reduced(picture, picture.width.div_ceil(widest).max(1));
         self.shots.push(Shot {
             view,

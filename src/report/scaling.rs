@@ -1,14 +1,14 @@
 //! How time grows: with pixels, with solids, with rows of the map; each with the exponent of a power law.
 
+use super::chapters;
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::xy::{Guide, Point, Series, XyChart};
-use super::folder::write_text;
+use super::folder::{keep_figure, write_text};
 use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
-use super::overview::{self, keep_figure};
 use super::page::Page;
 use super::plan::{Plan, papers_loop, variant};
 use super::row::Row;
@@ -397,7 +397,7 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
     let rows = &measured.rows;
     let looks = looks(rows);
     let mut page = Page::new("revmap: how time grows");
-    overview::begin(&mut page, machine, measured);
+    chapters::begin(&mut page, machine, measured);
     for quantity in Quantity::ALL {
         let all = growth(rows, quantity);
         if all.is_empty() {
@@ -420,8 +420,8 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
     page.chapter("All rows");
     // Here the rows of maps tell rows apart.
     let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
-    overview::row_table(&mut page, rows, &Looks::new(&ways));
-    overview::end(&mut page, plan, measured);
+    chapters::row_table(&mut page, rows, &Looks::new(&ways));
+    chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
 
