@@ -1,9 +1,11 @@
 //! The papers' tables of frame rates (article of 2022, tables 1 to 3), measured again here, each search beside the print.
 
+mod chart;
+mod printed;
+
+pub use printed::{Printed, SIZES, TABLES, Trend};
+
 use super::chapters;
-use super::chart::Figure;
-use super::chart::axis::Axis;
-use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::{keep_figure, write_text};
 use super::looks::Looks;
 use super::machine::Machine;
@@ -15,84 +17,15 @@ use super::plan::{Plan, variant};
 use super::ratios::between;
 use super::row::Row;
 use super::stats::Interval;
-use super::suite::{self, Extent};
+use super::suite;
 use super::text;
 use super::view::View;
-use crate::error::{Error, Result, Stage};
+use crate::error::Result;
 use crate::maps::{BakeOptions, MapSource, ShapeMap};
 use crate::scene::Offset;
 use crate::settings::Settings;
+use chart::{Scaled, chart};
 use std::path::Path;
-
-/// Sizes of the papers' pictures.
-pub const SIZES: [(u32, u32); 2] = [(800, 600), (1366, 706)];
-
-/// One of the papers' tables.
-pub struct Printed {
-    /// Its number in the article.
-    pub number: usize,
-    /// What it varies.
-    pub title: &'static str,
-    /// The letter of the parameter.
-    pub letter: char,
-    /// The parameter's values: `e` and `b` as fractions of the largest distance in the map.
-    pub values: [f64; 3],
-    /// Frames per second as printed, of each of [`SIZES`].
-    pub rates: [[f64; 3]; 2],
-    /// What the article says of speed as the parameter grows.
-    pub claim: Trend,
-}
-
-/// How speed goes as a parameter grows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trend {
-    /// It falls.
-    Falls,
-    /// It rises.
-    Rises,
-    /// Neither, within the interval.
-    Unclear,
-}
-
-impl Trend {
-    /// A word for it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Falls => "falls",
-            Self::Rises => "rises",
-            Self::Unclear => "no clear change",
-        }
-    }
-}
-
-/// The tables as printed. Measured by the authors on an Intel Core i7-3612QM with a GeForce GT 630M.
-pub const TABLES: [Printed; 3] = [
-    Printed {
-        number: 1,
-        title: "extended, e growing",
-        letter: 'e',
-        values: [0.25, 0.5, 0.8],
-        rates: [[180.0, 170.0, 160.0], [150.0, 145.0, 130.0]],
-        claim: Trend::Falls,
-    },
-    Printed {
-        number: 2,
-        title: "beveled, b growing",
-        letter: 'b',
-        values: [0.25, 0.5, 0.8],
-        rates: [[200.0, 210.0, 230.0], [190.0, 195.0, 200.0]],
-        claim: Trend::Rises,
-    },
-    Printed {
-        number: 3,
-        title: "chamfered, c growing, b = 0.8",
-        letter: 'c',
-        values: [0.25, 0.5, 0.7],
-        rates: [[195.0, 209.0, 216.0], [174.0, 176.0, 182.0]],
-        claim: Trend::Rises,
-    },
-];
 
 /// The slope of the bevel in table 3.
 const CHAMFERED_BEVEL: f64 = 0.8;
@@ -102,15 +35,7 @@ const CHAMFERED_BEVEL: f64 = 0.8;
 /// # Errors
 /// Of the solid that the program carries.
 pub fn views() -> Result<Vec<View>> {
-    let base = suite::views(Extent::One, &[25.0])?
-        .into_iter()
-        .next()
-        .ok_or_else(|| {
-            Error::new(
-                Stage::Report,
-                "the program carries no solid; build it with the feature `scene-file`",
-            )
-        })?;
+    let base = suite::one()?;
     let largest = largest_distance(&base)?;
     let mut views = Vec::new();
     for table in &TABLES {
@@ -213,9 +138,11 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
             .map(|v| format!("{} = {}", table.letter, number(*v, 3))),
     );
     header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
+    let all = lines(rows, index);
     let mut records = Vec::new();
     for (size, rates) in SIZES.iter().zip(&table.rates) {
-        if lines(rows, index).iter().all(|l| l.size != *size) {
+        let lines: Vec<_> = all.iter().filter(|l| l.size == *size).collect();
+        if lines.is_empty() {
             continue;
         }
         let mut print = vec![
@@ -229,7 +156,7 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
             table.claim.name().to_owned(),
         ]);
         records.push(print);
-        for line in lines(rows, index).iter().filter(|l| l.size == *size) {
+        for line in lines {
             let mut record = vec![
                 format!("{}x{}", size.0, size.1),
                 looks.way(&line.way),
@@ -261,8 +188,7 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
 /// All three tables as text.
 #[must_use]
 pub fn as_text(rows: &[Row]) -> String {
-    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
-    let looks = Looks::new(&ways);
+    let looks = Looks::of(rows);
     let mut out = String::new();
     for (index, table) in TABLES.iter().enumerate() {
         let (header, records) = records(rows, index, &looks);
@@ -298,8 +224,7 @@ pub fn write(
     album: &Album,
 ) -> Result<()> {
     let rows = &measured.rows;
-    let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
-    let looks = Looks::new(&ways);
+    let looks = Looks::of(rows);
     let mut page = Page::new("revmap: the papers' tables, measured again");
     chapters::begin(&mut page, machine, measured);
     page.chapter("What can be compared");
@@ -326,108 +251,6 @@ pub fn write(
     chapters::pictures(&mut page, plan, album);
     chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
-}
-
-/// How a chart of a table shows rates.
-#[derive(Clone, Copy)]
-enum Scaled {
-    /// As frames per second, beside the print's.
-    Rate,
-    /// Over the first of each line: what can be compared with the print.
-    Trend,
-}
-
-impl Scaled {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Rate => "rates",
-            Self::Trend => "trend",
-        }
-    }
-
-    fn caption(self, letter: char) -> String {
-        match self {
-            Self::Rate => format!(
-                "Frames per second as {letter} grows; each line is a search in one stage, filled for fragment and hollow for compute. The dashed line is the print, a GeForce GT 630M on a solid that it \
-                 does not name: how high it lies against ours says something of that device and that picture, nothing of the searches."
-            ),
-            Self::Trend => format!(
-                "The same rates, each over its own at the smallest {letter}: lines that rise get faster. This is what can be compared with the print, the dashed line."
-            ),
-        }
-    }
-}
-
-/// A table as a chart; `None` where nothing of it was measured at this size.
-fn chart(
-    table: &Printed,
-    index: usize,
-    rows: &[Row],
-    size: (u32, u32),
-    looks: &Looks,
-    scale: Scaled,
-) -> Option<Figure> {
-    let over = |rates: [Option<f64>; 3]| -> Option<Vec<(f64, f64)>> {
-        let unit = match scale {
-            Scaled::Rate => 1.0,
-            Scaled::Trend => rates[0]?,
-        };
-        let points = table.values.iter().zip(rates);
-        Some(
-            points
-                .filter_map(|(x, rate)| Some((*x, rate? / unit)))
-                .collect(),
-        )
-    };
-    let mut series = Vec::new();
-    for line in lines(rows, index).iter().filter(|l| l.size == size) {
-        let rates = line
-            .rows
-            .map(|row| Some(1e3 / row.and_then(|r| r.time())?.value));
-        let Some(points) = over(rates).filter(|p| !p.is_empty()) else {
-            continue;
-        };
-        let point = |(x, y)| Point { x, y, label: None };
-        series.push(Series {
-            name: looks.way(&line.way),
-            style: looks.style(&line.way),
-            points: points.into_iter().map(point).collect(),
-            joined: true,
-        });
-    }
-    let place = SIZES.iter().position(|s| *s == size)?;
-    if series.is_empty() {
-        return None;
-    }
-    let print = over(table.rates[place].map(Some))?;
-    let y = match scale {
-        // The print has to be in sight.
-        Scaled::Rate => table.rates[place]
-            .iter()
-            .fold(Axis::log("frames per second"), |axis, rate| {
-                axis.with(*rate)
-            }),
-        Scaled::Trend => print
-            .iter()
-            .fold(Axis::linear("rate / rate at the first value"), |a, p| {
-                a.with(p.1)
-            }),
-    };
-    let unit = match table.letter {
-        'c' => "share of the depth",
-        _ => "of the largest distance",
-    };
-    let figure = XyChart {
-        title: format!(
-            "Table {}: {}, {}x{}",
-            table.number, table.title, size.0, size.1
-        ),
-        x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
-        y,
-        series,
-        guides: vec![Guide::dashed("print, GeForce GT 630M", print)],
-    };
-    Some(figure.figure())
 }
 
 #[cfg(all(test, feature = "scene-file"))]
@@ -486,12 +309,7 @@ mod tests {
             r.view = view;
             rows.push(r);
         }
-        let looks = Looks::new(
-            &rows
-                .iter()
-                .map(|r| variant(&r.settings))
-                .collect::<Vec<_>>(),
-        );
+        let looks = Looks::of(&rows);
         let (_, records) = records(&rows, 1, &looks);
         // The print stands above what was measured at its size, and nowhere else.
         assert_eq!(records.len(), 2);

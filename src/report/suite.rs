@@ -1,7 +1,7 @@
 //! The solids that are measured when no scene is named: carried within the program, so that it needs no files.
 
 use super::view::View;
-use crate::error::Result;
+use crate::error::{Error, Result, Stage};
 use crate::profile::{Profile, ProfileAxis};
 use crate::scene::{Camera, Object, Scene};
 use glam::DVec3;
@@ -120,6 +120,22 @@ pub fn views(extent: Extent, elevations: &[f64]) -> Result<Vec<View>> {
         }
     }
     Ok(views)
+}
+
+/// The first of the suite, for what is measured on one solid alone.
+///
+/// # Errors
+/// Of reading its profile.
+pub(super) fn one() -> Result<View> {
+    views(Extent::One, &[25.0])?
+        .into_iter()
+        .next()
+        .ok_or_else(|| {
+            Error::new(
+                Stage::Report,
+                "the program carries no solid; build it with the feature `scene-file`",
+            )
+        })
 }
 
 #[cfg(test)]

@@ -1,0 +1,112 @@
+//! A table of frame rates as a chart, the print's line among those measured.
+
+use super::{Printed, SIZES, lines};
+use crate::report::chart::Figure;
+use crate::report::chart::axis::Axis;
+use crate::report::chart::xy::{Guide, Point, Series, XyChart};
+use crate::report::looks::Looks;
+use crate::report::row::Row;
+
+/// How a chart of a table shows rates.
+#[derive(Clone, Copy)]
+pub(super) enum Scaled {
+    /// As frames per second, beside the print's.
+    Rate,
+    /// Over the first of each line: what can be compared with the print.
+    Trend,
+}
+
+impl Scaled {
+    /// Its name in files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Rate => "rates",
+            Self::Trend => "trend",
+        }
+    }
+
+    /// What stands below it.
+    pub(super) fn caption(self, letter: char) -> String {
+        match self {
+            Self::Rate => format!(
+                "Frames per second as {letter} grows; each line is a search in one stage, filled for fragment and hollow for compute. The dashed line is the print, a GeForce GT 630M on a solid that it \
+                 does not name: how high it lies against ours says something of that device and that picture, nothing of the searches."
+            ),
+            Self::Trend => format!(
+                "The same rates, each over its own at the smallest {letter}: lines that rise get faster. This is what can be compared with the print, the dashed line."
+            ),
+        }
+    }
+}
+
+/// A table as a chart; `None` where nothing of it was measured at this size.
+pub(super) fn chart(
+    table: &Printed,
+    index: usize,
+    rows: &[Row],
+    size: (u32, u32),
+    looks: &Looks,
+    scale: Scaled,
+) -> Option<Figure> {
+    let over = |rates: [Option<f64>; 3]| -> Option<Vec<(f64, f64)>> {
+        let unit = match scale {
+            Scaled::Rate => 1.0,
+            Scaled::Trend => rates[0]?,
+        };
+        let points = table.values.iter().zip(rates);
+        Some(
+            points
+                .filter_map(|(x, rate)| Some((*x, rate? / unit)))
+                .collect(),
+        )
+    };
+    let mut series = Vec::new();
+    for line in lines(rows, index).iter().filter(|l| l.size == size) {
+        let rates = line
+            .rows
+            .map(|row| Some(1e3 / row.and_then(|r| r.time())?.value));
+        let Some(points) = over(rates).filter(|p| !p.is_empty()) else {
+            continue;
+        };
+        let point = |(x, y)| Point { x, y, label: None };
+        series.push(Series {
+            name: looks.way(&line.way),
+            style: looks.style(&line.way),
+            points: points.into_iter().map(point).collect(),
+            joined: true,
+        });
+    }
+    let place = SIZES.iter().position(|s| *s == size)?;
+    if series.is_empty() {
+        return None;
+    }
+    let print = over(table.rates[place].map(Some))?;
+    let y = match scale {
+        // The print has to be in sight.
+        Scaled::Rate => table.rates[place]
+            .iter()
+            .fold(Axis::log("frames per second"), |axis, rate| {
+                axis.with(*rate)
+            }),
+        Scaled::Trend => print
+            .iter()
+            .fold(Axis::linear("rate / rate at the first value"), |a, p| {
+                a.with(p.1)
+            }),
+    };
+    let unit = match table.letter {
+        'c' => "share of the depth",
+        _ => "of the largest distance",
+    };
+    let figure = XyChart {
+        title: format!(
+            "Table {}: {}, {}x{}",
+            table.number, table.title, size.0, size.1
+        ),
+        x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
+        y,
+        series,
+        guides: vec![Guide::dashed("print, GeForce GT 630M", print)],
+    };
+    Some(figure.figure())
+}
