@@ -18,11 +18,14 @@
 //! the line midway between their foci. All three are solved in closed form; both curves take the very same point, so that their
 //! parts join exactly. A feature's line and the conics of its own ends never meet but at their joints.
 
+mod curve;
+
 use super::chain::{JOINT, Parts};
 use super::tree::Tree;
 use crate::profile::Segment;
+use curve::{Curve, meet, within};
 use glam::DVec2;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// `w = alpha + beta z` for `low <= z <= high`.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +34,26 @@ pub(super) struct Layer {
     pub beta: f64,
     pub low: f64,
     pub high: f64,
+}
+
+impl Layer {
+    /// The offset `w` at a height.
+    fn offset(&self, z: f64) -> f64 {
+        self.alpha + self.beta * z
+    }
+
+    /// A point brought exactly onto the borders of layer and half-plane, where it lies there.
+    fn snapped(&self, mut p: DVec2) -> DVec2 {
+        for z in [self.low, self.high] {
+            if (p.y - z).abs() < SHORT {
+                p.y = z;
+            }
+        }
+        if p.x < SHORT {
+            p.x = 0.0;
+        }
+        p
+    }
 }
 
 /// A corner of the surface, with the normals before and after it.
@@ -51,20 +74,6 @@ const SAGITTA: f64 = 1e-6;
 const NEARER: f64 = 2e-14;
 /// Parts shorter than this are left out; the joint bridges them.
 const SHORT: f64 = 0.2 * JOINT;
-
-/// A curve on which the contour may run.
-#[derive(Clone, Copy, Debug)]
-enum Curve {
-    /// From `a` to `b`; the parameter runs from 0 to 1.
-    Line { a: DVec2, b: DVec2 },
-    /// `focus + size / (1 - beta sin x) (cos x, sin x)`, `x` the parameter.
-    Conic {
-        focus: DVec2,
-        size: f64,
-        from: f64,
-        to: f64,
-    },
-}
 
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
@@ -120,7 +129,7 @@ impl Trimmer {
         if divisor.abs() < 1e-9 {
             return;
         }
-        let at = |f: DVec2| f + normal * ((layer.alpha + layer.beta * f.y) / divisor);
+        let at = |f: DVec2| f + normal * (layer.offset(f.y) / divisor);
         let (a, b) = if divisor > 0.0 {
             (at(s.a), at(s.b))
         } else {
@@ -139,14 +148,13 @@ impl Trimmer {
 
     fn conic(&mut self, layer: &Layer, corner: &Corner, feature: u32) {
         let focus = corner.point;
-        let size = layer.alpha + layer.beta * focus.y;
+        let size = layer.offset(focus.y);
         let (from, to) = (corner.angle, corner.angle + corner.turn);
         // Where it can begin or end: borders of layer and half-plane, and where the divisor changes its sign.
         let mut ends = vec![from, to];
         let mut cut = |x: f64| ends.extend(within(x, from, to));
         for z in [layer.low, layer.high] {
-            let omega = layer.alpha + layer.beta * z;
-            let sine = (z - focus.y) / omega;
+            let sine = (z - focus.y) / layer.offset(z);
             if sine.abs() <= 1.0 {
                 cut(sine.asin());
                 cut(PI - sine.asin());
@@ -265,7 +273,7 @@ impl Trimmer {
                     continue;
                 }
                 let middle = curve.point(layer.beta, 0.5 * (x0 + x1));
-                let omega = (layer.alpha + layer.beta * middle.y).abs();
+                let omega = layer.offset(middle.y).abs();
                 if tree.any_nearer(middle, omega - NEARER) {
                     continue;
                 }
@@ -282,72 +290,6 @@ impl Trimmer {
             }
         }
     }
-}
-
-impl Curve {
-    fn range(&self) -> [f64; 2] {
-        match *self {
-            Self::Line { .. } => [0.0, 1.0],
-            Self::Conic { from, to, .. } => [from, to],
-        }
-    }
-
-    fn point(&self, beta: f64, x: f64) -> DVec2 {
-        match *self {
-            Self::Line { a, b } => a.lerp(b, x),
-            Self::Conic { focus, size, .. } => {
-                let (sin, cos) = x.sin_cos();
-                focus + DVec2::new(cos, sin) * (size / (1.0 - beta * sin))
-            }
-        }
-    }
-
-    /// Its ends, exactly on the borders of layer and half-plane where they lie there.
-    fn ends(&self, layer: &Layer) -> [DVec2; 2] {
-        match *self {
-            Self::Line { a, b } => [a, b],
-            Self::Conic { from, to, .. } => [from, to].map(|x| {
-                let mut p = self.point(layer.beta, x);
-                for z in [layer.low, layer.high] {
-                    if (p.y - z).abs() < SHORT {
-                        p.y = z;
-                    }
-                }
-                if p.x < SHORT {
-                    p.x = 0.0;
-                }
-                p
-            }),
-        }
-    }
-
-    /// Parameters at which a conic meets the line `normal . q = offset`, each once, not yet brought into its range:
-    /// `A cos x + B sin x = C`.
-    fn meets_line(
-        &self,
-        beta: f64,
-        normal: DVec2,
-        offset: f64,
-    ) -> impl Iterator<Item = f64> + use<> {
-        let mut found = [None, None];
-        if let Self::Conic { focus, size, .. } = *self {
-            let c = offset - normal.dot(focus);
-            let (a, b) = (size * normal.x, size * normal.y + beta * c);
-            let cosine = c / a.hypot(b);
-            if cosine.abs() <= 1.0 {
-                let (middle, half) = (b.atan2(a), cosine.acos());
-                found = [Some(middle - half), Some(middle + half)];
-            }
-        }
-        found.into_iter().flatten()
-    }
-}
-
-/// An angle brought between two others, if one of its turns lies there (to within rounding).
-fn within(x: f64, from: f64, to: f64) -> Option<f64> {
-    let (low, high) = (from.min(to), from.max(to));
-    let turned = x + ((low - 1e-9 - x) / TAU).ceil() * TAU;
-    (turned <= high + 1e-9).then(|| turned.clamp(low, high))
 }
 
 /// The part of a line within a layer and the half-plane; none where it lies in the box's floor or ceiling, or in the upper border of a
@@ -380,94 +322,6 @@ fn clip_line(a: DVec2, b: DVec2, layer: &Layer) -> Option<(DVec2, DVec2)> {
     if from >= to {
         return None;
     }
-    for p in &mut ends {
-        for z in [layer.low, layer.high] {
-            if (p.y - z).abs() < SHORT {
-                p.y = z;
-            }
-        }
-        if p.x < SHORT {
-            p.x = 0.0;
-        }
-    }
+    let ends = ends.map(|p| layer.snapped(p));
     (ends[0].distance_squared(ends[1]) >= SHORT * SHORT).then_some((ends[0], ends[1]))
-}
-
-/// Finds where two curves meet: parameter on the first, on the second, point.
-fn meet(beta: f64, first: &Candidate, second: &Candidate, mut found: impl FnMut(f64, f64, DVec2)) {
-    const END: f64 = 1e-9;
-    match (first.curve, second.curve) {
-        (Curve::Line { a, b }, Curve::Line { a: c, b: d }) => {
-            let (u, v) = (b - a, d - c);
-            let cross = u.perp_dot(v);
-            // Parallel ones do not meet, or all along.
-            if cross.abs() <= 1e-14 * u.length() * v.length() {
-                return;
-            }
-            let x = (c - a).perp_dot(v) / cross;
-            let y = (c - a).perp_dot(u) / cross;
-            let (ex, ey) = (END / u.length(), END / v.length());
-            if x > -ex && x < 1.0 + ex && y > -ey && y < 1.0 + ey {
-                found(x.clamp(0.0, 1.0), y.clamp(0.0, 1.0), a + u * x);
-            }
-        }
-        (Curve::Line { a, b }, conic) => {
-            if first.feature.abs_diff(second.feature) > 1 {
-                line_and_conic(beta, a, b, &conic, found);
-            }
-        }
-        (conic, Curve::Line { a, b }) => {
-            if first.feature.abs_diff(second.feature) > 1 {
-                line_and_conic(beta, a, b, &conic, |x, y, p| found(y, x, p));
-            }
-        }
-        (
-            Curve::Conic { focus: f, size, .. },
-            Curve::Conic {
-                focus: g, from, to, ..
-            },
-        ) => {
-            if first.feature == second.feature || f == g {
-                return;
-            }
-            let [low, high] = first.curve.range();
-            let normal = g - f;
-            let offset = 0.5 * normal.dot(f + g);
-            for x in first.curve.meets_line(beta, normal, offset) {
-                let Some(x) = within(x, low, high) else {
-                    continue;
-                };
-                let p = first.curve.point(beta, x);
-                // The offset there is one: on both the point lies on the same side of the surface.
-                let away = (p - g) * (size / (1.0 - beta * x.sin())).signum();
-                let y = away.y.atan2(away.x);
-                if let Some(y) = within(y, from, to) {
-                    found(x, y, p);
-                }
-            }
-        }
-    }
-}
-
-fn line_and_conic(
-    beta: f64,
-    a: DVec2,
-    b: DVec2,
-    conic: &Curve,
-    mut found: impl FnMut(f64, f64, DVec2),
-) {
-    let along = b - a;
-    let normal = along.perp();
-    let [from, to] = conic.range();
-    let slack = 1e-9 / along.length();
-    for x in conic.meets_line(beta, normal, normal.dot(a)) {
-        let Some(x) = within(x, from, to) else {
-            continue;
-        };
-        let p = conic.point(beta, x);
-        let y = (p - a).dot(along) / along.length_squared();
-        if y > -slack && y < 1.0 + slack {
-            found(y.clamp(0.0, 1.0), x, p);
-        }
-    }
 }

@@ -9,7 +9,10 @@
 //!
 //! All in texels.
 
+mod least_squares;
+
 use glam::DVec2;
+use least_squares::{Parabola, line_through, meeting, parabola};
 
 /// Points along a boundary: closed, or from the axis to the axis (`x = 0`).
 #[derive(Clone, Debug, Default)]
@@ -88,15 +91,6 @@ struct Line {
     first: usize,
     count: usize,
     closed: bool,
-}
-
-/// A parabola at one of its places.
-#[derive(Clone, Copy, Debug)]
-struct Parabola {
-    point: DVec2,
-    way: DVec2,
-    rms: f64,
-    most: f64,
 }
 
 /// A corner, or an end: place in the list, and where it stands.
@@ -338,6 +332,11 @@ impl Line {
         Some((p, way))
     }
 
+    /// The parabola through points `from..=to`, at point `k`.
+    fn parabola(&self, k: usize, from: usize, to: usize) -> Option<Parabola> {
+        parabola(&self.points, &self.place, k, from, to)
+    }
+
     /// Point `k` moved to the parabola of its neighbours between two corners.
     fn rounded(&self, k: usize, low: usize, high: usize, noise: &Noise) -> DVec2 {
         let mut best = self.points[k];
@@ -360,90 +359,4 @@ impl Line {
         }
         best
     }
-
-    /// The parabola in the arc length through points `from..=to`: its point at `k`, residuals' rms and largest.
-    fn parabola(&self, k: usize, from: usize, to: usize) -> Option<Parabola> {
-        let scale = (self.place[to] - self.place[from]).max(1e-9);
-        let at = |j: usize| (self.place[j] - self.place[k]) / scale;
-        // Sums of powers, and of powers times points.
-        let (mut s, mut t) = ([0.0; 5], [DVec2::ZERO; 3]);
-        for j in from..=to {
-            let x = at(j);
-            let p = self.points[j] - self.points[k];
-            let (x2, x3) = (x * x, x * x * x);
-            for (sum, v) in s.iter_mut().zip([1.0, x, x2, x3, x2 * x2]) {
-                *sum += v;
-            }
-            t[0] += p;
-            t[1] += p * x;
-            t[2] += p * x2;
-        }
-        let det = |m: [[f64; 3]; 3]| {
-            m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-                - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-                + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-        };
-        let rows = [[s[0], s[1], s[2]], [s[1], s[2], s[3]], [s[2], s[3], s[4]]];
-        let whole = det(rows);
-        if whole.abs() < 1e-12 {
-            return None;
-        }
-        let solve = |column: usize| {
-            let part = |f: fn(DVec2) -> f64| {
-                let mut m = rows;
-                for (row, v) in m.iter_mut().zip(t) {
-                    row[column] = f(v);
-                }
-                det(m) / whole
-            };
-            DVec2::new(part(|p| p.x), part(|p| p.y))
-        };
-        let c = [solve(0), solve(1), solve(2)];
-        let (mut sum, mut most) = (0.0, 0.0f64);
-        for j in from..=to {
-            let x = at(j);
-            let off = self.points[j] - self.points[k] - (c[0] + c[1] * x + c[2] * (x * x));
-            // Across the curve: along it a point may lie anywhere.
-            let across = (c[1] + c[2] * (2.0 * x)).normalize_or_zero().perp_dot(off);
-            sum += across * across;
-            most = most.max(across.abs());
-        }
-        let rms = (sum / (to - from + 1) as f64).sqrt();
-        Some(Parabola {
-            point: self.points[k] + c[0],
-            way: c[1].normalize_or_zero(),
-            rms,
-            most,
-        })
-    }
-}
-
-/// Where two lines meet, if they are not all but parallel.
-fn meeting([(p, u), (q, v)]: [(DVec2, DVec2); 2]) -> Option<DVec2> {
-    let cross = u.perp_dot(v);
-    (cross.abs() > 0.1).then(|| p + u * ((q - p).perp_dot(v) / cross))
-}
-
-/// The line with the least squares of distances: a point, the direction from first to last, the largest distance.
-fn line_through(points: &[DVec2]) -> Option<(DVec2, DVec2, f64)> {
-    if points.len() < 3 {
-        return None;
-    }
-    let middle = points.iter().sum::<DVec2>() / points.len() as f64;
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for p in points {
-        let q = *p - middle;
-        xx += q.x * q.x;
-        xy += q.x * q.y;
-        yy += q.y * q.y;
-    }
-    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-    let mut way = DVec2::from_angle(angle);
-    if way.dot(points[points.len() - 1] - points[0]) < 0.0 {
-        way = -way;
-    }
-    let most = points
-        .iter()
-        .fold(0.0f64, |m, p| m.max(way.perp_dot(*p - middle).abs()));
-    Some((middle, way, most))
 }
