@@ -1,55 +1,18 @@
 //! Quadric pieces and their tables against the reference in double precision, ray by ray.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "common/shapes.rs"]
+#[path = "common/rays.rs"]
 #[allow(dead_code)]
-mod shapes;
+mod rays;
 
 use glam::{DVec2, DVec3};
+use rays::{Random, count, outline, profiles};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, ROWS, Record, Tables, cut, outline_of,
-    trace_pieces,
-};
-use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
+use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, outline_of, trace_pieces};
+use revmap::profile::{Outline, Profile, Shape};
 use revmap::reference::{Ray, Reference};
 use revmap::scene::{Camera, Object, Offset, Scene};
 use std::sync::Arc;
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-fn profiles() -> Vec<(String, Profile)> {
-    let mut all: Vec<(String, Profile)> = shapes::all()
-        .into_iter()
-        .map(|(name, p)| (name.to_string(), p))
-        .collect();
-    for name in ["bishop", "king", "pawn", "rook"] {
-        let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        all.push((
-            name.into(),
-            Profile::load(file, ProfileAxis::Center).unwrap(),
-        ));
-    }
-    all
-}
-
-fn outline(profile: &Profile) -> &Outline {
-    match &profile.shape {
-        Shape::Outline(outline) => outline,
-        Shape::Raster(_) => panic!("an outline is wanted"),
-    }
-}
 
 #[derive(Default, Debug)]
 struct Tally {
@@ -185,8 +148,7 @@ const OFFSETS: [(f64, f64, f64); 8] = [
 
 #[test]
 fn pieces_meet_the_reference() {
-    let only = std::env::var("ONLY").ok();
-    let count = std::env::var("RAYS").map_or(2_500, |n| n.parse().unwrap());
+    let count = count(2_500);
     let mut failures = Vec::new();
     let (mut wrong, mut hits) = (0, 0);
     for (extend, bevel, chamfer) in OFFSETS {
@@ -197,11 +159,9 @@ fn pieces_meet_the_reference() {
         };
         println!("{offset:?}");
         for (name, profile) in profiles() {
-            if only.as_ref().is_none_or(|o| *o == name) {
-                let [w, h] = check(&name, &profile, offset, count, &mut failures);
-                wrong += w;
-                hits += h;
-            }
+            let [w, h] = check(&name, &profile, offset, count, &mut failures);
+            wrong += w;
+            hits += h;
         }
     }
     println!("{wrong} wrong of {hits}");
@@ -210,210 +170,6 @@ fn pieces_meet_the_reference() {
         "{wrong} wrong of {hits}"
     );
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-/// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no other.
-#[test]
-fn hulls_lose_no_ray() {
-    let only = std::env::var("ONLY").ok();
-    let count: usize = std::env::var("RAYS").map_or(600, |n| n.parse().unwrap());
-    let mut failures = Vec::new();
-    for (extend, bevel, chamfer) in [OFFSETS[0], OFFSETS[1], OFFSETS[6]] {
-        let offset = Offset {
-            extend,
-            bevel,
-            chamfer,
-        };
-        for (name, profile) in profiles() {
-            if only.as_ref().is_some_and(|o| *o != name) {
-                continue;
-            }
-            let source = ContourSource::new(outline(&profile)).unwrap();
-            let pieces = cut(&source.contour(&offset).unwrap(), &CutOptions::default());
-            let tables = Tables::new(&pieces, ROWS);
-            let records: Vec<Record> = pieces
-                .iter()
-                .enumerate()
-                .map(|(k, p)| Record::new(p, k))
-                .collect();
-            for tests in [1, 3] {
-                let hull = Hull::new(
-                    &pieces,
-                    &HullOptions {
-                        tests,
-                        ..HullOptions::default()
-                    },
-                );
-                let (mut random, mut lost, mut hits, mut layers, mut wasted) =
-                    (Random(11), 0, 0, 0, 0);
-                for _ in 0..count {
-                    let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
-                    let (y, x) = (random.next() * 6.3).sin_cos();
-                    let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
-                    let target =
-                        DVec3::new(random.next() - 0.5, random.next() - 0.5, random.next());
-                    let direction = (target - origin).normalize();
-                    // As wide as the solid: the hull knows no side faces.
-                    let truth = trace_pieces(&tables, 2.0, DVec2::ZERO, origin, direction);
-                    let found = hull.trace(&records, origin, direction);
-                    let same = match (truth, found.hit) {
-                        (Some(a), Some((t, _))) => (a.t - f64::from(t)).abs() < 2e-4,
-                        (None, None) => true,
-                        _ => false,
-                    };
-                    lost += usize::from(!same);
-                    hits += usize::from(truth.is_some());
-                    layers += found.nodes * u32::from(truth.is_some());
-                    wasted += found.nodes * u32::from(truth.is_none());
-                }
-                let words = format!(
-                    "{name:8} {:4} pieces {:5} bands {:6} triangles, {tests} tests: {lost} of {hits} lost, {:.2} layers where hit, {:.2} elsewhere",
-                    pieces.len(),
-                    hull.bands.len(),
-                    hull.vertices() / 3,
-                    f64::from(layers) / hits as f64,
-                    f64::from(wasted) / (count - hits) as f64,
-                );
-                println!("{words}");
-                // The two round their rays differently: at silhouettes one of a thousand may part ways.
-                if lost as f64 > 1.0 + 1e-3 * hits as f64 {
-                    failures.push(words);
-                }
-            }
-        }
-    }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-/// Vessels and rings: what an eye may look into.
-fn vessels() -> Vec<(&'static str, Vec<[f64; 2]>, bool)> {
-    vec![
-        // A round flask with a narrow neck.
-        (
-            "flask",
-            vec![
-                [0.0, 0.02],
-                [0.3, 0.05],
-                [0.4, 0.25],
-                [0.3, 0.5],
-                [0.08, 0.7],
-                [0.08, 0.95],
-                [0.06, 0.95],
-                [0.06, 0.68],
-                [0.28, 0.47],
-                [0.37, 0.25],
-                [0.28, 0.08],
-                [0.0, 0.05],
-            ],
-            true,
-        ),
-        // A bowl with a ledge that hangs inwards, and a step.
-        (
-            "ledges",
-            vec![
-                [0.0, 0.0],
-                [0.4, 0.0],
-                [0.4, 0.9],
-                [0.2, 0.9],
-                [0.2, 0.8],
-                [0.35, 0.8],
-                [0.35, 0.5],
-                [0.25, 0.5],
-                [0.25, 0.1],
-                [0.0, 0.1],
-            ],
-            true,
-        ),
-        // Open at both ends, with a waist.
-        (
-            "pipe",
-            vec![
-                [0.35, 0.0],
-                [0.4, 0.0],
-                [0.15, 0.5],
-                [0.4, 1.0],
-                [0.35, 1.0],
-                [0.1, 0.5],
-            ],
-            true,
-        ),
-        // A bell: its hollow opens downwards.
-        (
-            "bell",
-            vec![
-                [0.4, 0.0],
-                [0.42, 0.02],
-                [0.2, 0.9],
-                [0.0, 0.95],
-                [0.0, 0.85],
-                [0.16, 0.8],
-            ],
-            true,
-        ),
-        // Without a hollow there is nothing to hide.
-        ("cone", vec![[0.0, 0.1], [0.4, 0.1], [0.0, 0.9]], false),
-    ]
-}
-
-/// Points of cells that a hull leaves out for an eye: what lies between them and the eye hides every one.
-#[test]
-fn what_a_hull_leaves_out_no_ray_meets() {
-    let mut random = Random(5);
-    let mut profiles: Vec<_> = vessels()
-        .into_iter()
-        .map(|(name, points, hollow)| (name, Profile::polygon(&points, 0.5).unwrap(), hollow))
-        .collect();
-    profiles.push(("torus", shapes::torus(), true));
-    profiles.push(("glass", shapes::glass(), true));
-    for (name, profile, hollow) in profiles {
-        let source = ContourSource::new(outline(&profile)).unwrap();
-        let contour = source.contour(&Offset::default()).unwrap();
-        let pieces = cut(&contour, &CutOptions::default());
-        let tables = Tables::new(&pieces, 64);
-        // Small cells: as many as there can be are within the hollow.
-        let options = HullOptions {
-            tests: 1,
-            ..HullOptions::default()
-        };
-        let hull = Hull::new(&pieces, &options);
-        let (mut left_out, mut rays) = (0, 0);
-        for _ in 0..60 {
-            let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.57).sin_cos();
-            let far = 0.6 + 3.0 * random.next();
-            let eye = DVec3::new(far * cos, 0.0, 0.5 + far * sin);
-            let flat = DVec2::new(eye.x.abs(), eye.z);
-            let seen = hull.seen_from(&[flat]);
-            let number_of = |band: usize| u32::try_from(band).unwrap();
-            for (k, band) in hull.bands.iter().enumerate() {
-                if seen.iter().any(|run| run.contains(&number_of(k))) {
-                    continue;
-                }
-                left_out += 1;
-                let piece = &pieces[band.first as usize];
-                for _ in 0..4 {
-                    let part = random.next();
-                    let z = piece.start.y + part * (piece.end.y - piece.start.y);
-                    let r = if piece.is_plane() {
-                        piece.start.x + part * (piece.end.x - piece.start.x)
-                    } else {
-                        piece.square_at(z).max(0.0).sqrt()
-                    };
-                    let (y, x) = (random.next() * 6.3).sin_cos();
-                    let way = DVec3::new(r * x, r * y, z) - eye;
-                    let met = trace_pieces(&tables, 2.0, DVec2::ZERO, eye, way.normalize());
-                    let t = met.map_or(f64::INFINITY, |hit| hit.t);
-                    assert!(
-                        t < way.length() - 1e-4,
-                        "{name}: from {eye} the point ({r}, {z}) is seen: {t} of {}",
-                        way.length()
-                    );
-                    rays += 1;
-                }
-            }
-        }
-        println!("{name}: {left_out} bands left out, {rays} rays");
-        assert_eq!(left_out > 0, hollow, "{name}");
-    }
 }
 
 /// The papers' loop on the picture: distances to the nearest solid pixel's centre, in 8 bits, 20 steps, a hit below half a texel.
@@ -469,13 +225,9 @@ fn clip(radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
 /// picture has of wrong rays; of depth (p99) half of it with anti-aliasing.
 #[test]
 fn pictures_are_twice_as_good_as_the_papers_loop() {
-    let count = std::env::var("RAYS").map_or(3_000, |n| n.parse().unwrap());
-    let only = std::env::var("ONLY").ok();
+    let count = count(3_000);
     let mut failures = Vec::new();
     for (name, profile) in profiles() {
-        if only.as_ref().is_some_and(|o| *o != name) {
-            continue;
-        }
         let columns = (profile.radius * 512.0).round() as u32;
         let grey = outline(&profile).rasterize(columns, 512);
         let mut binary = grey.clone();
