@@ -14,7 +14,7 @@ use super::row::{CLOCKS_APART, Row};
 use super::text;
 
 /// The beginning of every page: where and how this was measured.
-pub fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
+pub(super) fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
     let facts: Vec<(&str, String)> = machine
         .lines()
         .into_iter()
@@ -29,7 +29,7 @@ pub fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
 }
 
 /// What was left out and how times were taken: the end of every page.
-pub fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
+pub(super) fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
     let out = left_out(plan, measured);
     page.chapter("Left out");
     if out.records.is_empty() {
@@ -75,7 +75,7 @@ pub fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
 }
 
 /// The table of pictures, with the share of each that is solid.
-pub fn picture_table(page: &mut Page, rows: &[Row]) {
+pub(super) fn picture_table(page: &mut Page, rows: &[Row]) {
     page.chapter("What was drawn");
     page.text(
         "Each picture, with the share of its pixels in which the reference hits a solid. Where that is small, what a frame costs anyhow (clearing, storing, ending it) \
@@ -85,7 +85,7 @@ pub fn picture_table(page: &mut Page, rows: &[Row]) {
 }
 
 /// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for paper.
-pub fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
+pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
     let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
     let named = |r: &Row| {
         let s = &r.settings;
@@ -177,7 +177,7 @@ const ERRORS: [&str; 12] = [
 ];
 
 /// The pictures' chapter.
-pub fn pictures(page: &mut Page, plan: &Plan, album: &Album) {
+pub(super) fn pictures(page: &mut Page, plan: &Plan, album: &Album) {
     if album.shots.is_empty() {
         return;
     }

@@ -95,8 +95,7 @@ pub fn parts(rows: &[Row]) -> Vec<Part> {
 }
 
 /// Rows put together by the picture they show.
-#[must_use]
-pub fn pictures_of<'a>(rows: &[&'a Row]) -> Vec<Vec<&'a Row>> {
+pub(super) fn pictures_of<'a>(rows: &[&'a Row]) -> Vec<Vec<&'a Row>> {
     let mut groups: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
         let key = |r: &Row| (r.view, r.settings.width, r.settings.height);

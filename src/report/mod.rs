@@ -4,7 +4,7 @@
 //! to be so. See [`measure`](measure::measure) for how times are taken, [`stats`] for what their intervals mean.
 
 pub mod against;
-pub mod chapters;
+mod chapters;
 pub mod chart;
 pub mod covered;
 pub mod csv;

@@ -57,8 +57,7 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// A name that may be part of a file's name.
-#[must_use]
-pub fn safe(name: &str) -> String {
+pub(super) fn safe(name: &str) -> String {
     name.chars()
         .map(|c| {
             if c.is_alphanumeric() || "-_@.".contains(c) {

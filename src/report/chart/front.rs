@@ -31,8 +31,7 @@ pub fn front(points: &[(f64, f64)], gain: f64) -> Vec<usize> {
 pub const WORTH: f64 = 0.95;
 
 /// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
-#[must_use]
-pub fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub(crate) fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for (i, p) in points.iter().enumerate() {
         if i > 0 {
