@@ -32,6 +32,9 @@ pub enum Solver {
     Live,
     /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r <= f(z)`); others are an error.
     Cone,
+    /// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings back: as the papers list it. It passes
+    /// surfaces.
+    Relaxed,
     /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
     /// The same pieces, found by what the stage does best: in the fragment stage the rasteriser finds them in shells of triangles, in compute
@@ -48,12 +51,13 @@ pub enum Solver {
 
 impl Solver {
     /// Every search, in the order in which reports list them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Linear,
         Self::Relief,
         Self::Secant,
         Self::Circle,
         Self::Cone,
+        Self::Relaxed,
         Self::Live,
         Self::Quadric,
         Self::Hull,
@@ -107,6 +111,7 @@ impl Solver {
             Self::Secant => "secant",
             Self::Circle => "circle",
             Self::Cone => "cone",
+            Self::Relaxed => "relaxed",
             Self::Live => "live",
             Self::Quadric => "quadric",
             Self::Hull => "hull",
@@ -114,12 +119,18 @@ impl Solver {
         }
     }
 
+    /// Whether its tables are rows of cones, which not every solid has.
+    #[must_use]
+    pub const fn is_of_cones(self) -> bool {
+        matches!(self, Self::Cone | Self::Relaxed)
+    }
+
     /// Whether it reads the shape map. The others search tables made from the boundary itself.
     #[must_use]
     pub const fn reads_map(self) -> bool {
         !matches!(
             self,
-            Self::Cone | Self::Quadric | Self::Hull | Self::Mesh { .. }
+            Self::Cone | Self::Relaxed | Self::Quadric | Self::Hull | Self::Mesh { .. }
         )
     }
 
@@ -127,15 +138,15 @@ impl Solver {
     /// number, and pieces are solved without any.
     #[must_use]
     pub const fn may_run_out(self) -> bool {
-        matches!(self, Self::Circle | Self::Live)
+        matches!(self, Self::Circle | Self::Relaxed | Self::Live)
     }
 
-    /// The bound on steps where none is given: 64 equal ones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
+    /// The bound on steps where none is given: 64 equal ones, or relaxed cones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
     /// than any ray of a sound map takes. `cone`, `quadric`, `hull` and meshes have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
-            Self::Linear | Self::Relief | Self::Secant => 64,
+            Self::Linear | Self::Relief | Self::Secant | Self::Relaxed => 64,
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,

@@ -5,7 +5,7 @@
 #include "search_linear.glsl"
 #include "search_live.glsl"
 #include "search_quadric.glsl"
-#include "search_cone.glsl"
+#include "search_relaxed.glsl"
 
 struct Hit {
     float t;
@@ -17,7 +17,8 @@ struct Hit {
 };
 
 // Searches of tables made from the boundary itself; the others read the map.
-const bool TABLES = SOLVER == SOLVER_QUADRIC || SOLVER == SOLVER_CONE;
+const bool CONES = SOLVER == SOLVER_CONE || SOLVER == SOLVER_RELAXED;
+const bool TABLES = SOLVER == SOLVER_QUADRIC || CONES;
 
 // `pixel` is the width of a pixel in t: what the search need not tell apart.
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
@@ -80,7 +81,7 @@ bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
         // Floor and ceiling are pieces. Through the sides one enters the solid only where it reaches past them.
         float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
         bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
-        if (SOLVER == SOLVER_CONE) {
+        if (CONES) {
             within = starts_within_cones(m);
         } else {
             within = (m.from_eye || open_side) && starts_within(m);
@@ -104,7 +105,9 @@ bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
     uint end;
     if (SOLVER == SOLVER_QUADRIC) {
         end = search_quadric(m, side, s, hit.steps, quadric);
-    } else if (SOLVER == SOLVER_CONE) {
+    } else if (SOLVER == SOLVER_RELAXED && side > 0.0) {
+        end = search_relaxed(m, s, hit.steps, quadric);
+    } else if (CONES) { // of which none is in the solid: from there rows alone
         end = search_cone(m, side, s, hit.steps, quadric);
     } else {
         end = search(m, side, max(side * f, 0.0), frame.dir_00.w * m.t_start, s, hit.steps);

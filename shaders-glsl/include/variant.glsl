@@ -30,6 +30,7 @@ const uint SOLVER_RELIEF = 4u; // equal steps, then halvings
 const uint SOLVER_SECANT = 5u; // equal steps, then secants
 
 const uint SOLVER_CONE = 6u; // empty cones on each row, for solids that are single-valued in z
+const uint SOLVER_RELAXED = 7u; // the same, relaxed, and halvings
 const uint SOLVER_MESH = 15u; // triangles: nothing is searched
 
 const uint FORMAT_RGBA8 = 0u; // the papers' texture, unsigned distance

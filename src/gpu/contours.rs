@@ -4,7 +4,7 @@ use crate::error::{Error, Result, Stage};
 use crate::pieces::{Contour, ContourSource, CutOptions, outline_of};
 use crate::profile::{Profile, Shape};
 use crate::scene::{Object, Offset, Scene};
-use crate::settings::{Settings, Solver};
+use crate::settings::Settings;
 use std::sync::Arc;
 
 /// Those of a scene, each profile's once.
@@ -34,8 +34,8 @@ impl Contours {
         for (number, object) in scene.objects.iter().enumerate() {
             if contours.get(object).is_err() {
                 let new = ProfileContour::new(object);
-                if let (Err(error), Solver::Cone | Solver::Mesh { .. }) =
-                    (&new.source, settings.solver)
+                if let Err(error) = &new.source
+                    && (settings.solver.is_of_cones() || settings.solver.is_mesh())
                 {
                     return Err(named(error.clone(), number, object));
                 }

@@ -38,8 +38,15 @@ impl Cut {
         Ok(Self::new(Made::Pieces(pieces), extent))
     }
 
-    fn cones_of(contour: &ProfileContour, offset: &Offset, rows: u32) -> Result<Self> {
-        let cones = Cones::new(&contour.contour(offset)?, rows)?;
+    fn cones_of(
+        contour: &ProfileContour,
+        offset: &Offset,
+        rows: u32,
+        relaxed: bool,
+    ) -> Result<Self> {
+        let contour = contour.contour(offset)?;
+        let make = if relaxed { Cones::relaxed } else { Cones::new };
+        let cones = make(&contour, rows)?;
         Ok(Self::new(Made::Cones(cones), [0.0; 3]))
     }
 
@@ -126,7 +133,7 @@ impl Cuts {
         self.cut(key, || Cut::pieces_of(contour, offset))
     }
 
-    /// A row of so many cones around a contour under an offset.
+    /// A row of so many cones around a contour under an offset; of one renderer all are relaxed or none.
     ///
     /// # Errors
     /// Where it does not close, or is not single-valued.
@@ -135,9 +142,10 @@ impl Cuts {
         contour: &ProfileContour,
         offset: &Offset,
         rows: u32,
+        relaxed: bool,
     ) -> Result<Arc<Cut>> {
         let key = Key::new(contour, offset, rows);
-        self.cut(key, || Cut::cones_of(contour, offset, rows))
+        self.cut(key, || Cut::cones_of(contour, offset, rows, relaxed))
     }
 
     /// An envelope, which must live as long as this, grown by so much. No contour is cut for it, and none counted.
@@ -209,7 +217,7 @@ mod tests {
         assert!(std::ptr::eq(first.shell(), second.shell()));
         let other = cuts.pieces(contour, &offset(0.01)).unwrap();
         assert!(!Arc::ptr_eq(&first, &other));
-        assert!(cuts.cones(contour, &offset(0.0), 64).is_ok());
+        assert!(cuts.cones(contour, &offset(0.0), 64, false).is_ok());
         assert_eq!(cuts.done(), 3);
 
         let place = |cut| {

@@ -54,9 +54,10 @@ impl Searches {
     ) -> Result<()> {
         for (number, object) in scene.objects.iter().enumerate() {
             let contour = contours.get(object)?;
-            if self.asked == Solver::Cone {
+            if self.asked.is_of_cones() {
                 let rows = settings.map_rows.unwrap_or(object.map_rows);
-                let cones = kept.cones(contour, &object.offset, rows);
+                let relaxed = self.asked == Solver::Relaxed;
+                let cones = kept.cones(contour, &object.offset, rows, relaxed);
                 self.cuts
                     .push(Some(cones.map_err(|e| named(e, number, object))?));
                 continue;

@@ -45,6 +45,19 @@ impl Cones {
     /// [`Stage::Profile`](crate::error::Stage::Profile) where going outwards from the axis one leaves the solid more than once, or starts outside of it, at two
     /// neighbouring borders of rows.
     pub fn new(contour: &Contour, rows: u32) -> Result<Self> {
+        Self::with(contour, rows, slopes)
+    }
+
+    /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of the half-plane that comes in from the largest
+    /// radius leaves the solid, where it has entered it, no sooner than the cone.
+    ///
+    /// # Errors
+    /// As [`Cones::new`].
+    pub fn relaxed(contour: &Contour, rows: u32) -> Result<Self> {
+        Self::with(contour, rows, relaxed_slopes)
+    }
+
+    fn with(contour: &Contour, rows: u32, slopes: fn(&[DVec2]) -> Vec<f64>) -> Result<Self> {
         let surface = Surface::new(contour, rows.max(1) as usize)?;
         let up = slopes(&surface.points);
         let turned: Vec<DVec2> = surface
@@ -101,6 +114,28 @@ fn slopes(points: &[DVec2]) -> Vec<f64> {
         hull.push(i);
     }
     all
+}
+
+/// From each point of a surface the steepest way to one farther up where a ray can come out that has entered in between: one steeper there than
+/// the surface, from the largest radius over the point; 0 where all lead down.
+fn relaxed_slopes(points: &[DVec2]) -> Vec<f64> {
+    let top = points.iter().fold(0.0, |m: f64, p| m.max(p.x));
+    let of = |(i, from): (usize, &DVec2)| {
+        let mut steepest = 0.0f64;
+        for side in points[i..].windows(2) {
+            let along = side[1] - side[0];
+            for end in side {
+                let way = *end - *from;
+                // The ray from (top, from.y) falls less than the side does.
+                let comes_out = (end.x - top) * along.y > along.x * way.y;
+                if way.y > 0.0 && comes_out {
+                    steepest = steepest.max(way.x / way.y);
+                }
+            }
+        }
+        steepest
+    };
+    points.iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]

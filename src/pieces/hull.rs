@@ -144,7 +144,7 @@ impl Hull {
         let widen = DVec2::new(1.0 / (std::f64::consts::PI / f64::from(sides)).cos(), 1.0);
         let mut hull = Self {
             sides,
-            sight: Sight::new(&[], &[0..0]),
+            sight: Sight::new(&[], std::slice::from_ref(&(0..0))),
             ..Self::default()
         };
         let lines: Vec<_> = points

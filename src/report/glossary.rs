@@ -19,6 +19,9 @@ pub fn meaning(solver: Solver) -> &'static str {
         Solver::Cone => {
             "steps by a row of cones along the axis; for solids single-valued in height"
         }
+        Solver::Relaxed => {
+            "the same with relaxed cones, which a step may leave inside the solid, and halvings back"
+        }
         Solver::Live => {
             "conservative steps through the map, safe under every offset, ending in a secant; for parameters that change from frame to frame"
         }

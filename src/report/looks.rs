@@ -7,7 +7,7 @@ use super::row::Row;
 use crate::maps::MapSource;
 use crate::settings::{DrawStage, Settings, Solver};
 
-/// How a search looks in the fragment stage. The default stands out; equal steps, which nobody should choose, have the dark reds.
+/// How a search looks in the fragment stage. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
 fn search(solver: Solver) -> Style {
     let (color, marker, dash) = match solver {
         Solver::Linear => (color::RED, Marker::Left, Dash::Dots),
@@ -15,6 +15,7 @@ fn search(solver: Solver) -> Style {
         Solver::Secant => (color::WINE, Marker::Star, Dash::DashDot),
         Solver::Circle => (color::GREY, Marker::Plus, Dash::Dots),
         Solver::Cone => (color::TAN, Marker::Cross, Dash::Short),
+        Solver::Relaxed => (color::TAN, Marker::Hexagram, Dash::Dots),
         Solver::Live => (color::NAVY, Marker::Up, Dash::DashDot),
         Solver::Quadric => (color::VIOLET, Marker::Down, Dash::Long),
         Solver::Hull => (color::ORANGE, Marker::Disk, Dash::Solid),
@@ -172,13 +173,19 @@ mod tests {
     }
 
     #[test]
-    fn no_two_searches_share_a_colour_or_a_marker() {
+    fn no_two_searches_share_a_marker_and_none_but_cones_a_colour() {
         let ways = all();
         let searches = &ways[..=Solver::ALL.len()];
         for (i, a) in searches.iter().enumerate() {
             for b in &searches[..i] {
+                // As many colours as there are searches cannot be told apart by all eyes.
+                let cones = a.solver.is_of_cones() && b.solver.is_of_cones();
                 let (a, b) = (style(a), style(b));
-                assert!(a.color != b.color && a.marker != b.marker, "{a:?} {b:?}");
+                assert_eq!(a.color == b.color, cones, "{a:?} {b:?}");
+                assert!(
+                    a.marker != b.marker && (!cones || a.dash != b.dash),
+                    "{a:?} {b:?}"
+                );
             }
             assert!(color::ALL.contains(&style(a).color));
             assert_eq!(style(a).heavy, a.solver == Solver::DEFAULT);

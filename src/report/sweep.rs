@@ -178,7 +178,7 @@ pub fn has_budget(solver: Solver) -> bool {
 /// Whether a search has a table of as many rows as a map has, made from the boundary itself: these rows are its budget.
 #[must_use]
 pub fn has_rows(solver: Solver) -> bool {
-    solver == Solver::Cone
+    solver.is_of_cones()
 }
 
 /// Maps are swept with the papers' search and with `live`, the most exact of those that read them, or with what is named in place of both: the

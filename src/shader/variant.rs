@@ -60,6 +60,7 @@ impl Variant {
             solver: match settings.solver {
                 Solver::Circle => g::SOLVER_CIRCLE,
                 Solver::Cone => g::SOLVER_CONE,
+                Solver::Relaxed => g::SOLVER_RELAXED,
                 Solver::Live => g::SOLVER_LIVE,
                 Solver::Quadric | Solver::Hull => g::SOLVER_QUADRIC,
                 Solver::Linear => g::SOLVER_LINEAR,

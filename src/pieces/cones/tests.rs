@@ -143,6 +143,41 @@ fn assert_empty(cones: &Cones) -> std::result::Result<(), TestCaseError> {
 }
 
 proptest! {
+    /// A straight ray from the largest radius that has gone into the surface comes out of it again only beyond the cone.
+    #[test]
+    fn straight_rays_from_the_top_leave_relaxed_cones_inside(radii in proptest::collection::vec(0.0f64..0.45, 3..20)) {
+        let at = |k: usize| DVec2::new(radii[k], k as f64 / radii.len() as f64);
+        let points: Vec<DVec2> = (0..radii.len()).map(at).collect();
+        let top = radii.iter().fold(0.0, |m: f64, r| m.max(*r));
+        let height = |z: f64| {
+            let place = (z * radii.len() as f64).min(radii.len() as f64 - 1.0);
+            let k = (place as usize).min(radii.len() - 2);
+            radii[k] + (radii[k + 1] - radii[k]) * (place - k as f64)
+        };
+        for (i, slope) in relaxed_slopes(&points).into_iter().enumerate() {
+            for steep in 0..40 {
+                let fall = 0.05 * f64::from(steep * steep);
+                let mut within = false;
+                for step in 1..2000 {
+                    let z = points[i].y + 5e-4 * f64::from(step);
+                    if z > points[points.len() - 1].y { break; }
+                    let ray = top - fall * (z - points[i].y);
+                    if ray < points[i].x + slope * (z - points[i].y) - 1e-9 { break; }
+                    let now = ray < height(z) - 1e-9;
+                    prop_assert!(now || !within, "from {i}, fall {fall}, out at {z}");
+                    within = now;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn relaxed_cones_are_no_narrower(radii in proptest::collection::vec(0.0f64..0.45, 3..20)) {
+        let points: Vec<DVec2> = radii.iter().enumerate().map(|(k, &r)| DVec2::new(r, k as f64)).collect();
+        let pairs = relaxed_slopes(&points).into_iter().zip(slopes(&points));
+        prop_assert!(pairs.clone().all(|(relaxed, safe)| relaxed <= safe), "{:?}", pairs.collect::<Vec<_>>());
+    }
+
     #[test]
     fn cones_hold_nothing_of_the_solid(radii in proptest::collection::vec(0.02f64..0.45, 2..30), rows in 3u32..70, level in 0usize..40) {
         let steps = (radii.len() - 1) as f64;

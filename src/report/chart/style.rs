@@ -61,11 +61,13 @@ pub enum Marker {
     Left,
     /// A triangle that points to the right.
     Right,
+    /// A star of six points.
+    Hexagram,
 }
 
 impl Marker {
     /// All shapes.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Disk,
         Self::Square,
         Self::Up,
@@ -76,6 +78,7 @@ impl Marker {
         Self::Star,
         Self::Left,
         Self::Right,
+        Self::Hexagram,
     ];
 
     /// Its corners about `(x, y)`, of about the area of a square of side `size`.
@@ -98,6 +101,7 @@ impl Marker {
             Self::Plus => ring(8, 0.0, 1.6, 0.45),
             Self::Down => ring(3, 0.5, 1.5, 1.0),
             Self::Cross => ring(8, 0.125, 1.6, 0.45),
+            Self::Hexagram => ring(12, 0.0, 1.5, 0.577),
             Self::Star => ring(10, 0.0, 1.5, 0.45),
             Self::Left => ring(3, 0.75, 1.5, 1.0),
             Self::Right => ring(3, 0.25, 1.5, 1.0),
