@@ -159,9 +159,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::view::tests::spindle;
     use super::*;
-    use crate::reference;
     use crate::scene::CameraFrame;
-    use crate::settings::Settings;
 
     /// How far the boxes reach past the middle of the picture, as parts of half its width and height: the most, and the mean of both sides.
     fn reach(view: &View) -> [(f64, f64); 2] {
@@ -238,6 +236,8 @@ mod tests {
     #[cfg(all(feature = "drawing", feature = "scene-file"))]
     fn close_up_most_pixels_hit() {
         use super::super::suite::{Extent, views};
+        use crate::reference;
+        use crate::settings::Settings;
         for (width, height) in [(80, 60), (136, 70)] {
             let settings = Settings {
                 width,
