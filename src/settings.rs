@@ -27,7 +27,7 @@ pub enum Solver {
     Secant,
     /// The papers' circle tracing: steps of the distance read from the map.
     Circle,
-    /// Ours for parameters that change from frame to frame: conservative steps under every offset, a last secant, no fixed count
+    /// Ours for parameters that change from frame to frame: steps that are safe to a texel under every offset, a last secant, no fixed count
     /// of steps; on the map alone.
     Live,
     /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r <= f(z)`); others are an error.

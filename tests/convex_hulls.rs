@@ -7,7 +7,7 @@ mod common;
 use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::frame::Frame;
+use revmap::frame::{CompareOptions, Frame, compare};
 use revmap::gpu::Way;
 use revmap::maps::MapFormat;
 use revmap::profile::Profile;
@@ -49,6 +49,9 @@ fn assert_same(name: &str, scene: &Scene, ways: Ways) {
             differ as f64 <= TOLERATED * hits as f64 + 2.0,
             "{name}, {stage:?}: {differ} of {hits} pixels differ"
         );
+        let compared = compare(&boxes, &frame, &CompareOptions::default()).unwrap();
+        let normal = compared.normal.unwrap();
+        assert!(normal.p99 < 0.5, "{name}, {stage:?}: normals {normal:?}");
     }
 }
 
@@ -116,6 +119,18 @@ fn all_that_the_box_draws() {
         lit.shadow = shadow;
         all.push((name, lit, WRAPPED));
     }
+    // Grown through the box's ceiling, which is seen at two degrees.
+    let drum = Profile::polygon(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]], 0.5).unwrap();
+    let mut ceiling = scene_of(drum, eye(15.0, 2.2));
+    ceiling.objects[0].offset.extend = 0.15;
+    all.push(("cut by the ceiling", ceiling.clone(), WRAPPED));
+    ceiling.camera.eye.z = 1.08;
+    all.push(("along the ceiling", ceiling, WRAPPED));
+    // What grows into the box from outside is in no texel.
+    let points = [[0.0, -0.5], [0.4, -0.5], [0.4, -0.05], [0.0, -0.05]];
+    let mut below = scene_of(Profile::polygon(&points, 0.5).unwrap(), eye(25.0, 2.2));
+    below.objects[0].offset.extend = 0.15;
+    all.push(("from below its box", below, BOXED));
     let mut replicas = scene_of(shapes::vase(), eye(25.0, 2.4));
     replicas.objects[0].repeat = [2, 2, 2];
     all.push(("replicas", replicas, BOXED));

@@ -3,7 +3,7 @@
 //   (rounded up, high half) in units of solid.pieces.w; then the runs of the rows, first << RUN_BITS | count;
 // - records, two vectors each, from solid.pieces.y on: a piece's quadric, its guard;
 // - from solid.pieces.z on, a vector a record: the range of z.
-// Bands of hulls stand by themselves (hull.vert).
+// Of the envelope of a map BEAM_NODES nodes alone. Bands of hulls stand by themselves (bands.glsl).
 #ifndef PIECE_TABLES_GLSL
 #define PIECE_TABLES_GLSL
 #include "blocks.glsl"

@@ -1,10 +1,10 @@
 // The search for live parameters: on the map alone, nothing rebuilt when e, b or c move.
 //
-// Steps never pass the surface (proof in docs/searches.md). In the half-plane the ray moves away from a sample by at most
+// Steps that are safe (proof in docs/searches.md): in the half-plane the ray moves away from a sample by at most
 // sigma x + kappa x^2 / 2 after x units of s, and w, being concave along the ray, stays below its tangent; so as long as both
-// together do not use up F, nothing is met. Where the last two samples say that the surface is less than a texel beyond, the step goes
-// there at once. Near the surface a least step brackets it, and the secant through the bracket is the hit: a ray that only comes near is
-// no hit, however near.
+// together do not use up F, nothing is met. Where the secant of the last two samples shows the surface farther on, a step goes on towards it by
+// a texel at most: what it may pass is a chord of a texel. Near the surface a least step brackets it, and the secant through the
+// bracket is the hit: a ray that only comes near is no hit, however near.
 #ifndef SEARCH_LIVE_GLSL
 #define SEARCH_LIVE_GLSL
 #include "surface.glsl"
@@ -59,7 +59,8 @@ uint search_live(Meridian m, float side, float f, float t_pixel, inout float s, 
     float f_before = f + 1.0;
     for (uint i = 1u; i < MAX_STEPS && (i == 1u || (f > 0.0 && s < m.s_end)); ++i) {
         float safe = safe_step(m, way, side, s, rz, f);
-        // A little beyond where the secant meets the surface, so that the next step does not end before it again.
+        // A little beyond where the secant meets the surface, so that the next step does not end before it again; of a ray that goes along
+        // the surface the secant says nothing, and a texel is as good.
         float beyond = f * (s - before) / (f_before - f) + least;
         beyond = min(beyond, safe + texel);
         float stride = beyond > safe ? beyond : safe;

@@ -62,7 +62,7 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
     s = t;
     beside_row(m, s, cone, radius);
     // Deeper within than a halving explains: through a level face.
-    bool face = radius.x - sqrt(square_at(m, s)) > 2.0 * (t - before) / m.inverse_speed + 1e-6;
+    bool face = radius.x - sqrt(max(square_at(m, s), 0.0)) > 2.0 * (t - before) / m.inverse_speed + 1e-6;
     hit_quadric = face ? vec4(0.0, 0.0, up ? -1.0 : 1.0, 0.0) : vec4(1.0, 0.0, -2.0 * radius.y * max(radius.x, 1e-6), 0.0);
     return FOUND;
 }

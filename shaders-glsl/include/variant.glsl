@@ -21,7 +21,7 @@ layout(constant_id = 14) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn
 layout(constant_id = 15) const uint TESTS = 8u;     // pieces of the hull's largest cell, at most HULL_TESTS
 
 const uint SOLVER_CIRCLE = 0u; // the papers' loop
-const uint SOLVER_LIVE = 1u;   // conservative steps and a last secant, on the map alone
+const uint SOLVER_LIVE = 1u;   // steps that are safe to a texel and a last secant, on the map alone
 
 const uint SOLVER_QUADRIC = 2u; // exact pieces of quadrics, rebuilt when parameters change
 

@@ -111,7 +111,7 @@ pub(crate) struct MapFacts {
     pub scale: f32,
     pub bounds: Bounds,
     pub arc_length: f64,
-    /// Of a map that is there.
+    /// Of a map that is there, and holds the whole solid.
     pub envelope: Option<Arc<Envelope>>,
 }
 
@@ -260,8 +260,8 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> (f64, f64) {
     let mut low = f64::INFINITY;
     let mut high: f64 = 0.0;
     for object in &scene.objects {
-        // Corners of hulls stand out a little.
-        let radius = 1.04 * object.profile.radius + 0.002;
+        // Corners of hulls stand out a little, those of convex ones by some texels more.
+        let radius = 1.04 * object.profile.radius + 0.02;
         let half = DVec3::new(radius, radius, 0.502);
         for p in object.placements() {
             let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));

@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 /// One contour or envelope under one offset, and what is made of it when first wanted.
 pub(crate) struct Cut {
     made: Made,
-    /// Largest radius, least and largest `z`; of cones and envelopes not asked for.
+    /// Largest radius, least and largest `z`; of pieces alone.
     extent: [f64; 3],
     tables: OnceLock<Packed>,
     shell: OnceLock<Shell>,
@@ -230,9 +230,19 @@ mod tests {
         assert!(place(&first).same(&place(&second)));
         assert!(!place(&first).same(&place(&other)));
 
+        let envelope = Arc::new(Envelope {
+            radii: vec![0.2; 64],
+        });
+        let grown = cuts.grown(&envelope, 0.01);
+        assert!(Arc::ptr_eq(&grown, &cuts.grown(&envelope, 0.01)));
+        assert!(!Arc::ptr_eq(&grown, &cuts.grown(&envelope, 0.02)));
+        assert_eq!((cuts.done(), cuts.grown.len()), (3, 2), "none is counted");
+
         cuts.forget_unused();
         cuts.pieces(contour, &offset(0.01)).unwrap();
+        cuts.grown(&envelope, 0.02);
         cuts.forget_unused();
+        assert_eq!(cuts.grown.len(), 1);
         assert_eq!((cuts.done(), cuts.kept.len()), (3, 1));
         cuts.pieces(contour, &offset(0.0)).unwrap();
         assert_eq!(cuts.done(), 4);

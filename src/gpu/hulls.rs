@@ -86,7 +86,7 @@ pub(crate) struct View<'a> {
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
 const SAMPLES: usize = 64;
 
-/// The hull of `object` whose boundary was cut, if it shows from this camera all that the box would (the eye is outside all shells,
+/// The hull of `object`, around its boundary or the envelope of its map, if it shows from this camera all that the box would (the eye is outside all shells,
 /// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
 pub(crate) fn of<'a>(object: &Object, cut: &'a Cut, view: &View) -> Option<Wrapped<'a>> {
     if !is_whole(object, cut) {

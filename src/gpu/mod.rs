@@ -11,6 +11,7 @@ mod buffers;
 mod call;
 mod clock;
 mod commands;
+mod compute_work;
 mod contours;
 mod cuts;
 mod descriptors;

@@ -21,7 +21,7 @@ struct Part {
 pub(crate) enum Of {
     /// What searches walk.
     Tables,
-    /// What `hull.vert` grows.
+    /// What `hull.vert` and `convex_hull.vert` grow.
     Bands,
 }
 

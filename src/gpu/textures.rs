@@ -317,7 +317,7 @@ fn shape_map(
         scale: encoded.scale,
         bounds: map.bounds,
         arc_length: 1.0,
-        envelope: Some(Arc::new(Envelope::of(&map))),
+        envelope: Envelope::of(&map).map(Arc::new),
     };
     Ok((facts, image))
 }

@@ -3,7 +3,7 @@
 use super::batch::{
     MapFacts, check_format, frame_block, instance_block, largest_width, solid_block,
 };
-use super::bins::{Bins, Rectangle, rectangle};
+use super::bins::Bins;
 use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock};
 use super::buffers::write;
 use super::cuts::Cut;
@@ -13,19 +13,19 @@ use super::parts::{Of, Parts};
 use super::pipelines::Kind;
 use super::renderer::Renderer;
 use super::searches::Searches;
-use super::work::{Batch, MOST_BEAMED, Tiles, Work};
+use super::work::{Batch, Work};
 use crate::error::{Error, Result, Stage};
 use crate::maps::MapFormat;
 use crate::maps::envelope::SLACK;
 use crate::scene::{CameraFrame, Object, Placement, Scene, Shadow};
 use crate::settings::{DrawStage, Settings, Solver};
 use crate::shader::Variant;
-use crate::shader::generated::{GROUP_PIXELS, MAX_SHADOW_BATCHES, PIECE_VECTORS};
+use crate::shader::generated::{MAX_SHADOW_BATCHES, PIECE_VECTORS};
 use std::sync::Arc;
 
 /// What an update needs and can find out without changing anything that is drawn.
-struct Plan {
-    camera: CameraFrame,
+pub(super) struct Plan {
+    pub(super) camera: CameraFrame,
     frame: FrameBlock,
     searches: Searches,
     /// One an object, where meshes are drawn.
@@ -33,25 +33,17 @@ struct Plan {
 }
 
 /// What the batches put into buffers that they share.
-struct Lists {
-    bins: Bins,
+pub(super) struct Lists {
+    pub(super) bins: Bins,
     /// Words of the lists that beams fill, behind those of the bins.
-    tiles: usize,
+    pub(super) tiles: usize,
     /// Blocks of copies, behind those of the objects.
-    blocks: u32,
+    pub(super) blocks: u32,
     pieces: Parts,
     /// Of the hull that has most.
     bands: usize,
     shadows: ShadowBlock,
 }
-
-/// Words of the list of a rectangle's tiles: the dispatch, and four a tile.
-fn words_of(rectangle: Rectangle) -> usize {
-    4 + 4 * rectangle.padded() as usize
-}
-
-/// Tiles that each of several copies should cover for a list of its own to pay.
-const LEAST_TILES: u64 = 64;
 
 impl Renderer {
     /// Takes over camera, lights, placements and parameters of `scene`, whose objects must be those the renderer was made with.
@@ -294,99 +286,12 @@ impl Renderer {
             // A map of 8 bits bounds nothing.
             Solver::Live if settings.map_format != MapFormat::Rgba8 => {
                 let by = largest_width(&object.offset).max(0.0) + SLACK / f64::from(facts.rows);
+                // As much as halves of floats are rounded by.
+                let by = by * (1.0 + 1.0 / 1024.0);
                 Some(self.cuts.grown(facts.envelope.as_ref()?, by))
             }
             _ => None,
         }
-    }
-
-    /// How the compute stage draws object `number`; `at` of beams counts from the last bin's words on.
-    fn compute_work(
-        &mut self,
-        number: usize,
-        object: &Object,
-        wrapped: Option<&Arc<Cut>>,
-        plan: &Plan,
-        lists: &mut Lists,
-    ) -> Result<Work> {
-        let size = (self.settings.width, self.settings.height);
-        let radius = object.profile.radius;
-        let placements = object.placements();
-        if let Some(cut) = wrapped
-            && placements.len() <= MOST_BEAMED
-            && hulls::takes_beams(object, cut, &plan.camera)
-        {
-            let shown: Vec<(usize, Rectangle)> = placements
-                .iter()
-                .enumerate()
-                .filter_map(|(n, copy)| {
-                    let seen = rectangle(&plan.camera, size, GROUP_PIXELS, radius, copy)?;
-                    Some((n, seen))
-                })
-                .collect();
-            if shown.is_empty() {
-                return Ok(Work::Nothing);
-            }
-            // A tile listed is a work group.
-            let most = self.device.limits.max_compute_work_group_count[0];
-            // All lists stand in one buffer, of which a quarter is for them: bins need the rest.
-            let words: u64 = shown.iter().map(|(_, r)| words_of(*r) as u64).sum();
-            let room = u64::from(self.device.limits.max_storage_buffer_range) / 16;
-            let fits =
-                lists.tiles as u64 + words <= room && shown.iter().all(|(_, r)| r.padded() <= most);
-            let squares: u64 = shown.iter().map(|(_, r)| r.squares()).sum();
-            let pays = placements.len() == 1 || squares >= LEAST_TILES * shown.len() as u64;
-            if fits && pays {
-                return self.beams(number, placements.len(), &shown, lists);
-            }
-        }
-        Ok(match placements {
-            [one] => match rectangle(&plan.camera, size, GROUP_PIXELS, radius, one) {
-                Some(rectangle) => Work::Rectangle(rectangle),
-                None => Work::Nothing,
-            },
-            _ => {
-                let first = self.batches[number].instances.start;
-                let bins = lists
-                    .bins
-                    .add(&plan.camera, size, radius, first, placements);
-                if bins.is_empty() {
-                    Work::Nothing
-                } else {
-                    Work::Bins(bins)
-                }
-            }
-        })
-    }
-
-    /// Lists of tiles for the copies of object `number` that show.
-    fn beams(
-        &mut self,
-        number: usize,
-        copies: usize,
-        shown: &[(usize, Rectangle)],
-        lists: &mut Lists,
-    ) -> Result<Work> {
-        let mut tiles = Vec::with_capacity(shown.len());
-        for &(instance, rectangle) in shown {
-            let at = lists.tiles as u32;
-            lists.tiles += words_of(rectangle);
-            let mut block = number as u32;
-            if copies > 1 {
-                block = lists.blocks;
-                lists.blocks += 1;
-            }
-            tiles.push(Tiles {
-                rectangle,
-                at,
-                block_offset: block * self.buffers.stride,
-                instance,
-            });
-        }
-        Ok(Work::Beams {
-            list: self.pipelines.beam()?,
-            copies: tiles,
-        })
     }
 
     /// The hull of an object, where it is drawn by it.

@@ -1,9 +1,9 @@
 //! How far from its axis a map's solid reaches, at every height: where rays need not be looked at.
 //!
-//! What a search on the map can meet lies where the bilinear `d` is at most `w`. A point there has a corner of its texel cell within
-//! `sqrt(2)` texels at which `d <= w + sqrt(1/2) h` (outermost cells are extrapolated by half a texel), so, distances being measured between
-//! centres of texels or better, a texel with `d <= h` within `w` and three texels more. [`Envelope::grown`] by `w` and
-//! [`SLACK`] texels therefore holds all of it.
+//! What a search on the map can meet lies where the `d` that it reads is at most `w`. What it reads changes by no more than 1.85 texels within half a texel
+//! beyond the outermost centres, where cells are extrapolated, and by less elsewhere; the nearest point of the solid is less than a texel's diagonal from
+//! a centre at which `d <= h`; and a cell's corner is as near to any of its points. So all of it is nearer than `w` and 3.3 texels to such a centre, and in
+//! [`Envelope::grown`] by `w` and [`SLACK`] texels. That holds of solids within the map; others have no envelope.
 
 use super::ShapeMap;
 use glam::DVec2;
@@ -17,6 +17,10 @@ pub(crate) const SLACK: f64 = 4.0;
 /// Ways in which supporting lines of the convex hull look, as parts of a right angle from the plane `z = const` upwards; downwards too.
 const WAYS: [f64; 3] = [0.25, 0.5, 0.75];
 
+/// By how much the convex hull's level faces stand off, object units: those of a solid that its box cuts lie in the box's own, and the rasteriser must
+/// not be the one to decide where these are.
+const OFF: f64 = 1e-3;
+
 /// The largest radius of the solid in each of [`BANDS`] bands, object units; 0 where it has none.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Envelope {
@@ -24,8 +28,13 @@ pub(crate) struct Envelope {
 }
 
 impl Envelope {
-    /// Of the texels within one texel of the solid, their centres.
-    pub fn of(map: &ShapeMap) -> Self {
+    /// Of the texels within one texel of the solid, their centres. None of a solid that lies partly outside of the map: what of it an offset
+    /// lets in stands in no texel.
+    pub fn of(map: &ShapeMap) -> Option<Self> {
+        let bounds = &map.bounds;
+        if bounds.z_min < 0.0 || bounds.z_max > 1.0 || bounds.r_max > map.reach() {
+            return None;
+        }
         let mut radii = vec![0.0f64; BANDS];
         let h = map.texel();
         let columns = map.columns as usize;
@@ -37,12 +46,11 @@ impl Envelope {
                 radii[band] = radii[band].max((i as f64 + 0.5) * h);
             }
         }
-        Self { radii }
+        Some(Self { radii })
     }
 
-    /// With all that is nearer than `by` to it.
+    /// With all that is nearer than `by` (at least 0) to it.
     pub fn grown(&self, by: f64) -> Self {
-        let by = by.max(0.0);
         let bands = (by * BANDS as f64).ceil() as usize;
         let of = |k: usize| {
             let near = &self.radii[k.saturating_sub(bands)..(k + bands + 1).min(BANDS)];
@@ -68,7 +76,7 @@ impl Envelope {
             .flat_map(|k| [edge(k), edge(k + 1)].map(|z| DVec2::new(self.radii[k], z)))
             .collect();
         let most = points.iter().fold(0.0, |m: f64, p| m.max(p.x));
-        let (low, high) = (edge(first), edge(last + 1));
+        let (low, high) = (edge(first) - OFF, edge(last + 1) + OFF);
         let mut polygon = vec![
             DVec2::new(0.0, low),
             DVec2::new(most, low),
@@ -135,7 +143,7 @@ mod tests {
             let profile = Profile::polygon(&points, 0.5).unwrap();
             // A thin shape may miss every texel of a coarse map: an error of its own.
             let Ok(map) = ShapeMap::bake(&profile, &BakeOptions::new(source, rows)) else { return Ok(()) };
-            let grown = Envelope::of(&map).grown(w + SLACK * map.texel());
+            let grown = Envelope::of(&map).unwrap().grown(w.max(0.0) + SLACK * map.texel());
             let hull = grown.convex();
             for a in 0..120 {
                 for b in 0..=240 {
@@ -153,7 +161,7 @@ mod tests {
     #[test]
     fn a_cones_hull_lies_close_to_it() {
         let map = map(&[[0.0, 0.0], [0.4, 0.0], [0.0, 0.8]], 512, MapSource::Exact);
-        let hull = Envelope::of(&map).grown(0.0).convex();
+        let hull = Envelope::of(&map).unwrap().grown(0.0).convex();
         let area: f64 = hull
             .iter()
             .zip(hull.iter().cycle().skip(1))
@@ -161,6 +169,19 @@ mod tests {
             .sum();
         assert!((0.16..0.2).contains(&area), "{area}: the cone's is 0.16");
         assert_eq!((hull[0].x, hull[hull.len() - 1].x), (0.0, 0.0));
+        assert!(hull[0].y < 0.0, "{hull:?}");
+    }
+
+    /// Its upper part would grow into the map.
+    #[test]
+    fn a_solid_outside_of_the_map_has_no_envelope() {
+        for points in [
+            [[0.0, -0.5], [0.4, -0.5], [0.0, -0.05]],
+            [[0.0, 0.5], [0.4, 0.5], [0.0, 1.05]],
+        ] {
+            let map = map(&points, 64, MapSource::Exact);
+            assert_eq!(Envelope::of(&map), None);
+        }
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl Cones {
     }
 
     /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of the half-plane that comes in from the largest
-    /// radius leaves the solid, where it has entered it, no sooner than the cone.
+    /// radius leaves the solid, where it has entered it, no sooner than the cone. Takes time as the square of `rows`.
     ///
     /// # Errors
     /// As [`Cones::new`].

@@ -23,7 +23,7 @@ pub fn meaning(solver: Solver) -> &'static str {
             "the same with relaxed cones, which a step may leave inside the solid, and halvings back"
         }
         Solver::Live => {
-            "conservative steps through the map, safe under every offset, ending in a secant; for parameters that change from frame to frame"
+            "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame"
         }
         Solver::Quadric => {
             "no map: the outline as pieces of quadrics, solved exactly, found by a tree"
