@@ -2,7 +2,7 @@
 //!
 //! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is the exact distance to the
 //! profile's outline; along a ray `F` changes at most by a known factor, so steps can be proven not to pass a surface.
-//! A profile that is an image stands for the [`mod@contour`] of its coverage at one half.
+//! A profile that is an image stands for the [`fn@contour`] of its coverage at one half.
 //!
 //! | | [`Reference`] | [`Analytic`] |
 //! |---|---|---|
