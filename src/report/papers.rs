@@ -140,22 +140,23 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
     header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
     let all = lines(rows, index);
     let mut records = Vec::new();
-    for (size, rates) in SIZES.iter().zip(&table.rates) {
-        let lines: Vec<_> = all.iter().filter(|l| l.size == *size).collect();
-        if lines.is_empty() {
-            continue;
+    // At sizes of the reader's own there is no print, and the rest stands alone.
+    for lines in all.chunk_by(|a, b| a.size == b.size) {
+        let size = lines[0].size;
+        let printed = SIZES.iter().position(|printed| *printed == size);
+        if let Some(rates) = printed.map(|k| table.rates[k]) {
+            let mut print = vec![
+                format!("{}x{}", size.0, size.1),
+                "print, GT 630M".into(),
+                "fragment".into(),
+            ];
+            print.extend(rates.iter().map(|r| number(*r, 4)));
+            print.extend([
+                number(rates[2] / rates[0], 3),
+                table.claim.name().to_owned(),
+            ]);
+            records.push(print);
         }
-        let mut print = vec![
-            format!("{}x{}", size.0, size.1),
-            "print, GT 630M".into(),
-            "fragment".into(),
-        ];
-        print.extend(rates.iter().map(|r| number(*r, 4)));
-        print.extend([
-            number(rates[2] / rates[0], 3),
-            table.claim.name().to_owned(),
-        ]);
-        records.push(print);
         for line in lines {
             let mut record = vec![
                 format!("{}x{}", size.0, size.1),
@@ -309,10 +310,18 @@ mod tests {
             r.view = view;
             rows.push(r);
         }
+        for (view, ms) in [(3, 4.0), (4, 4.0), (5, 4.0)] {
+            let mut r = row(&[&[(None, ms)], &[(None, ms)]]);
+            r.view = view;
+            (r.settings.width, r.settings.height) = (1000, 600);
+            rows.push(r);
+        }
         let looks = Looks::of(&rows);
         let (_, records) = records(&rows, 1, &looks);
         // The print stands above what was measured at its size, and nowhere else.
-        assert_eq!(records.len(), 2);
+        assert_eq!(records.len(), 3);
+        assert_eq!(records[2][..3], ["1000x600", "circle", "fragment"]);
+        assert_eq!(records[2][3..6], ["250", "250", "250"]);
         assert_eq!(records[0][3..], ["200", "210", "230", "1.15", "rises"]);
         assert_eq!(records[1][3..7], ["100", "125", "200", "2 (2 to 2)"]);
     }
