@@ -31,12 +31,13 @@ impl Envelope {
     /// Of the texels within one texel of the solid, their centres. None of a solid that lies partly outside of the map: what of it an offset
     /// lets in stands in no texel.
     pub fn of(map: &ShapeMap) -> Option<Self> {
-        let bounds = &map.bounds;
-        if bounds.z_min < 0.0 || bounds.z_max > 1.0 || bounds.r_max > map.reach() {
+        let (bounds, h) = (&map.bounds, map.texel());
+        // Half a texel of roundings is within the slack.
+        let [low, high, widest] = [-0.5 * h, 1.0 + 0.5 * h, map.reach() + 0.5 * h];
+        if bounds.z_min < low || bounds.z_max > high || bounds.r_max > widest {
             return None;
         }
         let mut radii = vec![0.0f64; BANDS];
-        let h = map.texel();
         let columns = map.columns as usize;
         for (j, row) in map.distance.chunks_exact(columns).enumerate() {
             let outermost = row.iter().rposition(|&d| f64::from(d) <= h);
