@@ -29,6 +29,9 @@ fn settings(stage: DrawStage, hull_from: u32) -> Settings {
 /// texel. Measured on lavapipe 22.3.6, over all views of this file: 2 pixels (`REVMAP_MEASURE=1` prints each view's).
 const TOLERATED: f64 = 0.0002;
 
+/// Angle between normals, degrees, 99th percentile. Measured: 0.04 at most, on the glass that is thinned.
+const NORMALS: f64 = 0.1;
+
 /// How many pixels two frames differ in, of how many that are hit.
 fn differing(boxes: &Frame, frame: &Frame) -> (usize, usize) {
     let (hits, edge, far) = apart(boxes, frame);
@@ -42,16 +45,19 @@ fn assert_same(name: &str, scene: &Scene, ways: Ways) {
         let frame = draw_by(name, scene, &settings(stage, 0), ways);
         let (differ, hits) = differing(&boxes, &frame);
         assert!(hits > 500, "{name}: only {hits} pixels are hit");
+        let compared = compare(&boxes, &frame, &CompareOptions::default()).unwrap();
+        let normal = compared.normal.unwrap();
         if std::env::var_os("REVMAP_MEASURE").is_some() {
-            println!("{name}, {stage:?}: {differ} of {hits}");
+            println!("{name}, {stage:?}: {differ} of {hits}, normals {normal:?}");
         }
         assert!(
             differ as f64 <= TOLERATED * hits as f64 + 2.0,
             "{name}, {stage:?}: {differ} of {hits} pixels differ"
         );
-        let compared = compare(&boxes, &frame, &CompareOptions::default()).unwrap();
-        let normal = compared.normal.unwrap();
-        assert!(normal.p99 < 0.5, "{name}, {stage:?}: normals {normal:?}");
+        assert!(
+            normal.p99 < NORMALS,
+            "{name}, {stage:?}: normals {normal:?}"
+        );
     }
 }
 
@@ -119,7 +125,7 @@ fn all_that_the_box_draws() {
         lit.shadow = shadow;
         all.push((name, lit, WRAPPED));
     }
-    // Grown through the box's ceiling, which is seen at two degrees.
+    // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the hull's margin, too.
     let drum = Profile::polygon(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]], 0.5).unwrap();
     let mut ceiling = scene_of(drum, eye(15.0, 2.2));
     ceiling.objects[0].offset.extend = 0.15;
