@@ -193,27 +193,3 @@ fn what_is_not_single_valued_is_refused() {
         );
     }
 }
-
-#[cfg(feature = "cli")]
-#[test]
-fn the_program_refuses_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let picture = folder.path().join("goblet.png");
-    let run = |scene: &str| {
-        std::process::Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args(["render", scene, "--size", "80x60", "--solver", "cone", "-o"])
-            .arg(&picture)
-            .output()
-            .unwrap()
-    };
-    let output = run("assets/scenes/goblet.toml");
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(
-        said.lines().count() == 1 && said.contains("object.0.profile"),
-        "{said}"
-    );
-    assert!(!picture.exists());
-    let output = run("assets/scenes/sphere.toml");
-    assert!(output.status.success(), "{output:?}");
-}

@@ -1,4 +1,4 @@
-//! Rays that run out of steps are counted, in both stages alike, and the program says so.
+//! Rays that run out of steps are counted, in both stages alike.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -59,37 +59,4 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
         assert_eq!(count(solver, 3, Planes::All).0, 0, "{solver:?}");
     }
     assert_eq!(count(Solver::Live, 3, Planes::Color).0, 0);
-}
-
-#[cfg(feature = "cli")]
-#[test]
-fn the_program_warns_of_them() {
-    let folder = tempfile::tempdir().unwrap();
-    let picture = folder.path().join("pawn.png");
-    let said = |options: &[&str]| {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args([
-                "render",
-                "assets/scenes/pawn.toml",
-                "--size",
-                "160x120",
-                "-o",
-            ])
-            .arg(&picture)
-            .args(options)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{options:?}");
-        String::from_utf8(output.stderr).unwrap()
-    };
-    let few = ["--solver", "live", "--max-steps", "3"];
-    assert!(said(&few).contains("pixels ran out of steps"));
-    assert_eq!(said(&[&few[..], &["--quiet"]].concat()), "");
-    let enough = said(&["--solver", "live"]);
-    assert!(!enough.contains("out of steps"), "{enough}");
-    let told = said(&["--solver", "live", "--verbose"]);
-    assert!(told.contains("no pixel ran out of steps"), "{told}");
-    // The default has none to run out of.
-    let default = said(&["--verbose"]);
-    assert!(!default.contains("out of steps"), "{default}");
 }

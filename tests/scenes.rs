@@ -1,6 +1,5 @@
 //! The scenes that come with the program: each reads, is drawn inside its frame, and its pieces stand on their board.
 
-#![cfg(feature = "cli")]
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use glam::{DVec2, DVec3};

@@ -1,6 +1,4 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On a real device, small and brief.
-#![cfg(all(feature = "cli", unix))]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use revmap::report::csv::Table;
 use revmap::report::row::COLUMNS;
@@ -8,7 +6,10 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/sphere.toml");
+const SCENE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../assets/scenes/sphere.toml"
+);
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_revmap"));

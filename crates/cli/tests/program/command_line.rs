@@ -1,13 +1,6 @@
 //! What a command line asks for: made under the names that it gives, or refused by exit code and one line, before any file is written.
 
-#![cfg(feature = "cli")]
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-#[path = "common/program.rs"]
-#[allow(dead_code)]
-mod program;
-
-use program::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, lines};
 use std::path::Path;
 
 #[test]

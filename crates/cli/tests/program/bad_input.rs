@@ -1,13 +1,6 @@
 //! Whatever is wrong with the files that the program is given: the exit code, one line that says where, and no output file.
 
-#![cfg(feature = "cli")]
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-#[path = "common/program.rs"]
-#[allow(dead_code)]
-mod program;
-
-use program::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, lines};
 
 /// The reference, which needs no Vulkan: what is wrong here is wrong before any device is looked for.
 const RENDER: &str = "render scene.toml -o out.png --stage reference --size 16x12";

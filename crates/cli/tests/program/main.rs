@@ -1,0 +1,9 @@
+//! The program as it is run: command lines, files, exit codes, what it prints.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod bad_input;
+#[cfg(unix)]
+mod bench_command;
+mod command_line;
+mod pictures;
+mod run;

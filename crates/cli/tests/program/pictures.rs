@@ -1,0 +1,121 @@
+//! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns of and says.
+
+use revmap::maps::DisplacementMap;
+use std::path::PathBuf;
+use std::process::Command;
+
+fn asset(name: &str) -> String {
+    let assets = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    assets.join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_search_that_does_not_apply_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("goblet.png");
+    let run = |scene: &str| {
+        Command::new(env!("CARGO_BIN_EXE_revmap"))
+            .args([
+                "render",
+                &asset(scene),
+                "--size",
+                "80x60",
+                "--solver",
+                "cone",
+                "-o",
+            ])
+            .arg(&picture)
+            .output()
+            .unwrap()
+    };
+    let output = run("scenes/goblet.toml");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.lines().count() == 1 && said.contains("object.0.profile"),
+        "{said}"
+    );
+    assert!(!picture.exists());
+    let output = run("scenes/sphere.toml");
+    assert!(output.status.success(), "{output:?}");
+}
+
+#[test]
+fn rays_out_of_steps_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("pawn.png");
+    let said = |options: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
+            .args([
+                "render",
+                &asset("scenes/pawn.toml"),
+                "--size",
+                "160x120",
+                "-o",
+            ])
+            .arg(&picture)
+            .args(options)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{options:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let few = ["--solver", "live", "--max-steps", "3"];
+    assert!(said(&few).contains("pixels ran out of steps"));
+    assert_eq!(said(&[&few[..], &["--quiet"]].concat()), "");
+    let enough = said(&["--solver", "live"]);
+    assert!(!enough.contains("out of steps"), "{enough}");
+    let told = said(&["--solver", "live", "--verbose"]);
+    assert!(told.contains("no pixel ran out of steps"), "{told}");
+    // The default has none to run out of.
+    let default = said(&["--verbose"]);
+    assert!(!default.contains("out of steps"), "{default}");
+}
+
+/// `bake` writes a displacement map that is the height map's; `render --verbose` says what maps take.
+#[test]
+fn maps_are_written_and_weighed() {
+    let folder = tempfile::tempdir().unwrap();
+    let revmap = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        said
+    };
+    let (bottle, brick) = (asset("profiles/bottle.png"), asset("heights/brick.png"));
+    revmap(&["bake", &bottle, "-o", "bottle.png", "--height-map", &brick]);
+    let baked = DisplacementMap::from_image(folder.path().join("bottle.displacement.png")).unwrap();
+    let own = DisplacementMap::from_image(&brick).unwrap();
+    assert_eq!(baked.size(), own.size());
+    let values = |m: &DisplacementMap| m.levels[0].texels.concat();
+    let (a, b) = (values(&baked), values(&own));
+    let largest = b.iter().fold(0.0f32, |m, v| m.max(v.abs()));
+    assert!(
+        a.iter()
+            .zip(&b)
+            .all(|(a, b)| (a - b).abs() <= largest / 65_000.0)
+    );
+
+    let scene = asset("gallery/bumps.toml");
+    let said = revmap(&[
+        "render",
+        &scene,
+        "-o",
+        "bumps.png",
+        "--size",
+        "64x20",
+        "--solver",
+        "live",
+        "--verbose",
+    ]);
+    let line = said.lines().find(|l| l.contains("shape maps")).unwrap();
+    let numbers: Vec<f64> = line.split(' ').filter_map(|w| w.parse().ok()).collect();
+    assert!(
+        matches!(numbers[..], [shapes, covers] if shapes > 0.1 && shapes <= 10.0 && covers > 1.0 && covers <= 4.0),
+        "{line}"
+    );
+}
