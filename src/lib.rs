@@ -59,8 +59,7 @@
 //! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
 //! | [`mod@reference`] | the truth: the first hit of every ray, in double precision, on the CPU |
 //! | [`gpu`] | device, renderer, timestamps |
-//! | [`frame`] | the planes of a picture, PNG and EXR, and how two pictures differ |
-//! | `report` | benchmarks, charts and tables (feature `report`) |
+//! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
 //! Without its default features the crate needs no C++ compiler, reads no files and has no program: what an engine embeds.
 
@@ -72,8 +71,6 @@ pub mod mesh;
 pub mod pieces;
 pub mod profile;
 pub mod reference;
-#[cfg(feature = "report")]
-pub mod report;
 pub mod scene;
 pub mod settings;
 pub mod shader;

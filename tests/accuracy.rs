@@ -5,9 +5,9 @@ mod common;
 
 use common::{assert_sound, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
-use revmap::frame::{CompareOptions, compare};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_lab::compare::{CompareOptions, compare};
 
 fn precise() -> Settings {
     Settings {

@@ -4,10 +4,10 @@
 mod common;
 
 use common::{draw, eye, reference, scene_of};
-use revmap::frame::{CompareOptions, compare};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::profile::{Profile, ProfileAxis, Shape};
 use revmap::settings::{Settings, Solver};
+use revmap_lab::compare::{CompareOptions, compare};
 
 const ROWS: u32 = 512;
 

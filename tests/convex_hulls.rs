@@ -7,12 +7,13 @@ mod common;
 use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::frame::{CompareOptions, Frame, compare};
+use revmap::frame::Frame;
 use revmap::gpu::Way;
 use revmap::maps::MapFormat;
 use revmap::profile::Profile;
 use revmap::scene::{Offset, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_lab::compare::{CompareOptions, compare};
 
 fn settings(stage: DrawStage, hull_from: u32) -> Settings {
     Settings {

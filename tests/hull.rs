@@ -7,11 +7,11 @@ mod common;
 use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{device, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::frame::{CompareOptions, compare};
 use revmap::gpu::{Renderer, Way};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_lab::compare::{CompareOptions, compare};
 use std::sync::Arc;
 
 fn settings(solver: Solver, stage: DrawStage) -> Settings {

@@ -7,12 +7,13 @@ mod common;
 use common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::error::Stage;
-use revmap::frame::{CompareOptions, Comparison, Frame, compare};
+use revmap::frame::Frame;
 use revmap::gpu::Renderer;
 use revmap::maps::{ColorMap, DisplacementMap, Projection};
 use revmap::profile::Profile;
 use revmap::scene::{BumpForm, Object, Offset, Scene, Shadow, Texturing};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_lab::compare::{CompareOptions, Comparison, compare};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,25 +1,13 @@
-//! What was drawn, pixel by pixel: the planes of a frame, written as PNG and EXR, and compared.
+//! What was drawn, pixel by pixel: the planes of a frame, written as PNG and EXR.
 
 pub mod beside;
-mod compare;
-mod flip;
-mod heat;
 #[cfg(feature = "exr")]
 mod openexr;
 mod png;
-mod silhouette;
 
-pub use compare::{CompareOptions, Comparison, Reference, Spread, compare};
-pub use flip::flip_map;
-#[cfg(feature = "report")]
-pub(crate) use heat::ramp;
-pub use heat::{Heat, Picture, heat_map, heat_sheet};
 #[cfg(feature = "exr")]
 pub use openexr::{read_exr, write_exr};
-#[cfg(feature = "report")]
-pub(crate) use png::encode as srgb_pixels;
-pub use png::{srgb_from_linear, write_png};
-pub use silhouette::silhouette_hausdorff;
+pub use png::{Picture, srgb_from_linear, write_png};
 
 use crate::error::{Error, Result, Stage};
 

@@ -12,26 +12,50 @@ use std::path::Path;
 /// # Errors
 /// [`Stage::Frame`], naming the file, when it cannot be written.
 pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
-    write_rgba(
-        path.as_ref(),
-        frame.width,
-        frame.height,
-        encode(frame).as_flattened(),
-    )
+    Picture::of(frame).write_png(path)
 }
 
-/// A frame's colour as 8-bit sRGB RGBA.
-pub(crate) fn encode(frame: &Frame) -> Vec<[u8; 4]> {
-    let codes = Codes::new();
-    let encoded = frame
-        .color
-        .iter()
-        .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)]);
-    encoded.collect()
+/// A picture for eyes: sRGB with alpha, 8 bits each, row 0 on top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width * height` values.
+    pub rgba: Vec<[u8; 4]>,
+}
+
+impl Picture {
+    /// The colour of a frame. Values are clamped to `[0, 1]`; alpha is linear.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Self {
+        let codes = Codes::new();
+        Self {
+            width: frame.width,
+            height: frame.height,
+            rgba: (frame.color.iter())
+                .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)])
+                .collect(),
+        }
+    }
+
+    /// Writes a PNG.
+    ///
+    /// # Errors
+    /// [`Stage::Frame`], naming the file, when it cannot be written.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_rgba(
+            path.as_ref(),
+            self.width,
+            self.height,
+            self.rgba.as_flattened(),
+        )
+    }
 }
 
 /// Writes `width * height` RGBA bytes, row 0 on top.
-pub(super) fn write_rgba(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<()> {
+fn write_rgba(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<()> {
     write_beside(Stage::Frame, path, |writer| {
         PngEncoder::new(writer)
             .write_image(bytes, width, height, ExtendedColorType::Rgba8)

@@ -7,14 +7,14 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
-use revmap::report::machine::Machine;
-use revmap::report::measure::{Limits, Measured, Seen, Watch, measure};
-use revmap::report::pictures::Album;
-use revmap::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
-use revmap::report::scaling::Ranges;
-use revmap::report::suite::Extent;
-use revmap::report::{DeviceBench, against, folder, overview, papers, scaling, text};
 use revmap::settings::{Settings, Solver};
+use revmap_lab::report::machine::Machine;
+use revmap_lab::report::measure::{Limits, Measured, Seen, Watch, measure};
+use revmap_lab::report::pictures::Album;
+use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
+use revmap_lab::report::scaling::Ranges;
+use revmap_lab::report::suite::Extent;
+use revmap_lab::report::{DeviceBench, against, folder, overview, papers, scaling, text};
 use std::path::{Path, PathBuf};
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures

@@ -6,12 +6,12 @@ use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::Result;
-use revmap::report::measure::{Limits, Seen};
-use revmap::report::plan::{Axes, Plan, is_papers_loop};
-use revmap::report::suite::Extent;
-use revmap::report::sweep::Sweep;
-use revmap::report::{curves, folder, map_error, text};
 use revmap::settings::Settings;
+use revmap_lab::report::measure::{Limits, Seen};
+use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
+use revmap_lab::report::suite::Extent;
+use revmap_lab::report::sweep::Sweep;
+use revmap_lab::report::{curves, folder, map_error, text};
 use std::path::PathBuf;
 
 /// Charts speed against accuracy: every search over its budget and its maps

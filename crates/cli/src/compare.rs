@@ -3,7 +3,8 @@
 use super::output;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
-use revmap::frame::{self, CompareOptions};
+use revmap::frame;
+use revmap_lab::compare::{CompareOptions, compare, heat_sheet};
 use std::path::PathBuf;
 
 /// Compares two frames: wrong pixels, errors of depth and normals, silhouettes, FLIP
@@ -41,9 +42,9 @@ impl Compare {
         let (a, b) = (frame::read_exr(&self.a)?, frame::read_exr(&self.b)?);
         let mut options = CompareOptions::default();
         options.texel = self.texel.unwrap_or(options.texel);
-        let outcome = frame::compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;
+        let outcome = compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;
         if let Some(heat) = &self.heat {
-            frame::heat_sheet(&a, &b, &options)?.write_png(heat)?;
+            heat_sheet(&a, &b, &options)?.write_png(heat)?;
         }
         for line in outcome.to_string().lines() {
             output::result(line);

@@ -4,13 +4,13 @@ use super::options::{FORMATS, SOURCES, STAGES, SolverParser, name_of, named, siz
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::report::framing::Framing;
-use revmap::report::measure::Limits;
-use revmap::report::plan::Axes;
-use revmap::report::suite::{self, Extent};
-use revmap::report::view::View;
 use revmap::scene::file;
 use revmap::settings::{DrawStage, Solver};
+use revmap_lab::report::framing::Framing;
+use revmap_lab::report::measure::Limits;
+use revmap_lab::report::plan::Axes;
+use revmap_lab::report::suite::{self, Extent};
+use revmap_lab::report::view::View;
 use std::path::PathBuf;
 
 /// Names of parts of the suite.

@@ -1,0 +1,112 @@
+//! CPU time of frames, summed over all of a software driver's threads: `cargo run --release --example cpu_time -- [--close] [--stage fragment|compute] [--view NAME ...] [SOLVER ...]`
+//!
+//! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
+//! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
+//! the papers' loop. Linux alone: it reads `/proc/self/task`.
+
+use revmap::gpu::{Device, Renderer};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_lab::report::plan::{papers_loop, plain};
+use revmap_lab::report::suite::{Extent, views};
+use std::time::Instant;
+
+const ROUNDS: usize = 8;
+/// As many frames are timed at once.
+const LEAST_MS: f64 = 60.0;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (mut stage, mut close) = (DrawStage::Fragment, false);
+    let (mut only, mut solvers) = (Vec::new(), Vec::new());
+    let mut args = std::env::args().skip(1);
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            "--close" => close = true,
+            "--view" => only.extend(args.next()),
+            "--stage" if args.next().as_deref() == Some("compute") => stage = DrawStage::Compute,
+            "--stage" => {}
+            name => solvers.push(name.parse::<Solver>()?),
+        }
+    }
+    if solvers.is_empty() {
+        solvers = vec![Solver::Hull, Solver::Quadric, Solver::Live];
+    }
+    let device = Device::open(None)?;
+    println!("{}, {stage:?} stage", device.report().name);
+    let mut sums = vec![0.0; solvers.len()];
+    let mut views = views(Extent::All, &[25.0])?;
+    views.retain(|view| only.is_empty() || only.contains(&view.name));
+    let count = views.len() as f64;
+    for mut view in views {
+        view.scene.background = [0.0; 4];
+        if close {
+            view.scene.camera.fov_y *= 0.45;
+        }
+        let settings = Settings {
+            stage,
+            planes: Planes::Color,
+            ..Settings::default()
+        };
+        let mut ways = vec![papers_loop(&view, &settings)];
+        ways.extend(solvers.iter().map(|&solver| plain(&settings, solver)));
+        let mut drawn = Vec::new();
+        for way in &ways {
+            let mut renderer = Renderer::new(&device, &view.scene, way)?;
+            for _ in 0..3 {
+                renderer.draw()?;
+            }
+            let start = Instant::now();
+            renderer.draw()?;
+            let frames = (LEAST_MS / (start.elapsed().as_secs_f64() * 1e3)).ceil() as usize;
+            drawn.push((renderer, frames.clamp(4, 400), Vec::new(), Vec::new()));
+        }
+        for _ in 0..ROUNDS {
+            for (renderer, frames, cpu, wall) in &mut drawn {
+                let (start, clock) = (cpu_ms()?, Instant::now());
+                for _ in 0..*frames {
+                    renderer.draw()?;
+                }
+                cpu.push((cpu_ms()? - start) / *frames as f64);
+                wall.push(clock.elapsed().as_secs_f64() * 1e3 / *frames as f64);
+            }
+        }
+        let frame = drawn[1].0.read()?;
+        let hit = frame.color.iter().filter(|p| p[3] > 0.0).count();
+        let papers = median(&mut drawn[0].2);
+        print!(
+            "{:<10} {hit:>7} pixels, papers' loop {papers:6.2} ms",
+            view.name
+        );
+        for (k, (_, _, cpu, wall)) in drawn[1..].iter_mut().enumerate() {
+            let (ms, clock) = (median(cpu), median(wall));
+            print!(
+                "   {} {ms:6.2} ms ({clock:5.2} by the clock) {:.2}",
+                solvers[k],
+                ms / papers
+            );
+            sums[k] += (ms / papers).ln() / count;
+        }
+        println!();
+    }
+    for (solver, sum) in solvers.iter().zip(&sums) {
+        println!(
+            "{solver}: {:.3} of the papers' loop (geometric mean)",
+            sum.exp()
+        );
+    }
+    Ok(())
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Time that all threads were running so far.
+fn cpu_ms() -> Result<f64, Box<dyn std::error::Error>> {
+    let mut nanoseconds = 0.0;
+    for task in std::fs::read_dir("/proc/self/task")? {
+        let text = std::fs::read_to_string(task?.path().join("schedstat"))?;
+        nanoseconds += text.split(' ').next().ok_or("no fields")?.parse::<f64>()?;
+    }
+    Ok(nanoseconds / 1e6)
+}

@@ -1,0 +1,254 @@
+//! Where a drawn frame is wrong, as pictures.
+
+use super::{CompareOptions, check, depth_error, flip, normal_error, silhouette};
+use revmap::Result;
+use revmap::frame::{Frame, Picture, pixel_count};
+
+/// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in both frames is grey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heat {
+    /// Missed and ghost pixels alone; what both hit is a lighter grey.
+    Wrong,
+    /// Depth error, from dark blue at 0.001 texel and below to pale yellow at 10 texels, a decade a step.
+    Depth,
+    /// Angle between the normals, from dark blue at 0.01 degrees and below to pale yellow at 100 degrees.
+    Normal,
+    /// The pixels of both silhouettes, by their distance to the other's silhouette: from 0 to 8 pixels.
+    Silhouette,
+    /// FLIP, from 0 to 1, on every pixel.
+    Flip,
+}
+
+impl Heat {
+    /// All kinds, in the order of [`heat_sheet`].
+    pub const ALL: [Self; 5] = [
+        Self::Wrong,
+        Self::Depth,
+        Self::Normal,
+        Self::Silhouette,
+        Self::Flip,
+    ];
+
+    /// Its name in options and captions.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Silhouette => "silhouette",
+            Self::Flip => "flip",
+        }
+    }
+}
+
+const EMPTY: [u8; 3] = [40; 3];
+const BOTH: [u8; 3] = [110; 3];
+const MISSED: [u8; 3] = [0, 255, 255];
+const GHOST: [u8; 3] = [0, 255, 0];
+
+/// A picture of one kind of error.
+///
+/// # Errors
+/// Those of [`compare`](super::compare()).
+pub fn heat_map(
+    reference: &Frame,
+    frame: &Frame,
+    options: &CompareOptions,
+    kind: Heat,
+) -> Result<Picture> {
+    check(reference, frame, options)?;
+    let decades = |error: f64, low: f64| ramp((error.max(low) / low).log10() / 4.0);
+    let paint: Box<dyn Fn(usize) -> [u8; 3]> = match kind {
+        Heat::Wrong => Box::new(|_| BOTH),
+        Heat::Depth => Box::new(|k| decades(depth_error(reference, frame, k, options.texel), 1e-3)),
+        Heat::Normal => Box::new(|k| decades(normal_error(reference, frame, k), 1e-2)),
+        Heat::Silhouette => Box::new(rims(reference, frame)),
+        Heat::Flip => {
+            let map = flip::flip_map(reference, frame, options.pixels_per_degree);
+            Box::new(move |k| ramp(f64::from(map[k])))
+        }
+    };
+    // These two show what they have on pixels that only one frame hits as well.
+    let everywhere = matches!(kind, Heat::Flip | Heat::Silhouette);
+    let rgba = (0..reference.pixels())
+        .map(|k| {
+            let [r, g, b] = match (reference.hits(k), frame.hits(k)) {
+                _ if everywhere => paint(k),
+                (true, true) => paint(k),
+                (true, false) => MISSED,
+                (false, true) => GHOST,
+                (false, false) => EMPTY,
+            };
+            [r, g, b, 255]
+        })
+        .collect();
+    Ok(Picture {
+        width: reference.width,
+        height: reference.height,
+        rgba,
+    })
+}
+
+/// All kinds on one sheet: wrong, depth, normal above; silhouette, FLIP and the drawn frame itself below.
+///
+/// # Errors
+/// Those of [`compare`](super::compare()), and [`Stage::Frame`](revmap::error::Stage::Frame) when the sheet, six times
+/// the frame, is too large for a picture.
+pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Picture> {
+    check(reference, frame, options)?;
+    let (w, h) = (frame.width, frame.height);
+    let (width, height) = (w.saturating_mul(3), h.saturating_mul(2));
+    let pixels = pixel_count(width, height)?;
+    let mut sheet = Picture {
+        width,
+        height,
+        rgba: vec![[0; 4]; pixels],
+    };
+    let mut place = |tile: usize, pixel: &dyn Fn(usize) -> [u8; 4]| {
+        let (left, top) = (tile % 3 * w as usize, tile / 3 * h as usize);
+        for y in 0..h as usize {
+            for x in 0..w as usize {
+                sheet.rgba[(top + y) * width as usize + left + x] = pixel(y * w as usize + x);
+            }
+        }
+    };
+    for (tile, kind) in Heat::ALL.into_iter().enumerate() {
+        let map = heat_map(reference, frame, options, kind)?;
+        place(tile, &|k| map.rgba[k]);
+    }
+    let drawn = Picture::of(frame);
+    place(Heat::ALL.len(), &|k| drawn.rgba[k]);
+    Ok(sheet)
+}
+
+/// Colours of the silhouettes' pixels, by the way to the other silhouette.
+fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
+    let rims = [reference, frame].map(silhouette::silhouette);
+    let ways =
+        [&rims[0], &rims[1]].map(|rim| silhouette::squares_to(rim, reference.width as usize));
+    let hits: Vec<bool> = (0..reference.pixels())
+        .map(|k| reference.hits(k) || frame.hits(k))
+        .collect();
+    move |k| {
+        let way = match (rims[0][k], rims[1][k]) {
+            (true, false) => ways[1][k],
+            (false, true) => ways[0][k],
+            (true, true) => 0.0,
+            (false, false) => return if hits[k] { BOTH } else { EMPTY },
+        };
+        ramp(way.sqrt() / 8.0)
+    }
+}
+
+/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour too.
+pub(crate) fn ramp(place: f64) -> [u8; 3] {
+    const STOPS: [[f64; 3]; 5] = [
+        [12.0, 10.0, 70.0],
+        [96.0, 20.0, 140.0],
+        [205.0, 55.0, 90.0],
+        [250.0, 150.0, 40.0],
+        [255.0, 250.0, 175.0],
+    ];
+    // What is no number is as wrong as can be.
+    let place = if place.is_nan() {
+        1.0
+    } else {
+        place.clamp(0.0, 1.0)
+    } * 4.0;
+    let low = (place as usize).min(3);
+    let share = place - low as f64;
+    std::array::from_fn(|c| {
+        (STOPS[low][c] + share * (STOPS[low + 1][c] - STOPS[low][c])).round() as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Left half: hit at distance 2, facing the viewer; right half: nothing.
+    fn base() -> Frame {
+        let mut frame = Frame::new(40, 20, [0.0; 4]).unwrap();
+        for k in (0..frame.pixels()).filter(|k| k % 40 < 20) {
+            frame.color[k] = [0.5, 0.5, 0.5, 1.0];
+            frame.distance[k] = 2.0;
+            frame.normal[k] = [0.0, 0.0, 1.0];
+        }
+        frame
+    }
+
+    fn brightness(c: [u8; 3]) -> u32 {
+        c.iter().map(|&v| u32::from(v)).sum()
+    }
+
+    fn at(kind: Heat, change: impl Fn(&mut Frame), x: usize, y: usize) -> [u8; 3] {
+        let mut frame = base();
+        change(&mut frame);
+        let options = CompareOptions {
+            texel: 0.01,
+            ..CompareOptions::default()
+        };
+        let map = heat_map(&base(), &frame, &options, kind).unwrap();
+        let [r, g, b, a] = map.rgba[y * 40 + x];
+        assert_eq!((map.width, map.height, a), (40, 20, 255));
+        [r, g, b]
+    }
+
+    #[test]
+    fn planted_errors_have_their_colours() {
+        let miss = |f: &mut Frame| f.distance[5 * 40 + 3] = f32::INFINITY;
+        let ghost = |f: &mut Frame| f.distance[5 * 40 + 33] = 1.0;
+        for kind in [Heat::Wrong, Heat::Depth, Heat::Normal] {
+            assert_eq!(at(kind, miss, 3, 5), MISSED);
+            assert_eq!(at(kind, ghost, 33, 5), GHOST);
+            assert_eq!(at(kind, ghost, 32, 5), EMPTY);
+        }
+        // 10 texels reach the top of the scale, 0.1 texel its middle.
+        assert_eq!(at(Heat::Depth, |f| f.distance[43] = 2.1, 3, 1), ramp(1.0));
+        assert_eq!(at(Heat::Depth, |f| f.distance[43] = 2.001, 3, 1), ramp(0.5));
+        assert_eq!(at(Heat::Depth, |_| {}, 3, 1), ramp(0.0));
+        let tilt =
+            |f: &mut Frame| f.normal[43] = [1f32.to_radians().sin(), 0.0, 1f32.to_radians().cos()];
+        assert_eq!(at(Heat::Normal, tilt, 3, 1), ramp(0.5));
+        assert_eq!(
+            at(Heat::Normal, |f| f.normal[43] = [f32::NAN; 3], 3, 1),
+            ramp(1.0)
+        );
+        // A ghost four pixels from the edge is its own silhouette.
+        let spot = |f: &mut Frame| f.distance[10 * 40 + 23] = 1.0;
+        assert_eq!(at(Heat::Silhouette, spot, 23, 10), ramp(0.5));
+        assert_eq!(at(Heat::Silhouette, spot, 19, 10), ramp(0.0));
+        let blot = |f: &mut Frame| f.color[43] = [0.0, 1.0, 0.0, 1.0];
+        assert!(
+            brightness(at(Heat::Flip, blot, 3, 1)) > brightness(at(Heat::Flip, blot, 15, 15)) + 100
+        );
+    }
+
+    #[test]
+    fn the_ramp_grows_brighter() {
+        for k in 0..100 {
+            assert!(
+                brightness(ramp(f64::from(k) / 100.0)) < brightness(ramp(f64::from(k + 1) / 100.0))
+            );
+        }
+        assert_eq!((ramp(-1.0), ramp(7.0)), (ramp(0.0), ramp(1.0)));
+    }
+
+    #[test]
+    fn a_sheet_holds_all_kinds_and_the_frame() {
+        let mut frame = base();
+        frame.distance[0] = 2.5;
+        let options = CompareOptions::default();
+        let sheet = heat_sheet(&base(), &frame, &options).unwrap();
+        assert_eq!((sheet.width, sheet.height), (120, 40));
+        for (tile, kind) in Heat::ALL.into_iter().enumerate() {
+            let map = heat_map(&base(), &frame, &options, kind).unwrap();
+            let row = (tile / 3 * 20) * 120 + tile % 3 * 40;
+            assert_eq!(sheet.rgba[row..row + 40], map.rgba[..40], "{}", kind.name());
+        }
+        assert_eq!(sheet.rgba[20 * 120 + 80], [188, 188, 188, 255]);
+        assert!(heat_sheet(&base(), &Frame::new(1, 1, [0.0; 4]).unwrap(), &options).is_err());
+    }
+}

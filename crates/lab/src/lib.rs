@@ -1,0 +1,10 @@
+//! Measuring what [`revmap`] draws: how far a picture is from the truth, how long it takes, and reports of both.
+//!
+//! | module | what it makes of what comes before |
+//! |---|---|
+//! | [`mod@compare`] | two frames: errors in numbers, FLIP, silhouettes, heat maps |
+//! | `report` | views and ways to draw them: times beside errors, as tables, charts and one page (feature `report`) |
+
+pub mod compare;
+#[cfg(feature = "report")]
+pub mod report;

@@ -1,0 +1,129 @@
+#![allow(clippy::unwrap_used)]
+use super::super::folder::{raw, results, write_text};
+use super::super::machine::Machine;
+use super::super::row::Row;
+use super::super::row::tests::row;
+use super::*;
+use revmap::settings::DrawStage;
+
+fn run(rows: &[Row]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = Machine::here("device, with a comma", "cpu", "driver", "revmap bench");
+    write_text(
+        &folder.path().join("results.csv"),
+        &results(rows, &machine).text(),
+    )
+    .unwrap();
+    write_text(&folder.path().join("raw.csv"), &raw(rows).text()).unwrap();
+    folder
+}
+
+fn timed(times: [f64; 4], stage: DrawStage) -> Row {
+    let passes = times.map(|t| {
+        [
+            (Some(t * 0.99), t),
+            (Some(t), t * 1.01),
+            (Some(t * 0.98), t),
+        ]
+    });
+    let mut row = row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>());
+    row.settings.stage = stage;
+    row
+}
+
+#[test]
+fn planted_changes_are_found() {
+    let old = run(&[
+        timed([10.0, 10.2, 9.9, 10.1], DrawStage::Fragment),
+        timed([20.0, 21.0, 19.0, 20.5], DrawStage::Compute),
+    ]);
+    let mut slow = timed([12.0, 12.2, 11.9, 12.1], DrawStage::Fragment);
+    slow.errors.missed = 40;
+    let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
+    let found = compare(old.path(), new.path()).unwrap();
+    assert_eq!(
+        found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
+        [Verdict::Slower, Verdict::Same]
+    );
+    assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
+    assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
+    let text = as_text(&found);
+    assert!(
+        text.contains("1 slower, 0 faster, 1 within")
+            && text.contains("less exact: fragment: missed 0 to 40"),
+        "{text}"
+    );
+    let back = compare(new.path(), old.path()).unwrap();
+    assert_eq!(back.pairs[0].verdict(), Verdict::Faster);
+    assert_eq!(back.pairs[0].better.len(), 1);
+}
+
+/// One run had a machine of half the speed: the papers' loop, in both, tells so, and nothing counts as slower but what is.
+#[test]
+fn a_slower_machine_is_told_from_a_slower_search() {
+    let papers = |times| {
+        let mut row = timed(times, DrawStage::Fragment);
+        row.settings =
+            crate::report::plan::papers_loop(&crate::report::view::tests::spindle(), &row.settings);
+        row.source = row.settings.map_source;
+        row
+    };
+    let search = |times, steps| {
+        let mut row = timed(times, DrawStage::Fragment);
+        row.settings.max_steps = Some(steps);
+        row
+    };
+    let old = run(&[
+        papers([10.0, 10.2, 9.9, 10.1]),
+        search([5.0, 5.1, 4.9, 5.0], 30),
+        search([5.0, 5.1, 4.9, 5.0], 40),
+    ]);
+    let new = run(&[
+        papers([20.0, 20.4, 19.8, 20.2]),
+        search([10.0, 10.2, 9.8, 10.0], 30),
+        search([15.0, 15.2, 14.8, 15.0], 40),
+    ]);
+    let found = compare(old.path(), new.path()).unwrap();
+    assert_eq!(
+        found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
+        [Verdict::Slower, Verdict::Same, Verdict::Slower]
+    );
+    assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
+    assert!(as_text(&found).contains("the papers' loop itself differs"));
+}
+
+#[test]
+fn a_rejected_clock_gives_no_verdict() {
+    let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let mut lies = timed([10.0; 4], DrawStage::Fragment);
+    lies.passes
+        .iter_mut()
+        .flatten()
+        .for_each(|s| s.gpu_ms = Some(0.036));
+    let lies = run(&[lies]);
+    let found = compare(fine.path(), lies.path()).unwrap();
+    assert_eq!(found.pairs[0].verdict(), Verdict::Unknown);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
+    assert!(
+        compare(a.path(), b.path())
+            .unwrap_err()
+            .to_string()
+            .contains("in common")
+    );
+    let empty = tempfile::tempdir().unwrap();
+    let error = compare(a.path(), empty.path()).unwrap_err();
+    assert!(error.file.unwrap().ends_with("results.csv"));
+    std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
+    assert!(
+        compare(a.path(), b.path())
+            .unwrap_err()
+            .to_string()
+            .contains("other columns")
+    );
+    assert_eq!(KEY.last(), Some(&"objects"));
+}

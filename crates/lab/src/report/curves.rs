@@ -1,0 +1,240 @@
+//! Charts of error against time, of error against rows of the map, and the pages that hold them.
+
+mod measure;
+mod pages;
+
+pub use measure::Measure;
+pub use pages::write;
+
+use super::chart::Figure;
+use super::chart::axis::Axis;
+use super::chart::front::{WORTH, front, stairs};
+use super::chart::style::Style;
+use super::chart::xy::{Guide, Point, Series, XyChart};
+use super::looks::{of_line, of_source, style};
+use super::map_error::MapError;
+use super::names;
+use super::plan::{PAPERS_LOOP, is_papers_loop};
+use super::ratios::Ratio;
+use super::row::Row;
+use super::sweep::{has_budget, has_rows};
+use revmap::settings::{Settings, Solver};
+
+/// Whether settings take part in the sweep over budgets: all of the map left as drawing takes it.
+fn over_budgets(s: &Settings, base: &Settings) -> bool {
+    (s.map_rows.is_none() || has_rows(s.solver))
+        && s.map_source.is_none()
+        && s.map_format == base.map_format
+}
+
+/// What a marker is called: its bound on steps, the rows of its table, or its tessellation.
+fn budget(s: &Settings) -> Option<String> {
+    if let Solver::Mesh { segments, rings } = s.solver {
+        return Some(format!("{segments}x{rings}"));
+    }
+    if is_papers_loop(s) {
+        return None;
+    }
+    if has_rows(s.solver) {
+        return s.map_rows.map(|rows| rows.to_string());
+    }
+    let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
+    has_budget(s.solver).then(|| steps.to_string())
+}
+
+/// Adds the point of a way of drawing to its line: of its search and stage, or of the papers' loop. Ways that take no part in the sweep over
+/// budgets have none.
+fn add_swept(series: &mut Vec<Series>, s: &Settings, base: &Settings, x: f64, y: f64) {
+    let (name, style) = if is_papers_loop(s) {
+        (PAPERS_LOOP, style(s))
+    } else if over_budgets(s, base) {
+        (s.solver.name(), of_line(s))
+    } else {
+        return;
+    };
+    let label = budget(s);
+    add(series, name, style, true, Point { x, y, label });
+}
+
+/// Adds a point to the series of its name and stage.
+fn add(series: &mut Vec<Series>, name: &str, style: Style, joined: bool, point: Point) {
+    match series
+        .iter_mut()
+        .find(|known| known.name == name && known.style.filled == style.filled)
+    {
+        Some(known) => known.points.push(point),
+        None => series.push(Series {
+            name: name.to_owned(),
+            style,
+            points: vec![point],
+            joined,
+        }),
+    }
+}
+
+/// Error against time of every search swept over its steps, in both stages, with the front over all of them.
+#[must_use]
+pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -> Figure {
+    let mut series = Vec::new();
+    for row in rows {
+        if let (Some(time), Some(error)) = (row.time(), measure.of(row)) {
+            add_swept(&mut series, &row.settings, base, time.value, error);
+        }
+    }
+    against_time(title, Axis::log(TIME), measure, series, |_| false)
+}
+
+/// Error against time over the sources and rows of maps, one stage, every search.
+#[must_use]
+pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
+    let mut series = Vec::new();
+    for row in rows {
+        let s = &row.settings;
+        let (Some(source), Some(count)) = (s.map_source, s.map_rows) else {
+            continue;
+        };
+        let (Some(time), Some(y)) = (row.time(), measure.of(row)) else {
+            continue;
+        };
+        let point = Point {
+            x: time.value,
+            y,
+            label: Some(format!("{} {count}", s.solver.name())),
+        };
+        let (name, style) = (names::source(source), of_source(source));
+        add(&mut series, name, style, false, point);
+    }
+    against_time(title, Axis::log(TIME), measure, series, |_| false)
+}
+
+/// The chart that sums `views` up: error against the ratio to the papers' loop.
+#[must_use]
+pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
+    let mut series = Vec::new();
+    for ratio in ratios {
+        let error = match measure {
+            Measure::Depth => ratio.depth_p99,
+            Measure::Wrong => Some(100.0 * ratio.wrong),
+            Measure::Normal => ratio.normal_rms,
+            Measure::Flip => None,
+        };
+        if let Some(error) = error {
+            add_swept(&mut series, &ratio.settings, base, ratio.time.value, error);
+        }
+    }
+    let title = format!("{views}: {} against time", measure.name());
+    let x = Axis::log("time / time of the papers' loop").with(1.0);
+    // Of meshes there are few: each keeps its word.
+    against_time(&title, x, measure, series, |label| label.contains('x'))
+}
+
+/// The name of the axis of times.
+const TIME: &str = "time of a frame (ms)";
+
+/// A chart over an axis of times, with the front over all points. Only what is on the front is worth a word, or the chart drowns in them;
+/// except words to `keep`.
+fn against_time(
+    title: &str,
+    x: Axis,
+    measure: Measure,
+    mut series: Vec<Series>,
+    keep: fn(&str) -> bool,
+) -> Figure {
+    let points = series.iter().flat_map(|s| &s.points);
+    let places: Vec<(f64, f64)> = points.map(|p| (p.x, p.y)).collect();
+    let best: Vec<(f64, f64)> = front(&places, WORTH)
+        .into_iter()
+        .map(|i| places[i])
+        .collect();
+    for point in series.iter_mut().flat_map(|s| &mut s.points) {
+        if !best.contains(&(point.x, point.y)) {
+            point.label = point.label.take().filter(|label| keep(label));
+        }
+    }
+    XyChart {
+        title: title.to_owned(),
+        x,
+        y: measure.axis(),
+        series,
+        guides: vec![Guide::dashed("Pareto front", stairs(&best))],
+    }
+    .figure()
+}
+
+/// Error against rows of the map, by source, of one search with an ample budget; for depth also what the map alone errs, found
+/// without any search.
+#[must_use]
+pub fn resolution(
+    title: &str,
+    rows: &[&Row],
+    measure: Measure,
+    solver: Solver,
+    alone: &[MapError],
+) -> Figure {
+    let mut series = Vec::new();
+    let mut point = |name: &str, style: Style, rows: u32, y: f64| {
+        let point = Point {
+            x: f64::from(rows),
+            y,
+            label: None,
+        };
+        add(&mut series, name, style, true, point);
+    };
+    for row in rows
+        .iter()
+        .filter(|r| r.settings.solver == solver && !is_papers_loop(&r.settings))
+    {
+        let (Some(source), Some(count)) = (row.settings.map_source, row.settings.map_rows) else {
+            continue;
+        };
+        if let Some(y) = measure.of(row) {
+            let name = format!("{}, drawn", names::source(source));
+            point(&name, of_source(source), count, y);
+        }
+    }
+    for error in alone {
+        let value = match measure {
+            Measure::Depth => error.errors.depth.map(|d| d.p99),
+            Measure::Wrong => Some(100.0 * error.errors.wrong()),
+            Measure::Normal | Measure::Flip => None,
+        };
+        if let Some(y) = value {
+            let style = Style {
+                filled: false,
+                ..of_source(error.source)
+            };
+            let name = format!("{}, the map alone", names::source(error.source));
+            point(&name, style, error.rows, y);
+        }
+    }
+    for s in &mut series {
+        s.points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    }
+    let counts: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
+    XyChart {
+        title: title.to_owned(),
+        x: Axis::log("rows of the map").at(counts),
+        y: measure.axis(),
+        series,
+        guides: Vec::new(),
+    }
+    .figure()
+}
+
+/// The search whose drawn pictures are nearest to the truth: what is left of its error is the map's. Of those that read maps of every
+/// source.
+#[must_use]
+pub fn most_exact(rows: &[&Row]) -> Option<Solver> {
+    let worst = |solver: Solver| {
+        rows.iter()
+            .filter(|r| r.settings.solver == solver && r.settings.map_source.is_some())
+            .filter_map(|r| Measure::Depth.of(r))
+            .reduce(f64::min)
+            .map(|p99| (solver, p99))
+    };
+    Solver::ALL
+        .into_iter()
+        .filter_map(worst)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(solver, _)| solver)
+}

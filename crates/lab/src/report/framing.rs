@@ -1,0 +1,261 @@
+//! How much of the picture a view's solids take: whole, or close up.
+//!
+//! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing, storing, ending) weighs much in its time. Close
+//! up the search weighs more; that is how games show solids, and how prototypes were measured. Summaries give both.
+
+use super::view::View;
+use glam::{DQuat, DVec3};
+use revmap::scene::{Camera, Light};
+
+/// How much of the picture is solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Framing {
+    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of its width in a picture of 4:3.
+    Whole,
+    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor [`OVERFILL`]; a wider one may show their sides.
+    Close,
+}
+
+impl Framing {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Whole, Self::Close];
+
+    /// Its name in options and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Close => "close",
+        }
+    }
+}
+
+/// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of 4:3, whichever is less.
+pub const OVERFILL: f64 = 1.25;
+
+/// The part of the picture's height that the boxes fill when seen whole.
+const FILLED: f64 = 0.9;
+/// Width over height of the narrowest picture that is drawn.
+const NARROWEST: f64 = 4.0 / 3.0;
+
+impl View {
+    /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill nine tenths of the picture's
+    /// height, as the papers' pictures do, and lights them from the front and the side.
+    #[must_use]
+    pub fn framed(mut self, elevation: f64) -> Self {
+        let corners = self.corners();
+        let count = corners.len().max(1) as f64;
+        let middle = corners.iter().sum::<DVec3>() / count;
+        let size = corners
+            .iter()
+            .fold(0.0f64, |m, c| m.max((*c - middle).length()));
+        let mut camera = Camera::new(
+            middle + DVec3::new(0.93, -0.37, 0.0) * (4.0 * size.max(1e-3)),
+            middle,
+        );
+        camera.up = DVec3::Z;
+        self.scene.camera = camera;
+        let name = self.name.clone();
+        let mut view = self.at_elevation(elevation);
+        view.name = name;
+        let widest = view.extent().map_or(1.0, |[left, right, low, high]| {
+            let across = right.abs().max(left.abs()) / NARROWEST;
+            across.max(high.abs()).max(low.abs())
+        });
+        view.scene.camera.fov_y = 2.0 * (widest / FILLED).atan().to_degrees();
+        let forward = (view.scene.camera.target - view.scene.camera.eye).normalize();
+        let turned = |degrees: f64| {
+            DQuat::from_rotation_z(degrees.to_radians())
+                * DVec3::new(forward.x, forward.y, 0.0).normalize_or(DVec3::X)
+        };
+        view.scene.lights = vec![
+            Light {
+                direction: turned(35.0) - DVec3::Z * 0.8,
+                color: [0.95, 0.9, 0.8],
+            },
+            Light {
+                direction: turned(-60.0) - DVec3::Z * 0.3,
+                color: [0.2, 0.24, 0.3],
+            },
+        ];
+        view
+    }
+
+    /// The view in a framing. Close up the eye stays, turns to the middle of all boxes and narrows its field of view, which is never made
+    /// wider; the name gets `:close`. An eye between or within the boxes is close already: its field of view stays.
+    #[must_use]
+    pub fn in_framing(mut self, framing: Framing) -> Self {
+        if framing == Framing::Whole {
+            return self;
+        }
+        self.name = format!("{}:{}", self.name, framing.name());
+        self.framing = framing;
+        let before = self.scene.camera;
+        let corners = self.corners();
+        let (low, high) = corners.iter().fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), corner| (low.min(*corner), high.max(*corner)),
+        );
+        let middle = (low + high) / 2.0;
+        if middle.is_finite() && middle.distance(before.eye) > 1e-9 {
+            self.scene.camera.target = middle;
+        }
+        match self.extent() {
+            Some([left, right, low, high]) => {
+                let half = ((right - left) / NARROWEST).min(high - low) / 2.0;
+                let narrow = 2.0 * (half / OVERFILL).atan().to_degrees();
+                if narrow > 1e-3 {
+                    self.scene.camera.fov_y = narrow.min(before.fov_y);
+                }
+            }
+            None => self.scene.camera = before,
+        }
+        self
+    }
+
+    /// The rectangle around all boxes at depth 1: left, right, low, high from the middle of the picture. `None` where a corner is not in front of
+    /// the eye, or there is none.
+    fn extent(&self) -> Option<[f64; 4]> {
+        let Camera {
+            eye, target, up, ..
+        } = self.scene.camera;
+        let forward = (target - eye).try_normalize()?;
+        let right = forward.cross(up).try_normalize()?;
+        let above = right.cross(forward);
+        let mut extent = None;
+        for corner in self.corners() {
+            let way = corner - eye;
+            let depth = way.dot(forward);
+            if depth <= 1e-9 {
+                return None;
+            }
+            let (x, y) = (way.dot(right) / depth, way.dot(above) / depth);
+            let [l, r, b, t] = extent.unwrap_or([x, x, y, y]);
+            extent = Some([x.min(l), x.max(r), y.min(b), y.max(t)]);
+        }
+        extent
+    }
+
+    /// The corners of all boxes, in the world.
+    fn corners(&self) -> Vec<DVec3> {
+        let mut all = Vec::new();
+        for object in &self.scene.objects {
+            let r = object.profile.radius;
+            for p in object.placements() {
+                for k in 0..8u32 {
+                    let pick =
+                        |bit: u32, low: f64, high: f64| if k & bit == 0 { low } else { high };
+                    let corner = DVec3::new(pick(1, -r, r), pick(2, -r, r), pick(4, 0.0, 1.0));
+                    all.push(p.position + p.rotation * (p.scale * corner));
+                }
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::view::tests::spindle;
+    use super::*;
+    use revmap::scene::CameraFrame;
+
+    /// How far the boxes reach past the middle of the picture, as parts of half its width and height: the most, and the mean of both sides.
+    fn reach(view: &View) -> [(f64, f64); 2] {
+        let frame = CameraFrame::new(&view.scene.camera, 400, 300).unwrap();
+        [(frame.right, 200.0), (frame.up, 150.0)].map(|(axis, half)| {
+            let at = |c: &DVec3| {
+                let way = *c - frame.eye;
+                way.dot(axis) / way.dot(frame.forward) / axis.length_squared() / half
+            };
+            let places: Vec<f64> = view.corners().iter().map(at).collect();
+            let low = places.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            (high.max(-low), (high - low) / 2.0)
+        })
+    }
+
+    #[test]
+    fn framing_fills_the_picture() {
+        for elevation in [0.0, 25.0, 60.0] {
+            let [across, up] = reach(&spindle().framed(elevation));
+            let most = across.0.max(up.0);
+            assert!((most - FILLED).abs() < 0.01, "{elevation}: {most}");
+        }
+    }
+
+    #[test]
+    fn close_up_the_box_reaches_past_the_picture() {
+        for elevation in [0.0, 25.0, 60.0] {
+            let whole = spindle().framed(elevation);
+            let close = whole.clone().in_framing(Framing::Close);
+            let [across, up] = reach(&close);
+            assert!((across.1.min(up.1) - OVERFILL).abs() < 1e-6);
+            assert!(close.scene.camera.fov_y < whole.scene.camera.fov_y);
+            assert_eq!(
+                (close.name.as_str(), close.framing),
+                ("spindle:close", Framing::Close)
+            );
+            let same = whole.clone().in_framing(Framing::Whole);
+            assert_eq!(
+                (same.name.as_str(), same.framing),
+                ("spindle", Framing::Whole)
+            );
+            assert_eq!(same.scene.camera.fov_y, whole.scene.camera.fov_y);
+        }
+    }
+
+    #[test]
+    fn a_scene_off_the_middle_is_turned_to_and_one_all_around_is_left() {
+        let mut aside = spindle();
+        aside.scene.camera.target = DVec3::new(0.0, 1.5, 0.5);
+        let close = aside.in_framing(Framing::Close);
+        assert!((close.scene.camera.target - DVec3::new(0.0, 0.0, 0.5)).length() < 1e-9);
+        assert!(reach(&close)[1].1 > 1.2);
+        let mut within = spindle();
+        within.scene.camera.eye = DVec3::new(0.2, 0.0, 0.5);
+        let fov = within.scene.camera.fov_y;
+        let target = within.scene.camera.target;
+        let close = within.in_framing(Framing::Close).scene.camera;
+        assert_eq!((close.fov_y, close.target), (fov, target));
+        // What is near enough already is not moved away from.
+        let mut near = spindle();
+        near.scene.camera.fov_y = 5.0;
+        assert_eq!(near.in_framing(Framing::Close).scene.camera.fov_y, 5.0);
+        let mut empty = spindle();
+        empty.scene.objects.clear();
+        assert_eq!(
+            empty.in_framing(Framing::Close).scene.camera.fov_y,
+            spindle().scene.camera.fov_y
+        );
+    }
+
+    /// What the framings are for: the share of pixels that hit.
+    #[test]
+    fn close_up_most_pixels_hit() {
+        use super::super::suite::{Extent, views};
+        use revmap::reference;
+        use revmap::settings::Settings;
+        for (width, height) in [(80, 60), (136, 70)] {
+            let settings = Settings {
+                width,
+                height,
+                ..Settings::default()
+            };
+            for view in views(Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
+                let share = |view: &View| {
+                    let frame = reference::draw(&view.scene, &settings, &|_, _| {}).unwrap();
+                    let hits = frame.distance.iter().filter(|d| d.is_finite()).count();
+                    hits as f64 / frame.distance.len() as f64
+                };
+                let (whole, close) = (
+                    share(&view),
+                    share(&view.clone().in_framing(Framing::Close)),
+                );
+                eprintln!("{} {width}x{height}: {whole:.3} {close:.3}", view.name);
+                assert!((0.3..0.9).contains(&close) && close > 1.5 * whole);
+            }
+        }
+    }
+}

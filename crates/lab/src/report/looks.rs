@@ -1,0 +1,240 @@
+//! Which way of drawing looks how: a search has one colour, marker and dash in every chart of every report.
+
+use super::chart::style::{Dash, Marker, Style, color};
+use super::names::stage;
+use super::plan::{Labels, is_papers_loop, variant};
+use super::row::Row;
+use revmap::maps::MapSource;
+use revmap::settings::{DrawStage, Settings, Solver};
+
+/// How a search looks in the fragment stage. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
+fn search(solver: Solver) -> Style {
+    let (color, marker, dash) = match solver {
+        Solver::Linear => (color::RED, Marker::Left, Dash::Dots),
+        Solver::Relief => (color::PURPLE, Marker::Right, Dash::Short),
+        Solver::Secant => (color::WINE, Marker::Star, Dash::DashDot),
+        Solver::Circle => (color::GREY, Marker::Plus, Dash::Dots),
+        Solver::Cone => (color::TAN, Marker::Cross, Dash::Short),
+        Solver::Relaxed => (color::TAN, Marker::Hexagram, Dash::Dots),
+        Solver::Live => (color::NAVY, Marker::Up, Dash::DashDot),
+        Solver::Quadric => (color::VIOLET, Marker::Down, Dash::Long),
+        Solver::Hull => (color::ORANGE, Marker::Disk, Dash::Solid),
+        Solver::Mesh { .. } => (color::BLUE, fineness(solver), Dash::Solid),
+    };
+    Style {
+        dash,
+        heavy: solver == Solver::DEFAULT,
+        ..Style::new(color, marker)
+    }
+}
+
+/// A mesh's marker: another for each doubling of its segments and rings.
+fn fineness(mesh: Solver) -> Marker {
+    const FROM_COARSE: [Marker; 9] = [
+        Marker::Disk,
+        Marker::Left,
+        Marker::Right,
+        Marker::Down,
+        Marker::Square,
+        Marker::Diamond,
+        Marker::Cross,
+        Marker::Plus,
+        Marker::Star,
+    ];
+    // 16x32 has the third, 64x128 the square.
+    let doublings = (mesh.quads().max(1) as f64).log2() / 2.0;
+    let place = (doublings - 2.5).round().max(0.0) as usize;
+    FROM_COARSE[place.min(FROM_COARSE.len() - 1)]
+}
+
+/// How a way of drawing looks: filled in the fragment stage, hollow in the compute stage.
+#[must_use]
+pub fn style(s: &Settings) -> Style {
+    let look = if is_papers_loop(s) {
+        Style::new(color::BLACK, Marker::Diamond)
+    } else {
+        search(s.solver)
+    };
+    Style {
+        filled: s.stage != DrawStage::Compute,
+        ..look
+    }
+}
+
+/// How a way looks in a chart in which a line joins the budgets of a search, or the meshes of growing fineness: all meshes alike.
+#[must_use]
+pub fn of_line(s: &Settings) -> Style {
+    let own = style(s);
+    match s.solver {
+        Solver::Mesh { .. } => Style {
+            marker: Marker::Square,
+            ..own
+        },
+        _ => own,
+    }
+}
+
+/// How a source of distances looks, in charts that compare sources.
+#[must_use]
+pub fn of_source(source: MapSource) -> Style {
+    match source {
+        MapSource::Binary => Style::new(color::BLACK, Marker::Square),
+        MapSource::Coverage => Style::new(color::BLUE, Marker::Disk),
+        MapSource::Exact => Style::new(color::ORANGE, Marker::Up),
+    }
+}
+
+/// Names and looks of the ways of drawing that one report holds.
+#[derive(Clone, Debug)]
+pub struct Looks {
+    labels: Labels,
+    /// Each way's name and its look in the fragment stage.
+    ways: Vec<(String, Style)>,
+}
+
+impl Looks {
+    /// Looks for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
+    /// is free.
+    #[must_use]
+    pub fn new<'a>(settings: impl IntoIterator<Item = &'a Settings> + Clone) -> Self {
+        let labels = Labels::new(settings.clone());
+        let mut ways: Vec<(String, Style)> = Vec::new();
+        for s in settings {
+            let way = labels.way(s);
+            if ways.iter().any(|(known, _)| *known == way) {
+                continue;
+            }
+            let wanted = style(&Settings {
+                stage: DrawStage::Fragment,
+                ..*s
+            });
+            let free = |marker: &Marker| {
+                let taken = |known: &Style| (known.color, known.marker) == (wanted.color, *marker);
+                !ways.iter().any(|(_, known)| taken(known))
+            };
+            let own = std::iter::once(wanted.marker);
+            let marker = own.chain(Marker::ALL).find(free).unwrap_or(wanted.marker);
+            ways.push((way, Style { marker, ..wanted }));
+        }
+        Self { labels, ways }
+    }
+
+    /// Looks for the ways in which rows were drawn.
+    pub(super) fn of(rows: &[Row]) -> Self {
+        let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+        Self::new(&ways)
+    }
+
+    /// The name of a way, without its stage.
+    #[must_use]
+    pub fn way(&self, s: &Settings) -> String {
+        self.labels.way(s)
+    }
+
+    /// The name of a way and its stage.
+    #[must_use]
+    pub fn name(&self, s: &Settings) -> String {
+        format!("{}, {}", self.labels.way(s), stage(s.stage))
+    }
+
+    /// How it looks.
+    #[must_use]
+    pub fn style(&self, s: &Settings) -> Style {
+        let way = self.labels.way(s);
+        let known = self.ways.iter().find(|(name, _)| *name == way);
+        let own = style(s);
+        Style {
+            marker: known.map_or(own.marker, |(_, look)| look.marker),
+            ..own
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::plan::{ALL_MESHES, papers_loop};
+    use super::super::view::tests::spindle;
+    use super::*;
+
+    /// All that a chart can hold: every search, the papers' loop, meshes of seven finenesses.
+    fn all() -> Vec<Settings> {
+        let base = Settings::default();
+        let mut ways: Vec<Settings> = Solver::ALL
+            .iter()
+            .map(|&solver| Settings { solver, ..base })
+            .collect();
+        ways.push(papers_loop(&spindle(), &base));
+        for (segments, rings) in ALL_MESHES.into_iter().chain([(16, 32), (1024, 2048)]) {
+            let solver = Solver::Mesh { segments, rings };
+            ways.push(Settings { solver, ..base });
+        }
+        ways
+    }
+
+    #[test]
+    fn no_two_searches_share_a_marker_and_none_but_cones_a_colour() {
+        let ways = all();
+        let searches = &ways[..=Solver::ALL.len()];
+        for (i, a) in searches.iter().enumerate() {
+            for b in &searches[..i] {
+                // As many colours as there are searches cannot be told apart by all eyes.
+                let cones = a.solver.is_of_cones() && b.solver.is_of_cones();
+                let (a, b) = (style(a), style(b));
+                assert_eq!(a.color == b.color, cones, "{a:?} {b:?}");
+                assert!(
+                    a.marker != b.marker && (!cones || a.dash != b.dash),
+                    "{a:?} {b:?}"
+                );
+            }
+            assert!(color::ALL.contains(&style(a).color));
+            assert_eq!(style(a).heavy, a.solver == Solver::DEFAULT);
+        }
+        for (i, a) in ways.iter().enumerate() {
+            for b in &ways[..i] {
+                let (a, b) = (style(a), style(b));
+                assert!((a.color, a.marker) != (b.color, b.marker), "{a:?}");
+                // Guides are dashed as no search is.
+                assert_ne!(a.dash, Dash::Guide);
+            }
+        }
+        let sources = [MapSource::Binary, MapSource::Coverage, MapSource::Exact].map(of_source);
+        assert!(sources[0].color != sources[1].color && sources[1].color != sources[2].color);
+    }
+
+    #[test]
+    fn looks_are_the_same_in_every_report_and_both_stages() {
+        let ways = all();
+        let (whole, few) = (Looks::new(&ways), Looks::new(&ways[4..8]));
+        for way in &ways[4..8] {
+            assert_eq!(whole.style(way), few.style(way));
+            let compute = Settings {
+                stage: DrawStage::Compute,
+                ..*way
+            };
+            assert_eq!(
+                whole.style(&compute),
+                Style {
+                    filled: false,
+                    ..style(way)
+                }
+            );
+        }
+    }
+
+    #[test]
+    fn one_search_in_several_ways_takes_several_markers() {
+        let steps = |n| Settings {
+            solver: Solver::Circle,
+            max_steps: Some(n),
+            ..Settings::default()
+        };
+        let ways: Vec<Settings> = (1..=10).map(|k| steps(8 * k)).collect();
+        let looks = Looks::new(&ways);
+        let seen: Vec<Style> = ways.iter().map(|w| looks.style(w)).collect();
+        for (i, a) in seen.iter().enumerate() {
+            assert!(seen[..i].iter().all(|b| a.marker != b.marker));
+            assert_eq!(a.color, color::GREY);
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! Measuring a plan: accuracy once, time in passes and rounds.
+//!
+//! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that slows down slows all of
+//! them. All groups are gone through several times (*passes*), each time with everything built anew: what one placement in memory,
+//! or one bout of work beside ours, does to a time shows as spread between passes (see [`stats`](super::stats)).
+
+pub use super::limits::Limits;
+use super::plan::{Case, Plan, together};
+use super::row::{Row, Steps};
+use super::view::View;
+use crate::compare::{self, CompareOptions, Comparison};
+use revmap::error::{Error, Result, Stage};
+use revmap::frame::Frame;
+use revmap::settings::{Planes, Settings};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::ScopedJoinHandle;
+use std::time::{Duration, Instant};
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Milliseconds between the device's own timestamps; `None` where it has none.
+    pub gpu_ms: Option<f64>,
+    /// Milliseconds by the wall clock, without reading back.
+    pub frame_ms: f64,
+}
+
+/// A way of drawing a view, ready to be timed.
+pub trait Subject {
+    /// Draws one frame and waits for it.
+    ///
+    /// # Errors
+    /// Of drawing.
+    fn sample(&mut self) -> Result<Sample>;
+}
+
+/// What makes subjects and pictures: a Vulkan device, or a stand-in that tests the benchmark itself.
+pub trait Bench {
+    /// Makes everything ready to draw `view` as `settings` say.
+    ///
+    /// # Errors
+    /// Where this way of drawing does not apply to the view; a failure of the device itself is [`Stage::Device`] and ends the run.
+    fn subject(&mut self, view: &View, settings: &Settings) -> Result<Box<dyn Subject>>;
+
+    /// One frame with all planes, and the bytes of its maps.
+    ///
+    /// # Errors
+    /// As [`Bench::subject`].
+    fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Frame, u64)>;
+
+    /// What should be seen.
+    ///
+    /// # Errors
+    /// Of the scene.
+    fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame>;
+}
+
+/// Whoever waits for the measurement.
+pub struct Watch<'a> {
+    /// Set from anywhere to end early; what was measured is kept.
+    pub stop: &'a AtomicBool,
+    /// Told what is under way, milliseconds gone, and milliseconds expected in all.
+    pub progress: &'a dyn Fn(&str, u64, u64),
+    /// Shown every picture once, with what should be seen.
+    pub picture: &'a mut dyn FnMut(&Seen) -> Result<()>,
+    /// Given the rows so far after each pass, so that not even a crash loses them.
+    pub passed: &'a mut dyn FnMut(&[Row]) -> Result<()>,
+}
+
+/// A picture and its measure.
+pub struct Seen<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// Which of its cases.
+    pub case: &'a Case,
+    /// The picture.
+    pub frame: &'a Frame,
+    /// What should be seen.
+    pub truth: &'a Frame,
+    /// How the two were compared.
+    pub options: &'a CompareOptions,
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Rows in the order of the plan's cases, without those left out.
+    pub rows: Vec<Row>,
+    /// Cases that could not be measured, and why.
+    pub left_out: Vec<(Case, String)>,
+    /// Whether the run was ended early.
+    pub interrupted: bool,
+    /// How long it took.
+    pub took: Duration,
+}
+
+/// A frame and how far it is from the reference.
+type Compared = (Frame, Result<Comparison>);
+
+/// Measures a plan.
+///
+/// # Errors
+/// [`Stage::Report`] when nothing could be measured (with the first reason); [`Stage::Device`] when the device fails; those of the picture
+/// callback.
+pub fn measure(
+    plan: &Plan,
+    bench: &mut dyn Bench,
+    limits: &Limits,
+    watch: &mut Watch,
+) -> Result<Measured> {
+    let mut run = Run {
+        plan,
+        bench,
+        limits,
+        start: Instant::now(),
+        rows: plan.cases.iter().map(|_| None).collect(),
+        left_out: Vec::new(),
+    };
+    let groups = plan.groups();
+    let mut visits = groups.len() * limits.passes.0;
+    let mut pass = 0;
+    'passes: loop {
+        for group in &groups {
+            if watch.stop.load(Ordering::Relaxed) {
+                break 'passes;
+            }
+            let begin = Instant::now();
+            let left = limits.time.saturating_sub(run.start.elapsed());
+            let share = left / u32::try_from(visits.max(1)).unwrap_or(u32::MAX);
+            if pass == 0 {
+                for picture in run.pictures(group) {
+                    run.accuracy(&picture, watch)?;
+                }
+            }
+            run.time(group, pass, begin + share, watch)?;
+            visits = visits.saturating_sub(1);
+        }
+        pass += 1;
+        (watch.passed)(&run.timed())?;
+        if pass >= limits.passes.1 || (pass >= limits.passes.0 && (run.known() || run.late(pass))) {
+            break;
+        }
+        visits = visits.max(groups.len() * limits.passes.0.saturating_sub(pass).max(1));
+    }
+    let interrupted = watch.stop.load(Ordering::Relaxed);
+    let took = run.start.elapsed();
+    let rows = run.timed();
+    let left_out = run.left_out;
+    if rows.is_empty() {
+        let why = match left_out.first() {
+            Some((_, why)) => why.clone(),
+            None if interrupted => "stopped before the first measurement was done".into(),
+            None => "the plan is empty; name a scene, a stage and a solver".into(),
+        };
+        return Err(Error::new(
+            Stage::Report,
+            format!("nothing was measured: {why}"),
+        ));
+    }
+    Ok(Measured {
+        rows,
+        left_out,
+        interrupted,
+        took,
+    })
+}
+
+struct Run<'a> {
+    plan: &'a Plan,
+    bench: &'a mut dyn Bench,
+    limits: &'a Limits,
+    start: Instant,
+    rows: Vec<Option<Row>>,
+    left_out: Vec<(Case, String)>,
+}
+
+impl Run<'_> {
+    fn tell(&self, watch: &Watch, what: &str) {
+        let gone = self.start.elapsed();
+        let all = self.limits.time.max(gone);
+        (watch.progress)(what, gone.as_millis() as u64, all.as_millis() as u64);
+    }
+
+    /// Leaves a case out for good; a device that fails ends the run.
+    fn leave_out(&mut self, index: usize, error: Error) -> Result<()> {
+        if error.stage == Stage::Device {
+            return Err(error);
+        }
+        self.rows[index] = None;
+        self.left_out
+            .push((self.plan.cases[index], error.to_string()));
+        Ok(())
+    }
+
+    /// The rows of which there are times.
+    fn timed(&self) -> Vec<Row> {
+        let timed = |row: &&Row| row.passes.iter().any(|pass| !pass.is_empty());
+        self.rows.iter().flatten().filter(timed).cloned().collect()
+    }
+
+    /// A group's cases by the picture they show.
+    fn pictures(&self, group: &[usize]) -> Vec<Vec<usize>> {
+        let mut all: Vec<Vec<usize>> = Vec::new();
+        for &index in group {
+            let same = |known: &&mut Vec<usize>| {
+                known.first().is_some_and(|&first| {
+                    together(&self.plan.cases[first], &self.plan.cases[index])
+                })
+            };
+            match all.iter_mut().find(same) {
+                Some(known) => known.push(index),
+                None => all.push(vec![index]),
+            }
+        }
+        all
+    }
+
+    /// Draws each case that shows one picture once with all planes and compares it with the truth.
+    fn accuracy(&mut self, group: &[usize], watch: &mut Watch) -> Result<()> {
+        let Some(&first) = group.first() else {
+            return Ok(());
+        };
+        let view = &self.plan.views[self.plan.cases[first].view];
+        self.tell(watch, &format!("{}: the reference", view.name));
+        let truth = self.bench.truth(view, &self.plan.cases[first].settings)?;
+        let options = CompareOptions {
+            texel: view.texel(),
+            ..CompareOptions::default()
+        };
+        let reference = compare::Reference::new(&truth, &options)?;
+        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing is timed meanwhile.
+        std::thread::scope(|scope| {
+            let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
+            for &index in group {
+                if watch.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                let solver = self.plan.cases[index].settings.solver;
+                self.tell(watch, &format!("{}: errors of {solver}", view.name));
+                let settings = Settings {
+                    planes: Planes::All,
+                    ..self.plan.cases[index].settings
+                };
+                let drawn = self.bench.picture(view, &settings);
+                if let Some(one) = compared.take() {
+                    self.keep(one, (&truth, &options), watch)?;
+                }
+                match drawn {
+                    Ok((frame, map_bytes)) => {
+                        let reference = &reference;
+                        let work = scope.spawn(move || {
+                            let comparison = reference.compare(&frame);
+                            (frame, comparison)
+                        });
+                        compared = Some((index, map_bytes, work));
+                    }
+                    Err(error) => self.leave_out(index, error)?,
+                }
+            }
+            match compared.take() {
+                Some(one) => self.keep(one, (&truth, &options), watch),
+                None => Ok(()),
+            }
+        })
+    }
+
+    /// Takes over a frame that was compared.
+    fn keep(
+        &mut self,
+        (index, map_bytes, work): (usize, u64, ScopedJoinHandle<Compared>),
+        (truth, options): (&Frame, &CompareOptions),
+        watch: &mut Watch,
+    ) -> Result<()> {
+        let (frame, comparison) = work
+            .join()
+            .map_err(|_| Error::new(Stage::Report, "a comparison was given up; report this"))?;
+        let comparison = comparison?;
+        let case = &self.plan.cases[index];
+        (watch.picture)(&Seen {
+            plan: self.plan,
+            case,
+            frame: &frame,
+            truth,
+            options,
+        })?;
+        let view = &self.plan.views[case.view];
+        let steps = Steps::of(&frame);
+        self.rows[index] = Some(Row::new(view, case, comparison, steps, map_bytes));
+        Ok(())
+    }
+
+    /// Times the cases of a group in turn until `end`, at least for the least number of rounds.
+    fn time(&mut self, group: &[usize], pass: usize, end: Instant, watch: &Watch) -> Result<()> {
+        let mut subjects = Vec::new();
+        for &index in group {
+            if self.rows[index].is_none() || watch.stop.load(Ordering::Relaxed) {
+                continue;
+            }
+            let case = &self.plan.cases[index];
+            let view = &self.plan.views[case.view];
+            self.tell(watch, &format!("{}: pass {}", view.name, pass + 1));
+            let ready = self
+                .bench
+                .subject(view, &case.settings)
+                .and_then(|mut subject| {
+                    for _ in 0..self.limits.warm_up {
+                        subject.sample()?;
+                    }
+                    Ok(subject)
+                });
+            match ready {
+                Ok(subject) => subjects.push((index, subject, Vec::new())),
+                Err(error) => self.leave_out(index, error)?,
+            }
+        }
+        for round in 0..self.limits.rounds.1 {
+            let stop = watch.stop.load(Ordering::Relaxed);
+            let known = || {
+                subjects
+                    .iter()
+                    .all(|(_, _, s)| settled(s, self.limits.precision))
+            };
+            if stop || (round >= self.limits.rounds.0 && (Instant::now() >= end || known())) {
+                break;
+            }
+            let count = subjects.len();
+            let mut failed = Vec::new();
+            for turn in 0..count {
+                // There and back, so that nobody always follows the same neighbour.
+                let place = if round % 2 == 0 {
+                    turn
+                } else {
+                    count - 1 - turn
+                };
+                let (_, subject, samples) = &mut subjects[place];
+                match subject.sample() {
+                    Ok(sample) => samples.push(sample),
+                    Err(error) => failed.push((place, error)),
+                }
+            }
+            for (place, error) in failed.into_iter().rev() {
+                let (index, _, _) = subjects.remove(place);
+                self.leave_out(index, error)?;
+            }
+            self.tell(watch, &format!("pass {}, round {}", pass + 1, round + 1));
+        }
+        for (index, _, samples) in subjects {
+            if let Some(row) = &mut self.rows[index] {
+                row.passes.push(samples);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether every row's interval is narrow enough.
+    fn known(&self) -> bool {
+        let narrow = |row: &Row| {
+            row.time()
+                .is_some_and(|t| t.relative() <= self.limits.precision)
+        };
+        self.rows.iter().flatten().all(narrow)
+    }
+
+    /// Whether one more pass, as long as those before, would end too late.
+    fn late(&self, passes: usize) -> bool {
+        let gone = self.start.elapsed();
+        gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.limits.time
+    }
+}
+
+/// Whether the median of these samples is known to within `precision`, by their median deviation.
+fn settled(samples: &[Sample], precision: f64) -> bool {
+    let times: Vec<f64> = samples.iter().map(|s| s.frame_ms).collect();
+    let Some(middle) = super::stats::median(&times) else {
+        return false;
+    };
+    let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
+    // Of a normal distribution the median's standard error is 1.25 sigma / sqrt n, sigma 1.48 median deviations.
+    let error =
+        1.25 * 1.48 * super::stats::median(&off).unwrap_or(0.0) / (times.len() as f64).sqrt();
+    times.len() >= 5 && 1.96 * error <= precision * middle
+}

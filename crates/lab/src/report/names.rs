@@ -1,0 +1,92 @@
+//! Names of settings, numbers and files, as options and results have them.
+
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::DrawStage;
+
+/// The name of a stage.
+#[must_use]
+pub fn stage(stage: DrawStage) -> &'static str {
+    match stage {
+        DrawStage::Fragment => "fragment",
+        DrawStage::Compute => "compute",
+        DrawStage::Reference => "reference",
+    }
+}
+
+/// The name of a source of distances.
+#[must_use]
+pub fn source(source: MapSource) -> &'static str {
+    match source {
+        MapSource::Binary => "binary",
+        MapSource::Coverage => "coverage",
+        MapSource::Exact => "exact",
+    }
+}
+
+/// The name of a format of maps.
+#[must_use]
+pub fn format(format: MapFormat) -> &'static str {
+    match format {
+        MapFormat::Rgba8 => "rgba8",
+        MapFormat::R16 => "r16",
+        MapFormat::R32 => "r32",
+    }
+}
+
+/// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
+#[must_use]
+pub fn number(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 {
+            "0".into()
+        } else {
+            format!("{value}").to_lowercase()
+        };
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    let decimals = digits as i32 - 1 - magnitude;
+    // Far from 1 the usual notation would be a row of zeros.
+    if !(-4..=12).contains(&magnitude) {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    if decimals <= 0 {
+        return format!("{value:.0}");
+    }
+    let text = format!("{value:.*}", decimals as usize);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A name that may be part of a file's name.
+pub(super) fn safe(name: &str) -> String {
+    name.chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_@.".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_digits() {
+        for (value, digits, text) in [
+            (0.0, 4, "0"),
+            (12.345_678, 4, "12.35"),
+            (1234.6, 3, "1235"),
+            (0.012_300, 5, "0.0123"),
+            (100.0, 3, "100"),
+            (0.000_001_234_5, 3, "1.23e-6"),
+            (-2.5, 3, "-2.5"),
+            (f64::INFINITY, 3, "inf"),
+            (99.99, 3, "100"),
+        ] {
+            assert_eq!(number(value, digits), text);
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! The report of a benchmark: tables and charts of rows, as a page.
+
+use super::chapters;
+use super::chart::Figure;
+use super::chart::axis::Axis;
+use super::chart::dots::{Block, DotChart, Line};
+use super::chart::front::{WORTH, front, stairs};
+use super::chart::xy::{Guide, Point, Series, XyChart};
+use super::covered::pictures_of;
+use super::curves::Measure;
+use super::folder::{keep_figure, write_text};
+use super::looks::{Looks, of_line};
+use super::machine::Machine;
+use super::measure::Measured;
+use super::names::{safe, stage};
+use super::page::Page;
+use super::pictures::Album;
+use super::plan::Plan;
+use super::row::Row;
+use super::summary;
+use revmap::error::Result;
+use std::path::Path;
+
+/// The chart of times, a block for each picture and stage.
+#[must_use]
+pub fn time_chart(rows: &[&Row], looks: &Looks) -> Figure {
+    let mut blocks: Vec<Block> = Vec::new();
+    for row in rows {
+        let Some(value) = row.time() else { continue };
+        let s = &row.settings;
+        let name = format!(
+            "{}, {}x{}, {} stage",
+            row.scene,
+            s.width,
+            s.height,
+            stage(s.stage)
+        );
+        let line = Line {
+            name: looks.way(s),
+            value,
+            style: looks.style(s),
+        };
+        match blocks.iter_mut().find(|b| b.name == name) {
+            Some(block) => block.lines.push(line),
+            None => blocks.push(Block {
+                name,
+                lines: vec![line],
+            }),
+        }
+    }
+    DotChart {
+        title: "Time of a frame".into(),
+        axis: Axis::log("time of a frame (ms)"),
+        mark: None,
+        blocks,
+        legend: Vec::new(),
+    }
+    .figure()
+}
+
+/// Pictures put together so that a chart of their times is no longer than a page.
+fn pages<'a>(pictures: &[Vec<&'a Row>]) -> Vec<Vec<&'a Row>> {
+    const LINES: usize = 44;
+    let mut pages: Vec<Vec<&Row>> = Vec::new();
+    for picture in pictures {
+        match pages.last_mut() {
+            Some(page) if page.len() + picture.len() <= LINES => page.extend(picture),
+            _ => pages.push(picture.clone()),
+        }
+    }
+    pages
+}
+
+/// The chart of depth error against time of rows that show one picture, with its Pareto front.
+#[must_use]
+pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
+    let points: Vec<(&Row, f64, f64)> = rows
+        .iter()
+        .filter_map(|r| Some((*r, r.time()?.value, r.errors.depth?.p99)))
+        .collect();
+    let mut series: Vec<Series> = Vec::new();
+    let mut meshes: Vec<(&Row, f64, f64)> = Vec::new();
+    for &(row, x, y) in &points {
+        let s = &row.settings;
+        if s.solver.is_mesh() {
+            meshes.push((row, x, y));
+            continue;
+        }
+        series.push(Series {
+            name: looks.way(s),
+            style: looks.style(s),
+            points: vec![Point { x, y, label: None }],
+            joined: false,
+        });
+    }
+    // Meshes differ by fineness alone: one line, each marker with its segments and rings.
+    meshes.sort_by_key(|(row, ..)| row.settings.solver.quads());
+    if let Some((coarsest, ..)) = meshes.first() {
+        let point = |&(row, x, y): &(&Row, f64, f64)| Point {
+            x,
+            y,
+            label: looks
+                .way(&row.settings)
+                .strip_prefix("mesh:")
+                .map(str::to_owned),
+        };
+        series.push(Series {
+            name: "mesh, segments x rings".into(),
+            style: of_line(&coarsest.settings),
+            points: meshes.iter().map(point).collect(),
+            joined: true,
+        });
+    }
+    let places: Vec<(f64, f64)> = points.iter().map(|(_, x, y)| (*x, *y)).collect();
+    let best: Vec<_> = front(&places, WORTH)
+        .into_iter()
+        .map(|i| places[i])
+        .collect();
+    XyChart {
+        title: title.to_owned(),
+        x: Axis::log("time of a frame (ms)"),
+        y: Measure::Depth.axis(),
+        series,
+        guides: vec![Guide::dashed("Pareto front", stairs(&best))],
+    }
+    .figure()
+}
+
+/// Writes the page `report.html` and the charts of a benchmark into its folder.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(
+    folder: &Path,
+    plan: &Plan,
+    measured: &Measured,
+    machine: &Machine,
+    album: &Album,
+) -> Result<()> {
+    let rows = &measured.rows;
+    let looks = Looks::of(rows);
+    let mut page = Page::new("revmap: frame rates, look-ups and errors");
+    chapters::begin(&mut page, machine, measured);
+
+    summary::chapters(&mut page, folder, rows, &looks)?;
+
+    page.chapter("Speed and error");
+    let all: Vec<&Row> = rows.iter().collect();
+    summary::speed_and_error(&mut page, folder, rows)?;
+    for group in pictures_of(&all) {
+        let Some(first) = group.first() else { continue };
+        let size = format!("{}x{}", first.settings.width, first.settings.height);
+        let figure = error_chart(
+            &format!("{}, {size}: depth error against time", first.scene),
+            &group,
+            &looks,
+        );
+        keep_figure(
+            folder,
+            &format!("error-{}-{size}", safe(&first.scene)),
+            &figure,
+        )?;
+        page.figure(
+            &figure,
+            "Each marker is a search, filled in the fragment stage and hollow in the compute stage, or a mesh; lower is more exact, further left is faster, and what lies on the dashed \
+             line is beaten by nothing in both. Depth errors are the 99th percentile over the pixels hit, in texels of a map of 512 rows.",
+        );
+    }
+    page.chapter("Times");
+    for chunk in pages(&pictures_of(&all)) {
+        let Some(first) = chunk.first() else { continue };
+        let figure = time_chart(&chunk, &looks);
+        keep_figure(
+            folder,
+            &format!(
+                "times-{}-{}x{}",
+                safe(&first.scene),
+                first.settings.width,
+                first.settings.height
+            ),
+            &figure,
+        )?;
+        page.figure(&figure, "Each marker is the time of a frame with its 95 % interval, by the device's clock where it has one, and its number in ms at the right; further left is faster.");
+    }
+    chapters::picture_table(&mut page, rows);
+    page.chapter("All rows");
+    chapters::row_table(&mut page, rows, &looks);
+    chapters::pictures(&mut page, plan, album);
+    chapters::end(&mut page, plan, measured);
+    write_text(&folder.join("report.html"), &page.html())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::svg::svg;
+    use super::super::plan::{ALL_MESHES, papers_loop};
+    use super::super::row::tests::row;
+    use super::super::view::tests::spindle;
+    use super::*;
+    use crate::compare::Spread;
+    use revmap::settings::{DrawStage, Settings, Solver};
+
+    /// As much as one picture can hold: every search in both stages, five meshes, the papers' loop.
+    fn crowded() -> Vec<Row> {
+        let mut rows = Vec::new();
+        let meshes = ALL_MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+        for (k, solver) in Solver::ALL.into_iter().chain(meshes).enumerate() {
+            for stage in [DrawStage::Fragment, DrawStage::Compute] {
+                let ms = 5.0 * 1.2f64.powi(k as i32) + f64::from(stage == DrawStage::Compute);
+                let mut one = row(&[&[(None, ms)], &[(None, 1.02 * ms)]]);
+                one.settings = Settings {
+                    solver,
+                    stage,
+                    ..one.settings
+                };
+                let p99 = 4.0 * 0.5f64.powi(k as i32);
+                one.errors.depth = Some(Spread {
+                    rms: p99,
+                    p99,
+                    max: p99,
+                });
+                rows.push(one.clone());
+                if solver == Solver::Circle {
+                    one.settings = papers_loop(&spindle(), &one.settings);
+                    rows.push(one);
+                }
+            }
+        }
+        rows.retain(|r| !r.settings.solver.is_mesh() || r.settings.stage == DrawStage::Fragment);
+        rows
+    }
+
+    #[test]
+    fn no_words_cover_each_other_in_the_fullest_charts() {
+        let rows = crowded();
+        let ways: Vec<Settings> = rows.iter().map(|r| r.settings).collect();
+        let looks = Looks::new(&ways);
+        let all: Vec<&Row> = rows.iter().collect();
+        for figure in [
+            error_chart("king@25:close, 1366x706", &all, &looks),
+            time_chart(&all, &looks),
+        ] {
+            assert_eq!(figure.faults(), Vec::<String>::new(), "{}", figure.title);
+        }
+        // Meshes are one line with a word at each, not an entry each in the legend.
+        let said = svg(&error_chart("t", &all, &looks));
+        assert_eq!(said.matches(">mesh").count(), 1);
+        assert!(said.contains(">512x1024<") || said.contains(">128x256<"));
+    }
+
+    #[test]
+    fn a_page_of_times_is_no_longer_than_paper() {
+        let rows = crowded();
+        let picture: Vec<&Row> = rows.iter().take(15).collect();
+        let pages = pages(&vec![picture; 5]);
+        let lengths: Vec<usize> = pages.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [30, 30, 15]);
+    }
+}

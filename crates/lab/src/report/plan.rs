@@ -1,0 +1,388 @@
+//! What is to be measured: views, settings, and which of them are measured against each other.
+
+use super::names;
+use super::view::View;
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+
+/// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axes {
+    /// Where rays are traced.
+    pub stages: Vec<DrawStage>,
+    /// The searches.
+    pub solvers: Vec<Solver>,
+    /// Bounds on their steps.
+    pub max_steps: Vec<Option<u32>>,
+    /// Widths and heights, pixels.
+    pub sizes: Vec<(u32, u32)>,
+    /// Rows of the shape maps.
+    pub map_rows: Vec<Option<u32>>,
+    /// Sources of distances.
+    pub sources: Vec<Option<MapSource>>,
+    /// Formats of the maps.
+    pub formats: Vec<MapFormat>,
+}
+
+impl Default for Axes {
+    /// Both stages and every search at 800x600, all else as drawing takes it.
+    fn default() -> Self {
+        let settings = Settings::default();
+        Self {
+            stages: vec![DrawStage::Fragment, DrawStage::Compute],
+            solvers: Solver::ALL.to_vec(),
+            max_steps: vec![settings.max_steps],
+            sizes: vec![(settings.width, settings.height)],
+            map_rows: vec![settings.map_rows],
+            sources: vec![settings.map_source],
+            formats: vec![settings.map_format],
+        }
+    }
+}
+
+impl Axes {
+    /// Every combination, sizes slowest.
+    #[must_use]
+    pub fn combinations(&self) -> Vec<Settings> {
+        let mut all = Vec::new();
+        for &(width, height) in &self.sizes {
+            for &stage in &self.stages {
+                for &solver in &self.solvers {
+                    for &max_steps in &self.max_steps {
+                        for &map_rows in &self.map_rows {
+                            for &map_source in &self.sources {
+                                for &map_format in &self.formats {
+                                    all.push(Settings {
+                                        width,
+                                        height,
+                                        stage,
+                                        solver,
+                                        max_steps,
+                                        map_rows,
+                                        map_source,
+                                        map_format,
+                                        planes: Planes::Color,
+                                        ..Settings::default()
+                                    });
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        all
+    }
+}
+
+/// One measurement: a view drawn in one way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// Index of the view.
+    pub view: usize,
+    /// How it is drawn.
+    pub settings: Settings,
+}
+
+/// All that is measured in one run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What is looked at.
+    pub views: Vec<View>,
+    /// The measurements, none twice.
+    pub cases: Vec<Case>,
+    /// Whether views are compared with each other: then all views of one size are drawn in turn, not each view by itself.
+    pub mixed: bool,
+}
+
+impl Plan {
+    /// Every view drawn in every way; a way that is named twice is taken once.
+    #[must_use]
+    pub fn new(views: Vec<View>, ways: &[Settings]) -> Self {
+        let mut plan = Self {
+            views,
+            cases: Vec::new(),
+            mixed: false,
+        };
+        for view in 0..plan.views.len() {
+            for settings in ways {
+                plan.add(view, *settings);
+            }
+        }
+        plan
+    }
+
+    /// Adds a measurement unless it is there.
+    pub fn add(&mut self, view: usize, settings: Settings) {
+        let case = Case { view, settings };
+        if view < self.views.len() && !self.cases.contains(&case) {
+            self.cases.push(case);
+        }
+    }
+
+    /// Adds, for every view, size and stage of the plan, the loop of the papers, to which speeds are put in proportion.
+    pub fn add_papers_loop(&mut self) {
+        for case in self.cases.clone() {
+            let papers = papers_loop(&self.views[case.view], &case.settings);
+            self.add(case.view, papers);
+        }
+    }
+
+    /// Adds, for every view and size that is measured in the fragment stage, the rival in these segments and rings.
+    pub fn add_meshes(&mut self, meshes: &[(u32, u32)]) {
+        for case in self.cases.clone() {
+            if case.settings.stage == DrawStage::Fragment {
+                for &(segments, rings) in meshes {
+                    let solver = Solver::Mesh { segments, rings };
+                    self.add(case.view, plain(&case.settings, solver));
+                }
+            }
+        }
+    }
+
+    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size in a mixed plan.
+    #[must_use]
+    pub fn groups(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (index, case) in self.cases.iter().enumerate() {
+            let same = |group: &&mut Vec<usize>| {
+                group
+                    .first()
+                    .is_some_and(|&first| self.in_turn(&self.cases[first], case))
+            };
+            match groups.iter_mut().find(same) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        groups
+    }
+}
+
+impl Plan {
+    fn in_turn(&self, a: &Case, b: &Case) -> bool {
+        let size = |c: &Case| (c.settings.width, c.settings.height);
+        if self.mixed {
+            size(a) == size(b)
+        } else {
+            together(a, b)
+        }
+    }
+}
+
+/// Whether two measurements show the same picture.
+#[must_use]
+pub fn together(a: &Case, b: &Case) -> bool {
+    let key = |c: &Case| (c.view, c.settings.width, c.settings.height);
+    key(a) == key(b)
+}
+
+/// The searches that a benchmark takes where none is named: those that somebody may want to choose between. Equal steps are left to the whole
+/// sweep: they cost two to five times as much as the rest and are beaten in time and error at once.
+pub const USUAL: [Solver; 5] = [
+    Solver::Circle,
+    Solver::Cone,
+    Solver::Live,
+    Solver::Quadric,
+    Solver::Hull,
+];
+
+/// The searches of a look: the papers' loop is there anyhow.
+pub const FEW: [Solver; 3] = [Solver::Live, Solver::Quadric, Solver::Hull];
+
+/// The tessellations that are measured where none is named, segments and rings: one that a game would take, and finer ones up to the errors of
+/// exact pieces. Each is a quarter as wrong as the one before.
+pub const MESHES: [(u32, u32); 3] = [(128, 256), (256, 512), (512, 1024)];
+
+/// The tessellations of the whole sweep.
+pub const ALL_MESHES: [(u32, u32); 5] = [(32, 64), (64, 128), (128, 256), (256, 512), (512, 1024)];
+
+/// `solver` at the stage and size of `settings`, all else as drawing takes it.
+#[must_use]
+pub fn plain(settings: &Settings, solver: Solver) -> Settings {
+    Settings {
+        width: settings.width,
+        height: settings.height,
+        stage: settings.stage,
+        planes: settings.planes,
+        solver,
+        ..Settings::default()
+    }
+}
+
+/// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a bevel of 25 and 10
+/// halvings, on a binary image's distances in 8 bits.
+#[must_use]
+pub fn papers_loop(view: &View, settings: &Settings) -> Settings {
+    Settings {
+        solver: Solver::Circle,
+        max_steps: Some(if view.technique().is_beveled() {
+            25
+        } else {
+            20
+        }),
+        map_source: Some(MapSource::Binary),
+        map_format: MapFormat::Rgba8,
+        map_rows: None,
+        ..*settings
+    }
+}
+
+/// A way of drawing apart from its size: what a summary over views and sizes is told by.
+#[must_use]
+pub fn variant(settings: &Settings) -> Settings {
+    Settings {
+        width: 0,
+        height: 0,
+        planes: Planes::Color,
+        ..*settings
+    }
+}
+
+/// Names ways of drawing as briefly as tells them apart: what is the same in all of them is left out.
+#[derive(Clone, Debug)]
+pub struct Labels {
+    steps: bool,
+    rows: bool,
+    source: bool,
+    format: bool,
+}
+
+impl Labels {
+    /// Labels for these ways; the loop of the papers and meshes have their own names and do not count.
+    #[must_use]
+    pub fn new<'a>(ways: impl IntoIterator<Item = &'a Settings>) -> Self {
+        let counts = |s: &&Settings| !is_papers_loop(s) && !s.solver.is_mesh();
+        let ways: Vec<_> = ways.into_iter().filter(counts).collect();
+        fn differs<T: PartialEq>(ways: &[&Settings], of: impl Fn(&Settings) -> T) -> bool {
+            ways.windows(2).any(|w| of(w[0]) != of(w[1]))
+        }
+        Self {
+            steps: differs(&ways, |s| s.max_steps),
+            rows: differs(&ways, |s| s.map_rows),
+            source: differs(&ways, |s| s.map_source),
+            format: differs(&ways, |s| s.map_format),
+        }
+    }
+
+    /// The search and what else tells this way from the others, without the stage.
+    #[must_use]
+    pub fn way(&self, s: &Settings) -> String {
+        if is_papers_loop(s) {
+            return PAPERS_LOOP.to_owned();
+        }
+        let mut name = s.solver.to_string();
+        if s.solver.is_mesh() {
+            return name; // which has neither steps nor a map
+        }
+        // A search without a loop has no bound to tell.
+        if self.steps && s.solver.default_steps(false) > 1 {
+            let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
+            name += &format!(" {steps} steps");
+        }
+        if let (true, Some(rows)) = (self.rows, s.map_rows) {
+            name += &format!(" {rows} rows");
+        }
+        if let (true, Some(source)) = (self.source, s.map_source) {
+            name += &format!(" {}", names::source(source));
+        }
+        if self.format {
+            name += &format!(" {}", names::format(s.map_format));
+        }
+        name
+    }
+}
+
+/// What reports call the loop of the papers.
+pub const PAPERS_LOOP: &str = "papers' loop";
+
+/// Whether settings are those of [`papers_loop`].
+#[must_use]
+pub fn is_papers_loop(s: &Settings) -> bool {
+    s.solver == Solver::Circle
+        && matches!(s.max_steps, Some(20 | 25))
+        && s.map_source == Some(MapSource::Binary)
+        && s.map_format == MapFormat::Rgba8
+        && s.map_rows.is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::view::tests::spindle;
+    use super::*;
+
+    fn axes() -> Axes {
+        Axes {
+            max_steps: vec![None, Some(48)],
+            sizes: vec![(64, 48), (32, 24)],
+            sources: vec![Some(MapSource::Binary), Some(MapSource::Exact)],
+            formats: vec![MapFormat::R16, MapFormat::Rgba8],
+            solvers: vec![Solver::Circle],
+            ..Axes::default()
+        }
+    }
+
+    #[test]
+    fn every_combination_is_there_once() {
+        let all = axes().combinations();
+        assert_eq!(all.len(), 2 * 2 * 2 * 2 * 2);
+        for (i, a) in all.iter().enumerate() {
+            assert!(!all[..i].contains(a));
+        }
+        let plan = Plan::new(vec![spindle(), spindle()], &[all.clone(), all].concat());
+        assert_eq!(plan.cases.len(), 64);
+    }
+
+    #[test]
+    fn groups_hold_what_shows_one_picture() {
+        let plan = Plan::new(vec![spindle(), spindle()], &axes().combinations());
+        let groups = plan.groups();
+        assert_eq!(groups.len(), 4);
+        let mut seen: Vec<_> = groups.concat();
+        seen.sort_unstable();
+        assert_eq!(seen, (0..plan.cases.len()).collect::<Vec<_>>());
+        for group in groups {
+            assert!(
+                group
+                    .iter()
+                    .all(|&i| together(&plan.cases[i], &plan.cases[group[0]]))
+            );
+        }
+    }
+
+    #[test]
+    fn the_papers_loop_is_added_to_each_stage_and_size_once() {
+        let mut plan = Plan::new(vec![spindle()], &axes().combinations());
+        plan.add_papers_loop();
+        plan.add_papers_loop();
+        let papers = plan
+            .cases
+            .iter()
+            .filter(|c| is_papers_loop(&c.settings))
+            .count();
+        assert_eq!((papers, plan.cases.len()), (4, 36));
+        let mut beveled = spindle();
+        beveled.scene.objects[0].offset.bevel = 0.3;
+        assert_eq!(
+            papers_loop(&beveled, &plan.cases[0].settings).max_steps,
+            Some(25)
+        );
+    }
+
+    #[test]
+    fn labels_tell_apart_and_say_no_more() {
+        let ways = axes().combinations();
+        let labels = Labels::new(&ways);
+        assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
+        assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
+        let mut plan = Plan::new(vec![spindle()], &Axes::default().combinations());
+        plan.add_papers_loop();
+        let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
+        assert_eq!(labels.way(&plan.cases[0].settings), Solver::ALL[0].name());
+        assert_eq!(
+            labels.way(&plan.cases.last().unwrap().settings),
+            PAPERS_LOOP
+        );
+    }
+}

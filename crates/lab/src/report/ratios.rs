@@ -1,0 +1,343 @@
+//! Times in proportion to a rival's, over all views: the tables that say which search is faster, and how sure that is.
+
+use super::plan::{is_papers_loop, variant};
+use super::row::Row;
+use super::stats::{self, Interval};
+use revmap::settings::{DrawStage, Settings, Solver};
+
+/// One way of drawing against a rival: the loop of the papers in the same stage, or a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratio {
+    /// The way, without its size.
+    pub settings: Settings,
+    /// Time over the rival's: the geometric mean over views and sizes, with its 95 % interval.
+    pub time: Interval,
+    /// The least and the greatest ratio of a single view and size.
+    pub range: (f64, f64),
+    /// How many views and sizes.
+    pub pictures: usize,
+    /// Missed and ghost pixels over the pixels hit, all pictures together.
+    pub wrong: f64,
+    /// The 99th percentile of the depth error, texels of a 512-row map: the geometric mean over the pictures, of none less than [`LEAST_DEPTH`];
+    /// `None` where nothing was hit.
+    pub depth_p99: Option<f64>,
+    /// That of the worst picture.
+    pub depth_worst: Option<f64>,
+    /// The worst root mean square of the normals' angles, degrees.
+    pub normal_rms: Option<f64>,
+}
+
+/// Every way's ratio to the loop of the papers, in the order in which the ways first appear. Rows whose clocks disagree count for
+/// nothing, and neither do pictures of which the rival has no usable row.
+#[must_use]
+pub fn over_papers_loop(rows: &[Row]) -> Vec<Ratio> {
+    let pairs = |way: &Settings| of_way(rows, way, |row| papers_row(rows, row));
+    ways(rows).iter().filter_map(pairs).collect()
+}
+
+/// The default search against meshes, over the pictures of which both have a usable row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Duel {
+    /// The default search in one stage, its errors those in these pictures.
+    pub ours: Ratio,
+    /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth, pictures without one left out.
+    pub mesh: Option<Solver>,
+    /// The 99th percentile of the mesh's depth error: as [`Ratio::depth_p99`].
+    pub mesh_p99: Option<f64>,
+    /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of equals.
+    pub no_worse: usize,
+}
+
+/// The time of the default search, in each stage, over that of meshes in the fragment stage: of each mesh, then of the coarsest that errs
+/// no more.
+#[must_use]
+pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
+    let all = ways(rows);
+    let meshes = || all.iter().map(|w| w.solver).filter(|s| s.is_mesh());
+    let ours = all.iter().filter(|w| w.solver == Solver::DEFAULT);
+    ours.flat_map(|way| {
+        let rivals = meshes().map(Some).chain(meshes().next().map(|_| None));
+        rivals.filter_map(|mesh| duel(rows, way, mesh))
+    })
+    .collect()
+}
+
+fn duel(rows: &[Row], way: &Settings, mesh: Option<Solver>) -> Option<Duel> {
+    let rival = |row: &Row| {
+        rows.iter()
+            .filter(|r| r.settings.solver.is_mesh() && same_picture(r, row) && r.time().is_some())
+            .filter(|r| match mesh {
+                Some(mesh) => r.settings.solver == mesh,
+                None => errs_no_more(r, row),
+            })
+            .min_by_key(|r| r.settings.solver.quads())
+    };
+    let ours = of_way(rows, way, rival)?;
+    let own = rows.iter().filter(|r| variant(&r.settings) == *way);
+    let pairs: Vec<(&Row, &Row)> = own
+        .filter(|r| r.time().is_some())
+        .filter_map(|r| Some((rival(r)?, r)))
+        .collect();
+    Some(Duel {
+        ours,
+        mesh,
+        mesh_p99: typical_depth(pairs.iter().map(|(m, _)| *m)),
+        no_worse: pairs.iter().filter(|(m, r)| errs_no_more(m, r)).count(),
+    })
+}
+
+/// What an error of depth counts for at least, texels: roundings of 32 bits.
+pub const LEAST_DEPTH: f64 = 1e-4;
+
+/// The geometric mean of the rows' depth errors.
+fn typical_depth<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
+    let logs: Vec<f64> = rows
+        .filter_map(|r| Some(r.errors.depth?.p99.max(LEAST_DEPTH).ln()))
+        .collect();
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
+}
+
+/// Whether the depth error of `mesh` (99th percentile) is no more than that of `row`.
+fn errs_no_more(mesh: &Row, row: &Row) -> bool {
+    let p99 = |r: &Row| r.errors.depth.map(|d| d.p99);
+    p99(mesh).zip(p99(row)).is_some_and(|(a, b)| a <= b)
+}
+
+/// The ways of drawing, in the order in which they first appear.
+fn ways(rows: &[Row]) -> Vec<Settings> {
+    let mut ways: Vec<Settings> = Vec::new();
+    for row in rows {
+        let way = variant(&row.settings);
+        if !ways.contains(&way) {
+            ways.push(way);
+        }
+    }
+    ways
+}
+
+/// A way over the rival that `rival` gives for each of its rows.
+fn of_way<'a>(
+    rows: &'a [Row],
+    way: &Settings,
+    rival: impl Fn(&Row) -> Option<&'a Row>,
+) -> Option<Ratio> {
+    let mut pairs: Vec<(&Row, &Row)> = Vec::new();
+    for row in rows
+        .iter()
+        .filter(|r| variant(&r.settings) == *way && r.time().is_some())
+    {
+        pairs.extend(rival(row).map(|rival| (row, rival)));
+    }
+    let first = pairs.first()?;
+    let passes = first.0.passes.len();
+    let in_pass = |pass: usize| -> Vec<f64> {
+        pairs
+            .iter()
+            .filter_map(|(a, b)| paired(a, b, pass))
+            .collect()
+    };
+    // A pass that was ended early holds fewer pictures and would compare others.
+    let all: Vec<Vec<f64>> = (0..passes)
+        .map(in_pass)
+        .filter(|logs| logs.len() == pairs.len())
+        .collect();
+    let means: Vec<f64> = all
+        .iter()
+        .map(|logs| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
+        .collect();
+    let time = stats::geometric(&means)?;
+    let single: Vec<f64> = (0..pairs.len())
+        .map(|k| (all.iter().map(|logs| logs[k]).sum::<f64>() / all.len() as f64).exp())
+        .collect();
+    let sum = |f: fn(&Row) -> usize| pairs.iter().map(|(a, _)| f(a)).sum::<usize>() as f64;
+    let worst =
+        |f: fn(&Row) -> Option<f64>| pairs.iter().filter_map(|(a, _)| f(a)).reduce(f64::max);
+    Some(Ratio {
+        settings: *way,
+        time,
+        range: single
+            .iter()
+            .fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(*v), h.max(*v))),
+        pictures: pairs.len(),
+        wrong: sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0),
+        depth_p99: typical_depth(pairs.iter().map(|(a, _)| *a)),
+        depth_worst: worst(|r| r.errors.depth.map(|d| d.p99)),
+        normal_rms: worst(|r| r.errors.normal.map(|n| n.rms)),
+    })
+}
+
+/// The papers' loop that shows the same picture in the same stage. The reference is held against the fragment stage.
+fn papers_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
+    let stage = match row.settings.stage {
+        DrawStage::Reference => DrawStage::Fragment,
+        other => other,
+    };
+    rows.iter().find(|r| {
+        is_papers_loop(&r.settings)
+            && r.view == row.view
+            && (r.settings.width, r.settings.height, r.settings.stage)
+                == (row.settings.width, row.settings.height, stage)
+            && r.time().is_some()
+    })
+}
+
+/// Whether two rows show the same view at the same size.
+fn same_picture(a: &Row, b: &Row) -> bool {
+    let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
+    key(a) == key(b)
+}
+
+/// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot be trusted.
+#[must_use]
+pub fn between(a: &Row, b: &Row) -> Option<Interval> {
+    a.time().and(b.time())?;
+    let passes = a.passes.len().min(b.passes.len());
+    let ratios: Vec<f64> = (0..passes)
+        .filter_map(|pass| paired(a, b, pass))
+        .map(f64::exp)
+        .collect();
+    stats::geometric(&ratios)
+}
+
+/// Logarithm of the median ratio of samples that were taken in the same round.
+fn paired(a: &Row, b: &Row, pass: usize) -> Option<f64> {
+    let (a, b) = (a.passes.get(pass)?, b.passes.get(pass)?);
+    let logs: Vec<f64> = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| (Row::sample_ms(a) / Row::sample_ms(b)).ln())
+        .collect();
+    stats::median(&logs).filter(|v| v.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::plan::papers_loop;
+    use super::super::row::tests::row;
+    use super::super::view::tests::spindle;
+    use super::*;
+
+    fn papers(mut row: Row) -> Row {
+        row.settings = papers_loop(&spindle(), &row.settings);
+        row
+    }
+
+    /// A machine that slows down to a third within a pass and between passes changes no ratio.
+    #[test]
+    fn drift_of_the_machine_cancels() {
+        let ours = row(&[&[(None, 10.0), (None, 30.0)], &[(None, 20.0), (None, 11.0)]]);
+        let theirs = papers(row(&[
+            &[(None, 20.0), (None, 60.0)],
+            &[(None, 40.0), (None, 22.0)],
+        ]));
+        let ratios = over_papers_loop(&[ours, theirs]);
+        assert_eq!(ratios.len(), 2);
+        let time = ratios[0].time;
+        assert!(
+            (time.value - 0.5).abs() < 1e-12 && (time.high - time.low) < 1e-9,
+            "{time:?}"
+        );
+        assert!((ratios[1].time.value - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn views_are_averaged_geometrically() {
+        let mut rows = Vec::new();
+        for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
+            let mut a = row(&[&[(None, ours)], &[(None, ours)]]);
+            let mut b = papers(row(&[&[(None, 20.0)], &[(None, 20.0)]]));
+            (a.view, b.view) = (view, view);
+            rows.extend([a, b]);
+        }
+        let ratio = &over_papers_loop(&rows)[0];
+        assert!((ratio.time.value - 0.5).abs() < 1e-12);
+        assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
+        assert_eq!(ratio.pictures, 2);
+        // So are depths, beside the worst.
+        for (row, p99) in rows.iter_mut().step_by(2).zip([0.01, 0.04]) {
+            row.errors.depth = Some(crate::compare::Spread {
+                rms: p99,
+                p99,
+                max: p99,
+            });
+        }
+        let ratio = &over_papers_loop(&rows)[0];
+        assert!(ratio.depth_p99.is_some_and(|p| (p - 0.02).abs() < 1e-12));
+        assert_eq!(ratio.depth_worst, Some(0.04));
+    }
+
+    #[test]
+    fn what_cannot_be_trusted_counts_for_nothing() {
+        let lies = row(&[&[(Some(0.04), 20.0)]]);
+        let fine = papers(row(&[&[(Some(20.0), 20.0)]]));
+        let ratios = over_papers_loop(&[lies.clone(), fine.clone()]);
+        assert_eq!(ratios.len(), 1, "only the papers' loop itself");
+        // A rival that lies leaves nothing to compare with, and another stage or size is no rival.
+        assert!(over_papers_loop(&[row(&[&[(None, 20.0)]]), papers(lies)]).is_empty());
+        let mut compute = row(&[&[(None, 20.0)]]);
+        compute.settings.stage = DrawStage::Compute;
+        assert_eq!(over_papers_loop(&[compute, fine]).len(), 1);
+    }
+
+    /// A run that was ended in its second pass: the picture that lacks the pass must not shift the mean.
+    #[test]
+    fn a_pass_that_was_ended_early_is_left_out() {
+        let mut rows = Vec::new();
+        for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
+            let passes: &[&[(Option<f64>, f64)]] = &[&[(None, ours)], &[(None, ours)]];
+            let count = if view == 0 { 2 } else { 1 };
+            let mut a = row(&passes[..count]);
+            let mut b = papers(row(
+                &[[(None, 20.0)].as_slice(), [(None, 20.0)].as_slice()][..count]
+            ));
+            (a.view, b.view) = (view, view);
+            rows.extend([a, b]);
+        }
+        let time = over_papers_loop(&rows)[0].time;
+        assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
+    }
+
+    /// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is not.
+    #[test]
+    fn the_default_search_is_held_against_meshes() {
+        let depth = |p99| {
+            Some(crate::compare::Spread {
+                rms: p99,
+                p99,
+                max: p99,
+            })
+        };
+        let timed = |solver, ms: f64, p99| {
+            let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+            row.settings.solver = solver;
+            row.errors.depth = depth(p99);
+            row
+        };
+        let mesh = |n| Solver::mesh(n, 2 * n).unwrap();
+        let rows = [
+            timed(Solver::DEFAULT, 9.0, 0.01),
+            timed(mesh(64), 6.0, 0.5),
+            timed(mesh(512), 36.0, 0.009),
+            timed(mesh(256), 18.0, 0.01),
+        ];
+        let duels = over_meshes(&rows);
+        let told: Vec<_> = duels
+            .iter()
+            .map(|d| (d.mesh, (d.ours.time.value * 100.0).round(), d.no_worse))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (Some(mesh(64)), 150.0, 0),
+                (Some(mesh(512)), 25.0, 1),
+                (Some(mesh(256)), 50.0, 1),
+                (None, 50.0, 1)
+            ]
+        );
+        assert!(duels[0].mesh_p99.is_some_and(|p| (p - 0.5).abs() < 1e-12));
+        // Without a mesh that errs no more there is no such ratio, and without the default search none at all.
+        assert_eq!(over_meshes(&rows[..2]).len(), 1);
+        assert!(over_meshes(&rows[1..]).is_empty());
+    }
+}

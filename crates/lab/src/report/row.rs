@@ -1,0 +1,295 @@
+//! One measurement with all that was found out about it, as a line of `results.csv`.
+
+use super::framing::Framing;
+use super::measure::Sample;
+use super::names::{self, number};
+use super::plan::Case;
+use super::stats::{self, Interval};
+use super::view::{Technique, View};
+use crate::compare::Comparison;
+use revmap::frame::Frame;
+use revmap::maps::MapSource;
+use revmap::scene::Offset;
+use revmap::settings::Settings;
+
+/// Columns of `results.csv`, in their order.
+pub const COLUMNS: [&str; 31] = [
+    "scene",
+    "technique",
+    "extend",
+    "bevel",
+    "chamfer",
+    "stage",
+    "solver",
+    "max_steps",
+    "width",
+    "height",
+    "map_rows",
+    "map_source",
+    "map_format",
+    "objects",
+    "gpu_ms_median",
+    "gpu_ms_p95",
+    "frame_ms_median",
+    "fps",
+    "steps_mean",
+    "steps_p99",
+    "steps_max",
+    "missed",
+    "ghost",
+    "depth_rms_texels",
+    "depth_p99_texels",
+    "depth_max_texels",
+    "normal_rms_degrees",
+    "silhouette_hausdorff_px",
+    "flip",
+    "device",
+    "driver",
+];
+
+/// How far the device's clock and the wall clock may be apart, relative to the wall clock.
+pub const CLOCKS_APART: f64 = 0.15;
+
+/// Look-ups over the pixels in which the search ran.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steps {
+    /// Mean.
+    pub mean: f64,
+    /// 99th percentile (nearest rank).
+    pub p99: f64,
+    /// Most.
+    pub max: f64,
+    /// Pixels in which a search ran out of steps.
+    pub exhausted: usize,
+}
+
+impl Steps {
+    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any box.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Self {
+        let steps: Vec<f64> = frame
+            .steps
+            .iter()
+            .filter(|s| **s > 0.0)
+            .map(|s| f64::from(*s))
+            .collect();
+        Self {
+            mean: steps.iter().sum::<f64>() / steps.len().max(1) as f64,
+            p99: stats::quantile(&steps, 0.99).unwrap_or(0.0),
+            max: steps.iter().copied().fold(0.0, f64::max),
+            exhausted: frame.exhausted,
+        }
+    }
+}
+
+/// What the two clocks say about each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Clocks {
+    /// They agree.
+    Agree,
+    /// The device has no clock of its own; the wall clock stands alone.
+    Wall,
+    /// They are further apart than [`CLOCKS_APART`]: at least one is wrong, and the row counts in no summary.
+    Disagree {
+        /// Median of the device's clock, ms.
+        gpu_ms: f64,
+        /// Median of the wall clock, ms.
+        frame_ms: f64,
+    },
+}
+
+/// One measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Index of the view in the plan.
+    pub view: usize,
+    /// The view's name.
+    pub scene: String,
+    /// How much of the picture its solids take.
+    pub framing: Framing,
+    /// Form of the offset.
+    pub technique: Technique,
+    /// The offset, where all objects have the same.
+    pub offset: Option<Offset>,
+    /// How it was drawn.
+    pub settings: Settings,
+    /// Rows of the maps, where all objects have the same.
+    pub map_rows: Option<u32>,
+    /// Source of the distances, where all objects have the same.
+    pub source: Option<MapSource>,
+    /// Solids in the scene, copies counted.
+    pub solids: usize,
+    /// How far the picture is from the truth.
+    pub errors: Comparison,
+    /// Look-ups.
+    pub steps: Steps,
+    /// Bytes of maps on the device.
+    pub map_bytes: u64,
+    /// What frames took, in the passes and rounds in which they were drawn.
+    pub passes: Vec<Vec<Sample>>,
+}
+
+impl Row {
+    /// A row of which the accuracy is known, and no time yet.
+    #[must_use]
+    pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
+        let objects = &view.scene.objects;
+        let settings = case.settings;
+        let searched = !settings.solver.is_mesh();
+        Self {
+            view: case.view,
+            scene: view.name.clone(),
+            framing: view.framing,
+            technique: view.technique(),
+            offset: view.offset(),
+            settings,
+            map_rows: settings
+                .map_rows
+                .or_else(|| one(objects.iter().map(|o| o.map_rows)))
+                .filter(|_| searched),
+            source: settings
+                .map_source
+                .or_else(|| one(objects.iter().map(|o| MapSource::best_for(&o.profile))))
+                .filter(|_| searched),
+            solids: view.solids(),
+            errors,
+            steps,
+            map_bytes,
+            passes: Vec::new(),
+        }
+    }
+
+    /// The share of the picture's pixels in which the reference hits, 0 to 1.
+    #[must_use]
+    pub fn covered(&self) -> f64 {
+        self.errors.hits as f64 / self.errors.pixels.max(1) as f64
+    }
+
+    /// The bound on steps.
+    #[must_use]
+    pub fn max_steps(&self) -> u32 {
+        self.settings.max_steps.unwrap_or_else(|| {
+            self.settings
+                .solver
+                .default_steps(self.offset.is_some_and(|o| o.bevel != 0.0))
+        })
+    }
+
+    /// All samples of the device's clock, ms; empty where it has none.
+    #[must_use]
+    pub fn gpu_ms(&self) -> Vec<f64> {
+        self.passes
+            .iter()
+            .flatten()
+            .filter_map(|s| s.gpu_ms)
+            .collect()
+    }
+
+    /// All samples of the wall clock, ms.
+    #[must_use]
+    pub fn frame_ms(&self) -> Vec<f64> {
+        self.passes.iter().flatten().map(|s| s.frame_ms).collect()
+    }
+
+    /// Whether the two clocks agree.
+    #[must_use]
+    pub fn clocks(&self) -> Clocks {
+        let Some(gpu_ms) = stats::median(&self.gpu_ms()) else {
+            return Clocks::Wall;
+        };
+        let frame_ms = stats::median(&self.frame_ms()).unwrap_or(0.0);
+        if (gpu_ms - frame_ms).abs() <= CLOCKS_APART * frame_ms {
+            Clocks::Agree
+        } else {
+            Clocks::Disagree { gpu_ms, frame_ms }
+        }
+    }
+
+    /// One sample's time: by the device's clock where there is one, else by the wall clock.
+    #[must_use]
+    pub fn sample_ms(sample: &Sample) -> f64 {
+        sample.gpu_ms.unwrap_or(sample.frame_ms)
+    }
+
+    /// The median of each pass, ms.
+    #[must_use]
+    pub fn pass_medians(&self) -> Vec<f64> {
+        let times = |pass: &Vec<Sample>| {
+            stats::median(&pass.iter().map(Self::sample_ms).collect::<Vec<_>>())
+        };
+        self.passes.iter().filter_map(times).collect()
+    }
+
+    /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was timed.
+    #[must_use]
+    pub fn time(&self) -> Option<Interval> {
+        match self.clocks() {
+            Clocks::Disagree { .. } => None,
+            Clocks::Agree | Clocks::Wall => stats::geometric(&self.pass_medians()),
+        }
+    }
+
+    /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are empty: a number there
+    /// would be believed.
+    #[must_use]
+    pub fn record(&self, device: &str, driver: &str) -> Vec<String> {
+        let gpu = match self.clocks() {
+            Clocks::Agree => self.gpu_ms(),
+            Clocks::Wall | Clocks::Disagree { .. } => Vec::new(),
+        };
+        let frame = stats::median(&self.frame_ms());
+        let num = |v: Option<f64>| v.map(|v| number(v, 6)).unwrap_or_default();
+        let offset = |f: fn(&Offset) -> f64| num(self.offset.as_ref().map(f));
+        let e = &self.errors;
+        let whole = |n: usize| n.to_string();
+        let s = &self.settings;
+        // A mesh has no search, whose columns these are.
+        let search = |text: String| {
+            Some(text)
+                .filter(|_| !s.solver.is_mesh())
+                .unwrap_or_default()
+        };
+        vec![
+            self.scene.clone(),
+            self.technique.name().into(),
+            offset(|o| o.extend),
+            offset(|o| o.bevel),
+            offset(|o| o.chamfer),
+            names::stage(s.stage).into(),
+            s.solver.to_string(),
+            search(self.max_steps().to_string()),
+            s.width.to_string(),
+            s.height.to_string(),
+            self.map_rows.map(|r| r.to_string()).unwrap_or_default(),
+            self.source.map(names::source).unwrap_or_default().into(),
+            search(names::format(s.map_format).into()),
+            whole(self.solids),
+            num(stats::median(&gpu)),
+            num(stats::quantile(&gpu, 0.95)),
+            num(frame),
+            num(frame.map(|ms| 1e3 / ms)),
+            search(num(Some(self.steps.mean))),
+            search(num(Some(self.steps.p99))),
+            search(num(Some(self.steps.max))),
+            whole(e.missed),
+            whole(e.ghost),
+            num(e.depth.map(|d| d.rms)),
+            num(e.depth.map(|d| d.p99)),
+            num(e.depth.map(|d| d.max)),
+            num(e.normal.map(|n| n.rms)),
+            num(Some(e.silhouette_hausdorff)),
+            num(Some(e.flip)),
+            device.into(),
+            driver.into(),
+        ]
+    }
+}
+
+/// The value that all have, if they do.
+fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
+    let first = all.next()?;
+    all.all(|other| other == first).then_some(first)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

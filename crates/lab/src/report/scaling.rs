@@ -1,0 +1,216 @@
+//! How time grows: with pixels, with solids, with rows of the map; each with the exponent of a power law.
+
+mod growth;
+mod ranges;
+
+pub use growth::{Growth, growth, value};
+pub use ranges::{MESHES, Ranges, plan};
+
+use super::chapters;
+use super::chart::Figure;
+use super::chart::axis::Axis;
+use super::chart::xy::{Guide, Point, Series, XyChart};
+use super::folder::{keep_figure, write_text};
+use super::looks::Looks;
+use super::machine::Machine;
+use super::measure::Measured;
+use super::names::{number, stage};
+use super::page::Page;
+use super::plan::{Plan, variant};
+use super::row::Row;
+use super::text;
+use revmap::error::Result;
+use revmap::settings::Settings;
+use std::path::Path;
+
+/// What is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Pixels of the picture.
+    Pixels,
+    /// Copies of a solid.
+    Solids,
+    /// Rows of the shape map.
+    Rows,
+}
+
+impl Quantity {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Pixels, Self::Solids, Self::Rows];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pixels => "pixels",
+            Self::Solids => "solids",
+            Self::Rows => "rows of the map",
+        }
+    }
+
+    /// What stays the same while it grows.
+    fn setting(self) -> &'static str {
+        match self {
+            Self::Pixels => {
+                "One solid that fills nine tenths of the picture's height, in pictures of growing size."
+            }
+            Self::Solids => {
+                "A square field of copies at 800x600, seen from above so that the field always fills the picture: the pixels covered stay about the same while the copies grow smaller \
+                 and more. Meshes keep their tessellation, and are drawn as long as all copies together have at most 8 million quads."
+            }
+            Self::Rows => {
+                "One solid at 800x600, its map of more and more rows; searches that read no map are not in it."
+            }
+        }
+    }
+}
+
+fn records(all: &[Growth], looks: &Looks) -> Vec<Vec<String>> {
+    let record = |g: &Growth| {
+        let ends = |k: Option<&(f64, f64)>| k.map(|p| number(p.1, 3)).unwrap_or_default();
+        vec![
+            looks.way(&g.way),
+            stage(g.way.stage).to_owned(),
+            ends(g.points.first()),
+            ends(g.points.last()),
+            g.exponent
+                .map(|e| text::interval(&e, 2))
+                .unwrap_or_else(|| "–".into()),
+            g.last.map(|e| number(e, 2)).unwrap_or_else(|| "–".into()),
+        ]
+    };
+    all.iter().map(record).collect()
+}
+
+const HEADER: [&str; 6] = [
+    "search",
+    "stage",
+    "ms, first",
+    "ms, last",
+    "exponent (95 % interval)",
+    "exponent of the last step",
+];
+
+/// The exponents as text.
+#[must_use]
+pub fn as_text(rows: &[Row]) -> String {
+    let looks = looks(rows);
+    let mut out = String::new();
+    for quantity in Quantity::ALL {
+        let all = growth(rows, quantity);
+        if all.is_empty() {
+            continue;
+        }
+        out += &format!(
+            "Time with {}: time = factor x {} ^ exponent\n",
+            quantity.name(),
+            quantity.name()
+        );
+        out += &text::table(
+            &[
+                vec![HEADER.map(str::to_owned).to_vec()],
+                records(&all, &looks),
+            ]
+            .concat(),
+        );
+        out.push('\n');
+    }
+    out
+}
+
+fn looks(rows: &[Row]) -> Looks {
+    let ways: Vec<Settings> = rows
+        .iter()
+        .map(|r| Settings {
+            map_rows: None,
+            ..variant(&r.settings)
+        })
+        .collect();
+    Looks::new(&ways)
+}
+
+fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
+    let (unit, label) = match quantity {
+        Quantity::Pixels => (1e6, "pixels (millions)"),
+        Quantity::Solids => (1.0, "solids (number)"),
+        Quantity::Rows => (1.0, "rows of the map (number)"),
+    };
+    let series = all
+        .iter()
+        .map(|g| Series {
+            name: looks.way(&g.way),
+            style: looks.style(&g.way),
+            points: g
+                .points
+                .iter()
+                .map(|&(x, y)| Point {
+                    x: x / unit,
+                    y,
+                    label: None,
+                })
+                .collect(),
+            joined: false,
+        })
+        .collect();
+    let guides = all
+        .iter()
+        .filter_map(|g| {
+            let law = g.law?;
+            let ends = [g.points.first()?, g.points.last()?];
+            Some(Guide {
+                name: String::new(),
+                points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
+                color: looks.style(&g.way).color,
+                dash: looks.style(&g.way).dash,
+                width: looks.style(&g.way).line(),
+            })
+        })
+        .collect();
+    let ticks = match quantity {
+        Quantity::Rows => all.iter().flat_map(|g| &g.points).map(|p| p.0).collect(),
+        Quantity::Pixels | Quantity::Solids => Vec::new(),
+    };
+    XyChart {
+        title: format!("Time of a frame with {}", quantity.name()),
+        x: Axis::log(label).at(ticks),
+        y: Axis::log("time of a frame (ms)"),
+        series,
+        guides,
+    }
+    .figure()
+}
+
+/// Writes the page of growth.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine) -> Result<()> {
+    let rows = &measured.rows;
+    let looks = looks(rows);
+    let mut page = Page::new("revmap: how time grows");
+    chapters::begin(&mut page, machine, measured);
+    for quantity in Quantity::ALL {
+        let all = growth(rows, quantity);
+        if all.is_empty() {
+            continue;
+        }
+        page.chapter(&format!("With {}", quantity.name()));
+        page.text(quantity.setting());
+        let figure = chart(&all, quantity, &looks);
+        keep_figure(
+            folder,
+            &format!("scaling-{}", quantity.name().replace(' ', "-")),
+            &figure,
+        )?;
+        page.figure(
+            &figure,
+            "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, thinner in the compute stage.",
+        );
+        page.table(&HEADER, &records(&all, &looks), &[0, 1]);
+    }
+    page.chapter("All rows");
+    // Here the rows of maps tell rows apart.
+    chapters::row_table(&mut page, rows, &Looks::of(rows));
+    chapters::end(&mut page, plan, measured);
+    write_text(&folder.join("report.html"), &page.html())
+}

@@ -1,0 +1,286 @@
+//! Which budgets, maps and searches a chart of speed against accuracy sweeps over.
+
+use super::plan::{Axes, Plan, papers_loop, plain};
+use super::view::View;
+use revmap::maps::{MapFormat, MapSource};
+use revmap::profile::Shape;
+use revmap::settings::{DrawStage, Settings, Solver};
+
+/// The values that are swept, one axis at a time, the others staying at what drawing takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// Where rays are traced. Maps are swept in the first stage alone: they cost and err alike in both.
+    pub stages: Vec<DrawStage>,
+    /// The searches.
+    pub solvers: Vec<Solver>,
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+    /// Bounds on steps.
+    pub steps: Vec<u32>,
+    /// Rows of maps.
+    pub rows: Vec<u32>,
+    /// Segments and rings of meshes, in the fragment stage.
+    pub meshes: Vec<(u32, u32)>,
+}
+
+impl Sweep {
+    /// The default: both stages, every search.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            stages: vec![DrawStage::Fragment, DrawStage::Compute],
+            solvers: Solver::ALL.to_vec(),
+            size: (800, 600),
+            steps: vec![8, 16, 32, 64, 128, 256],
+            rows: vec![64, 128, 256, 512, 1024],
+            meshes: doubled(16, 512),
+        }
+    }
+
+    /// A look: one stage, few values, small pictures.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self {
+            stages: vec![DrawStage::Fragment],
+            size: (400, 300),
+            steps: vec![16, 64, 256],
+            rows: vec![128, 512],
+            meshes: doubled(32, 128),
+            ..Self::new()
+        }
+    }
+
+    /// Everything.
+    #[must_use]
+    pub fn full() -> Self {
+        Self {
+            steps: vec![4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 512],
+            rows: vec![32, 64, 128, 256, 512, 1024, 2048],
+            meshes: doubled(8, 1024),
+            ..Self::new()
+        }
+    }
+
+    /// The plan over these views: for each view the sweeps over steps, over rows with every source, and over formats, over meshes, and the
+    /// papers' loop.
+    #[must_use]
+    pub fn plan(&self, views: Vec<View>) -> Plan {
+        let mut plan = Plan {
+            views,
+            cases: Vec::new(),
+            mixed: false,
+        };
+        for view in 0..plan.views.len() {
+            let sources = sources(&plan.views[view]);
+            for (number, &stage) in self.stages.iter().enumerate() {
+                let base = Settings {
+                    stage,
+                    width: self.size.0,
+                    height: self.size.1,
+                    ..Axes::default()
+                        .combinations()
+                        .first()
+                        .copied()
+                        .unwrap_or_default()
+                };
+                for &solver in &self.solvers {
+                    let steps = |max_steps| Settings {
+                        solver,
+                        max_steps,
+                        ..base
+                    };
+                    let rows = |&rows: &u32| Settings {
+                        solver,
+                        map_rows: Some(rows),
+                        ..base
+                    };
+                    let ways: Vec<_> = if has_rows(solver) {
+                        self.rows.iter().map(rows).collect()
+                    } else {
+                        let budgets = budgets(solver, &self.steps);
+                        budgets.into_iter().map(steps).collect()
+                    };
+                    for settings in ways {
+                        plan.add(view, settings);
+                    }
+                    if number > 0 || !sweeps_maps(solver, &self.solvers) {
+                        continue;
+                    }
+                    let ample = ample(solver, &self.steps);
+                    for &rows in &self.rows {
+                        for &source in &sources {
+                            let settings = Settings {
+                                solver,
+                                max_steps: ample,
+                                map_rows: Some(rows),
+                                map_source: Some(source),
+                                ..base
+                            };
+                            plan.add(view, settings);
+                        }
+                    }
+                    for map_format in [MapFormat::Rgba8, MapFormat::R16, MapFormat::R32] {
+                        plan.add(
+                            view,
+                            Settings {
+                                solver,
+                                max_steps: ample,
+                                map_format,
+                                ..base
+                            },
+                        );
+                    }
+                }
+                for &(segments, rings) in &self.meshes {
+                    if stage == DrawStage::Fragment {
+                        plan.add(view, plain(&base, Solver::Mesh { segments, rings }));
+                    }
+                }
+                let papers = papers_loop(&plan.views[view], &base);
+                plan.add(view, papers);
+            }
+        }
+        plan
+    }
+}
+
+impl Default for Sweep {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Meshes of `from` segments to `to`, each twice as fine as the one before; twice as many rings.
+fn doubled(from: u32, to: u32) -> Vec<(u32, u32)> {
+    std::iter::successors(Some(from), |n| Some(2 * n))
+        .take_while(|n| *n <= to)
+        .map(|n| (n, 2 * n))
+        .collect()
+}
+
+/// The bounds on steps worth trying: a search without a loop has none, one that ends by itself is cut short to see what the cut
+/// costs.
+#[must_use]
+pub fn budgets(solver: Solver, steps: &[u32]) -> Vec<Option<u32>> {
+    if has_budget(solver) {
+        steps.iter().copied().map(Some).collect()
+    } else {
+        vec![None]
+    }
+}
+
+/// Whether a bound on steps means anything to a search.
+#[must_use]
+pub fn has_budget(solver: Solver) -> bool {
+    solver.default_steps(false) > 1
+}
+
+/// Whether a search has a table of as many rows as a map has, made from the boundary itself: these rows are its budget.
+#[must_use]
+pub fn has_rows(solver: Solver) -> bool {
+    solver.is_of_cones()
+}
+
+/// Maps are swept with the papers' search and with `live`, the most exact of those that read them, or with what is named in place of both: the
+/// others read the same maps in the same way. The default reads none.
+fn sweeps_maps(solver: Solver, all: &[Solver]) -> bool {
+    let usual = [Solver::Circle, Solver::Live];
+    solver.reads_map() && (usual.contains(&solver) || !all.iter().any(|s| usual.contains(s)))
+}
+
+/// A budget with which what is wrong is the map's fault rather than the search's.
+fn ample(solver: Solver, steps: &[u32]) -> Option<u32> {
+    let most = steps.iter().copied().max();
+    if has_budget(solver) {
+        most.max(Some(solver.default_steps(false)))
+    } else {
+        None
+    }
+}
+
+/// The sources that every object of a scene can have.
+#[must_use]
+pub fn sources(view: &View) -> Vec<MapSource> {
+    let outlines = view
+        .scene
+        .objects
+        .iter()
+        .all(|o| matches!(o.profile.shape, Shape::Outline(_)));
+    let mut all = vec![MapSource::Binary, MapSource::Coverage];
+    if outlines {
+        all.push(MapSource::Exact);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::is_papers_loop;
+    use super::super::view::tests::spindle;
+    use super::*;
+
+    #[test]
+    fn a_sweep_moves_one_axis_at_a_time() {
+        let sweep = Sweep {
+            solvers: vec![Solver::Circle, Solver::Quadric],
+            ..Sweep::new()
+        };
+        let plan = sweep.plan(vec![spindle()]);
+        let of = |solver| {
+            plan.cases
+                .iter()
+                .filter(move |c| c.settings.solver == solver && !is_papers_loop(&c.settings))
+        };
+        // Steps in both stages, rows x sources and formats in one; a format that is the default is there already.
+        let circle = of(Solver::Circle).count();
+        assert_eq!(circle, 6 * 2 + 5 * 3 + 2);
+        assert!(of(Solver::Quadric).all(|c| c.settings.max_steps.is_none()));
+        assert_eq!(
+            plan.cases
+                .iter()
+                .filter(|c| is_papers_loop(&c.settings))
+                .count(),
+            2
+        );
+        assert_eq!(plan.groups().len(), 1);
+        let meshes = plan.cases.iter().filter(|c| c.settings.solver.is_mesh());
+        assert!(
+            meshes
+                .clone()
+                .all(|c| c.settings.stage == DrawStage::Fragment)
+        );
+        assert_eq!(meshes.count(), 6);
+    }
+
+    #[test]
+    fn rows_of_cones_are_swept_in_every_stage() {
+        let sweep = Sweep {
+            solvers: vec![Solver::Cone],
+            ..Sweep::new()
+        };
+        let plan = sweep.plan(vec![spindle()]);
+        let cones = plan.cases.iter().map(|c| c.settings);
+        let cones: Vec<_> = cones.filter(|s| s.solver == Solver::Cone).collect();
+        assert_eq!(cones.len(), 2 * sweep.rows.len());
+        assert!(
+            cones
+                .iter()
+                .all(|s| s.map_source.is_none() && s.max_steps.is_none())
+        );
+    }
+
+    #[test]
+    fn an_image_has_no_exact_source() {
+        let mut view = spindle();
+        let raster = revmap::profile::Raster {
+            columns: 2,
+            rows: 2,
+            coverage: vec![1.0; 4],
+        };
+        view.scene.objects[0].profile = std::sync::Arc::new(revmap::profile::Profile {
+            shape: Shape::Raster(raster),
+            radius: 1.0,
+        });
+        assert_eq!(sources(&view), [MapSource::Binary, MapSource::Coverage]);
+    }
+}

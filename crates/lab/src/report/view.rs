@@ -1,0 +1,217 @@
+//! What is looked at: a scene and its name, seen from one place.
+
+use super::framing::Framing;
+use glam::DVec3;
+use revmap::scene::{Offset, Scene};
+
+/// A scene to be measured.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// What results call it.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// How much of the picture its solids take.
+    pub framing: Framing,
+}
+
+/// Which form of the offset a scene's objects have (articles of 2022 and 2025).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Technique {
+    /// The profile itself.
+    Revolution,
+    /// `w = e`.
+    Extended,
+    /// `w = e + b u`.
+    Beveled,
+    /// `w = e + b min(u, c)`.
+    Chamfered,
+    /// Objects of several forms.
+    Mixed,
+}
+
+impl Technique {
+    /// Of one object's offset.
+    #[must_use]
+    pub fn of(offset: &Offset) -> Self {
+        match (
+            offset.extend != 0.0,
+            offset.bevel != 0.0 && offset.chamfer > 0.0,
+        ) {
+            (false, false) => Self::Revolution,
+            (true, false) => Self::Extended,
+            (_, true) if offset.chamfer < 1.0 => Self::Chamfered,
+            (_, true) => Self::Beveled,
+        }
+    }
+
+    /// Its name in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Revolution => "revolution",
+            Self::Extended => "extended",
+            Self::Beveled => "beveled",
+            Self::Chamfered => "chamfered",
+            Self::Mixed => "mixed",
+        }
+    }
+
+    /// Whether the offset changes with height, for which the papers take more iterations.
+    #[must_use]
+    pub fn is_beveled(self) -> bool {
+        matches!(self, Self::Beveled | Self::Chamfered | Self::Mixed)
+    }
+}
+
+impl View {
+    /// A scene under a name.
+    #[must_use]
+    pub fn new(name: impl Into<String>, scene: Scene) -> Self {
+        Self {
+            name: name.into(),
+            scene,
+            framing: Framing::Whole,
+        }
+    }
+
+    /// The form of its objects.
+    #[must_use]
+    pub fn technique(&self) -> Technique {
+        let mut forms = self.scene.objects.iter().map(|o| Technique::of(&o.offset));
+        let first = forms.next().unwrap_or(Technique::Revolution);
+        if forms.all(|f| f == first) {
+            first
+        } else {
+            Technique::Mixed
+        }
+    }
+
+    /// The offset, where all objects have the same.
+    #[must_use]
+    pub fn offset(&self) -> Option<Offset> {
+        let mut all = self.scene.objects.iter().map(|o| o.offset);
+        let first = all.next()?;
+        all.all(|o| o == first).then_some(first)
+    }
+
+    /// Solids to be seen, copies counted.
+    #[must_use]
+    pub fn solids(&self) -> usize {
+        self.scene
+            .objects
+            .iter()
+            .map(|o| o.placements().len())
+            .sum()
+    }
+
+    /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of depth errors. It does not depend
+    /// on the rows of the map that is drawn, so that errors of different maps compare.
+    #[must_use]
+    pub fn texel(&self) -> f64 {
+        let placements = self.scene.objects.iter().flat_map(|o| o.placements());
+        let least = placements.fold(f64::INFINITY, |s, p| s.min(p.scale.min_element()));
+        if least.is_finite() && least > 0.0 {
+            least / 512.0
+        } else {
+            1.0 / 512.0
+        }
+    }
+
+    /// The same scene seen from `degrees` above the horizon: the eye moves on a circle about its target, towards or away from
+    /// the zenith. The name gets `@degrees`.
+    #[must_use]
+    pub fn at_elevation(mut self, degrees: f64) -> Self {
+        let camera = &mut self.scene.camera;
+        let back = camera.eye - camera.target;
+        let level = DVec3::new(back.x, back.y, 0.0);
+        let level = if level.length() > 1e-9 * back.length() {
+            level.normalize()
+        } else {
+            DVec3::X
+        };
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        camera.eye = camera.target + back.length() * (level * cos + DVec3::Z * sin);
+        // Straight from above there is no up but sideways.
+        camera.up = if cos.abs() < 1e-6 { -level } else { DVec3::Z };
+        self.name = format!("{}@{}", self.name, super::names::number(degrees, 4));
+        self
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use revmap::profile::Profile;
+    use revmap::scene::{Camera, Object, Placement};
+    use std::sync::Arc;
+
+    /// A double cone.
+    pub(crate) fn spindle() -> View {
+        let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
+        let mut scene = Scene::new(Camera::new(
+            DVec3::new(2.0, 0.0, 0.5),
+            DVec3::new(0.0, 0.0, 0.5),
+        ));
+        scene
+            .objects
+            .push(Object::new("spindle", Arc::new(profile)));
+        View::new("spindle", scene)
+    }
+
+    #[test]
+    fn techniques_are_told_from_offsets() {
+        for (extend, bevel, chamfer, wanted) in [
+            (0.0, 0.0, 1.0, "revolution"),
+            (0.1, 0.0, 0.5, "extended"),
+            (0.1, 0.2, 1.0, "beveled"),
+            (0.0, 0.2, 0.5, "chamfered"),
+            (0.0, 0.2, 0.0, "revolution"),
+        ] {
+            assert_eq!(
+                Technique::of(&Offset {
+                    extend,
+                    bevel,
+                    chamfer
+                })
+                .name(),
+                wanted
+            );
+        }
+        let mut two = spindle();
+        two.scene.objects.push(two.scene.objects[0].clone());
+        assert_eq!(two.technique(), Technique::Revolution);
+        two.scene.objects[1].offset.extend = 0.1;
+        assert_eq!((two.technique(), two.offset()), (Technique::Mixed, None));
+    }
+
+    #[test]
+    fn elevation_turns_the_eye_about_its_target() {
+        for degrees in [0.0, 25.0, 60.0, 90.0, -30.0] {
+            let camera = spindle().at_elevation(degrees).scene.camera;
+            let back = camera.eye - camera.target;
+            assert!((back.length() - 2.0).abs() < 1e-12);
+            assert!((back.z / 2.0 - degrees.to_radians().sin()).abs() < 1e-12);
+            assert!(
+                back.normalize().cross(camera.up).length() > 0.1,
+                "{degrees}"
+            );
+        }
+        assert_eq!(spindle().at_elevation(25.0).name, "spindle@25");
+    }
+
+    #[test]
+    fn the_texel_follows_the_smallest_scale() {
+        let mut view = spindle();
+        assert_eq!(view.texel(), 1.0 / 512.0);
+        view.scene.objects[0].instances = vec![
+            Placement {
+                scale: DVec3::new(2.0, 0.5, 1.0),
+                ..Placement::default()
+            },
+            Placement::default(),
+        ];
+        assert_eq!((view.texel(), view.solids()), (0.5 / 512.0, 2));
+    }
+}

@@ -1,0 +1,137 @@
+//! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it draws once, and what it keeps.
+
+use crate::stand_in::{Fault, LIMITS, StandIn, plan, run};
+use revmap::settings::{Settings, Solver};
+use revmap_lab::report::curves;
+use revmap_lab::report::folder;
+use revmap_lab::report::machine::Machine;
+use revmap_lab::report::measure::{Watch, measure};
+use revmap_lab::report::overview;
+use revmap_lab::report::pictures::Album;
+use revmap_lab::report::plan::Labels;
+use std::sync::atomic::AtomicBool;
+
+/// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour; each pass makes all anew.
+#[test]
+fn samples_are_interleaved_and_passes_are_built_anew() {
+    let mut bench = StandIn::new(Fault::None);
+    let outcome = run(&mut bench, &AtomicBool::new(false)).unwrap();
+    assert_eq!(bench.made, 6 * outcome.rows[0].passes.len());
+    let frames = bench.frames.borrow();
+    // One frame each to warm up, then the rounds of the first group.
+    let rounds: Vec<&[Solver]> = frames[3..3 + 6 * 3].chunks(3).collect();
+    for pair in rounds.windows(2) {
+        let back: Vec<Solver> = pair[1].iter().rev().copied().collect();
+        assert_eq!(pair[0], back.as_slice());
+    }
+    assert_ne!(rounds[0], rounds[1]);
+}
+
+/// The reference is slow: it draws each view at each size once, whatever the number of ways, passes and views that are measured in turn.
+#[test]
+fn no_truth_is_drawn_twice() {
+    for mixed in [false, true] {
+        let mut plan = plan();
+        let sizes: Vec<_> = plan.cases.clone();
+        for case in sizes {
+            plan.add(
+                case.view,
+                Settings {
+                    width: 32,
+                    height: 24,
+                    ..case.settings
+                },
+            );
+        }
+        plan.mixed = mixed;
+        let mut bench = StandIn::new(Fault::None);
+        let mut watch = Watch {
+            stop: &AtomicBool::new(false),
+            progress: &|_, _, _| {},
+            picture: &mut |_| Ok(()),
+            passed: &mut |_| Ok(()),
+        };
+        measure(&plan, &mut bench, &LIMITS, &mut watch).unwrap();
+        let mut asked = bench.truths.clone();
+        asked.sort();
+        asked.dedup();
+        assert_eq!((bench.truths.len(), asked.len()), (4, 4), "{mixed}");
+    }
+}
+
+#[test]
+fn an_interrupt_keeps_what_was_measured() {
+    static STOP: AtomicBool = AtomicBool::new(false);
+    let mut bench = StandIn::new(Fault::None);
+    // In the second round of the first group.
+    bench.stop_after = Some((7, &STOP));
+    let outcome = run(&mut bench, &STOP).unwrap();
+    assert!(
+        outcome.interrupted && outcome.rows.len() == 3,
+        "{}",
+        outcome.rows.len()
+    );
+    assert!(outcome.rows.iter().all(|r| !r.frame_ms().is_empty()));
+    // Before anything is done there is nothing to keep.
+    let error = run(&mut StandIn::new(Fault::None), &AtomicBool::new(true)).unwrap_err();
+    assert!(error.to_string().contains("stopped before"), "{error}");
+}
+
+/// All files of a run; every table parses, the page needs nothing from elsewhere, every row is in it.
+#[test]
+fn a_runs_folder_is_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = Machine::here("stand-in", "none", "driver 1, with a comma", "revmap bench");
+    let plan = plan();
+    let mut album = Album::new(
+        folder.path(),
+        Labels::new(plan.cases.iter().map(|c| &c.settings)),
+        |_| true,
+    )
+    .unwrap();
+    let outcome = measure(
+        &plan,
+        &mut StandIn::new(Fault::ClockLies),
+        &LIMITS,
+        &mut Watch {
+            stop: &AtomicBool::new(false),
+            progress: &|_, _, _| {},
+            picture: &mut |seen| album.add(seen),
+            passed: &mut |rows| {
+                assert_eq!(rows.len(), 6, "after each pass every row is there");
+                folder::write_rows(folder.path(), rows, &machine)
+            },
+        },
+    )
+    .unwrap();
+    folder::write(folder.path(), &plan, &outcome, &machine).unwrap();
+    overview::write(folder.path(), &plan, &outcome, &machine, &album).unwrap();
+    for (file, records) in [("results.csv", 6), ("left-out.csv", 2)] {
+        let table = revmap_lab::report::csv::Table::load(&folder.path().join(file)).unwrap();
+        assert_eq!(table.records.len(), records, "{file}");
+    }
+    let raw = revmap_lab::report::csv::Table::load(&folder.path().join("raw.csv")).unwrap();
+    let samples: usize = outcome.rows.iter().map(|r| r.frame_ms().len()).sum();
+    assert_eq!(raw.records.len(), samples);
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    for wanted in [
+        "stand-in",
+        "clocks disagree",
+        "<svg",
+        "data:image/png;base64,",
+        "revmap bench",
+    ] {
+        assert!(page.contains(wanted), "{wanted}");
+    }
+    for foreign in ["<script", "src=\"http", "href=\"http", "@import"] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+    curves::write(folder.path(), &plan, &outcome, &machine, &album, &[]).unwrap();
+    assert!(folder.path().join("side-48x36.html").exists());
+    assert!(
+        folder
+            .path()
+            .join("charts/summary-depth-error.png")
+            .exists()
+    );
+}

@@ -1,0 +1,159 @@
+//! The benchmark itself on trial: planted faults that it must find, with a stand-in for the device.
+
+use crate::stand_in::{Fault, StandIn, measured, plan, run};
+use revmap::error::Stage;
+use revmap::settings::{Settings, Solver};
+use revmap_lab::report::chart::front::front;
+use revmap_lab::report::curves::{self, Measure};
+use revmap_lab::report::folder;
+use revmap_lab::report::machine::Machine;
+use revmap_lab::report::plan::is_papers_loop;
+use revmap_lab::report::ratios::over_papers_loop;
+use revmap_lab::report::row::{Clocks, Row};
+use std::sync::atomic::AtomicBool;
+
+fn of(rows: &[Row], solver: Solver) -> Vec<&Row> {
+    rows.iter()
+        .filter(|r| r.settings.solver == solver && !is_papers_loop(&r.settings))
+        .collect()
+}
+
+/// Places of (time, error) on a chart and which of them are on the front, of the first view.
+fn on_front(rows: &[Row]) -> Vec<Solver> {
+    let first: Vec<&Row> = rows.iter().filter(|r| r.view == 0).collect();
+    let points: Vec<_> = first
+        .iter()
+        .map(|r| {
+            (
+                r.time().map_or(f64::NAN, |t| t.value),
+                Measure::Depth.of(r).unwrap_or(f64::NAN),
+            )
+        })
+        .collect();
+    front(&points, 1.0)
+        .into_iter()
+        .map(|i| first[i].settings.solver)
+        .collect()
+}
+
+#[test]
+fn without_a_fault_all_is_as_it_was_planted() {
+    let outcome = measured(Fault::None);
+    assert_eq!(
+        (
+            outcome.rows.len(),
+            outcome.left_out.len(),
+            outcome.interrupted
+        ),
+        (6, 0, false)
+    );
+    let ratios = over_papers_loop(&outcome.rows);
+    let live = ratios
+        .iter()
+        .find(|r| r.settings.solver == Solver::Live)
+        .unwrap();
+    assert!(
+        (live.time.value - 0.5).abs() < 0.03 && live.pictures == 2,
+        "{live:?}"
+    );
+    assert!(live.wrong == 0.0 && live.depth_p99.unwrap() < 0.01);
+    assert!(on_front(&outcome.rows).contains(&Solver::Live));
+}
+
+#[test]
+fn a_search_that_sleeps_is_charted_slower() {
+    let outcome = measured(Fault::Sleeps);
+    let ratios = over_papers_loop(&outcome.rows);
+    let live = ratios
+        .iter()
+        .find(|r| r.settings.solver == Solver::Live)
+        .unwrap();
+    assert!(
+        (live.time.value - 1.5).abs() < 0.08 && live.time.low > 1.0,
+        "{:?}",
+        live.time
+    );
+    let (slept, other) = (
+        of(&outcome.rows, Solver::Live),
+        of(&outcome.rows, Solver::Circle),
+    );
+    for (slept, other) in slept.iter().zip(&other) {
+        assert!(slept.time().unwrap().low > other.time().unwrap().high);
+    }
+    // In the chart its marker stands further right: marks in order of series, the markers of the plot before those of the legend.
+    let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
+    let figure = curves::searches("t", &rows, Measure::Depth, &Settings::default());
+    let lefts: Vec<f64> = figure
+        .marks
+        .iter()
+        .filter(|m| matches!(m, revmap_lab::report::chart::Mark::Shape { .. }))
+        .map(|m| m.bounds()[0])
+        .collect();
+    assert!(lefts[0] > lefts[1] + 20.0, "{lefts:?}");
+}
+
+#[test]
+fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
+    let outcome = measured(Fault::BoxFace);
+    for row in of(&outcome.rows, Solver::Live) {
+        assert!(row.errors.ghost > 100, "{:?}", row.errors);
+        assert!(row.errors.depth.unwrap().p99 > 10.0 && row.errors.normal.unwrap().rms > 10.0);
+        assert!(Measure::Wrong.of(row).unwrap() > 20.0);
+    }
+    assert_eq!(
+        on_front(&outcome.rows),
+        [Solver::Circle],
+        "it must not stand on the front"
+    );
+    let ratio = &over_papers_loop(&outcome.rows)[0];
+    assert!(ratio.wrong > 0.2 && ratio.depth_p99.unwrap() > 10.0);
+}
+
+#[test]
+fn a_clock_that_lies_is_rejected() {
+    let outcome = measured(Fault::ClockLies);
+    for row in of(&outcome.rows, Solver::Live) {
+        assert!(matches!(row.clocks(), Clocks::Disagree { .. }));
+        assert_eq!(row.time(), None);
+    }
+    assert!(
+        over_papers_loop(&outcome.rows)
+            .iter()
+            .all(|r| r.settings.solver != Solver::Live)
+    );
+    assert!(!on_front(&outcome.rows).contains(&Solver::Live));
+    let marked = folder::left_out(&plan(), &outcome);
+    assert_eq!(marked.records.len(), 2);
+    assert!(
+        marked.records[0][4].contains("more than 15 % apart"),
+        "{:?}",
+        marked.records[0]
+    );
+    // In results.csv the lie is not told.
+    let results = folder::results(
+        &outcome.rows,
+        &Machine::here("stand-in", "none", "none", "revmap bench"),
+    );
+    let (solver, gpu, frame) = (
+        results.column("solver").unwrap(),
+        results.column("gpu_ms_median").unwrap(),
+        results.column("frame_ms_median").unwrap(),
+    );
+    for record in &results.records {
+        assert_eq!(record[gpu].is_empty(), record[solver] == "live");
+        assert!(!record[frame].is_empty());
+    }
+}
+
+#[test]
+fn what_does_not_apply_is_left_out_with_its_reason() {
+    let outcome = measured(Fault::Refuses);
+    assert_eq!((outcome.rows.len(), outcome.left_out.len()), (4, 2));
+    assert!(outcome.left_out[0].1.contains("does not apply"));
+    let error = run(
+        &mut StandIn::new(Fault::DeviceLost),
+        &AtomicBool::new(false),
+    )
+    .unwrap_err();
+    assert_eq!((error.stage, error.exit_code()), (Stage::Device, 3));
+}

@@ -1,0 +1,196 @@
+//! A stand-in for the device of a benchmark, with a fault in it if one is wanted.
+
+use glam::DVec3;
+use revmap::error::{Error, Result, Stage};
+use revmap::frame::Frame;
+use revmap::profile::Profile;
+use revmap::reference;
+use revmap::scene::{Camera, Object, Scene};
+use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_lab::report::measure::{Bench, Limits, Measured, Sample, Subject, Watch, measure};
+use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
+use revmap_lab::report::view::View;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// What is wrong with the stand-in's drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    None,
+    /// The search dawdles.
+    Sleeps,
+    /// The search takes the box for the solid.
+    BoxFace,
+    /// The device's clock reads a hundredth.
+    ClockLies,
+    /// This way of drawing does not apply.
+    Refuses,
+    /// The device is gone.
+    DeviceLost,
+}
+
+/// A device that draws the reference in a time that it makes up; `live` has the planted fault.
+pub struct StandIn {
+    fault: Fault,
+    /// Every frame that was timed: the view and the search.
+    pub frames: Rc<RefCell<Vec<Solver>>>,
+    /// How often something was made ready to be timed.
+    pub made: usize,
+    /// Every picture of which the truth was asked: the view and the width.
+    pub truths: Vec<(String, u32)>,
+    /// After so many frames, what is then set.
+    pub stop_after: Option<(usize, &'static AtomicBool)>,
+}
+
+struct Timed {
+    gpu_ms: f64,
+    frame_ms: f64,
+    solver: Solver,
+    frames: Rc<RefCell<Vec<Solver>>>,
+    stop_after: Option<(usize, &'static AtomicBool)>,
+}
+
+impl Subject for Timed {
+    fn sample(&mut self) -> Result<Sample> {
+        let mut frames = self.frames.borrow_mut();
+        frames.push(self.solver);
+        if let Some((count, stop)) = self.stop_after {
+            stop.fetch_or(frames.len() >= count, Ordering::Relaxed);
+        }
+        // The machine gets slower and faster again, by a third, as machines do.
+        let drift = 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin();
+        Ok(Sample {
+            gpu_ms: Some(self.gpu_ms * drift),
+            frame_ms: self.frame_ms * drift,
+        })
+    }
+}
+
+impl StandIn {
+    pub fn new(fault: Fault) -> Self {
+        Self {
+            fault,
+            frames: Rc::default(),
+            made: 0,
+            truths: Vec::new(),
+            stop_after: None,
+        }
+    }
+
+    fn refusal(&self, settings: &Settings) -> Result<()> {
+        match self.fault {
+            Fault::Refuses if settings.solver == Solver::Live => Err(Error::new(
+                Stage::Draw,
+                "this search does not apply to this profile",
+            )),
+            Fault::DeviceLost => Err(Error::new(Stage::Device, "the device is gone")),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Bench for StandIn {
+    fn subject(&mut self, _: &View, settings: &Settings) -> Result<Box<dyn Subject>> {
+        self.refusal(settings)?;
+        self.made += 1;
+        let live = settings.solver == Solver::Live;
+        let base = if is_papers_loop(settings) { 20.0 } else { 10.0 };
+        let frame_ms = if live && self.fault == Fault::Sleeps {
+            base * 3.0
+        } else {
+            base
+        };
+        let gpu_ms = if live && self.fault == Fault::ClockLies {
+            frame_ms / 100.0
+        } else {
+            frame_ms * 0.98
+        };
+        Ok(Box::new(Timed {
+            gpu_ms,
+            frame_ms,
+            solver: settings.solver,
+            frames: self.frames.clone(),
+            stop_after: self.stop_after,
+        }))
+    }
+
+    fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Frame, u64)> {
+        self.refusal(settings)?;
+        let mut view = view.clone();
+        if settings.solver == Solver::Live && self.fault == Fault::BoxFace {
+            // A cylinder as wide and high as the box.
+            let radius = view.scene.objects[0].profile.radius;
+            let polygon = [[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]];
+            view.scene.objects[0].profile = Arc::new(Profile::polygon(&polygon, radius)?);
+        }
+        let mut frame = reference::draw(&view.scene, settings, &|_, _| {})?;
+        // Nobody is perfect: a little error for all, or all would be on one front.
+        let error = if settings.solver == Solver::Live {
+            1e-6
+        } else {
+            2e-6
+        };
+        frame.distance.iter_mut().for_each(|d| *d += error);
+        Ok((frame, 1000))
+    }
+
+    fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame> {
+        self.truths.push((view.name.clone(), settings.width));
+        reference::draw(&view.scene, settings, &|_, _| {})
+    }
+}
+
+fn views() -> Vec<View> {
+    let double_cone = [[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]];
+    let scene = |eye: DVec3| {
+        let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
+        let profile = Arc::new(Profile::polygon(&double_cone, 0.5).unwrap());
+        scene.objects.push(Object::new("spindle", profile));
+        scene
+    };
+    vec![
+        View::new("side", scene(DVec3::new(2.0, 0.0, 0.5))),
+        View::new("above", scene(DVec3::new(1.5, 0.0, 1.5))),
+    ]
+}
+
+/// Two searches and the papers' loop on both views, small.
+pub fn plan() -> Plan {
+    let axes = Axes {
+        stages: vec![DrawStage::Fragment],
+        solvers: vec![Solver::Live, Solver::Circle],
+        sizes: vec![(48, 36)],
+        ..Axes::default()
+    };
+    let mut plan = Plan::new(views(), &axes.combinations());
+    plan.add_papers_loop();
+    plan
+}
+
+/// Four passes of a few rounds, however long they take.
+pub const LIMITS: Limits = Limits {
+    time: Duration::from_secs(60),
+    passes: (4, 4),
+    rounds: (3, 6),
+    precision: 1e-9,
+    warm_up: 1,
+};
+
+/// Measures the plan.
+pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
+    let mut watch = Watch {
+        stop,
+        progress: &|_, _, _| {},
+        picture: &mut |_| Ok(()),
+        passed: &mut |_| Ok(()),
+    };
+    measure(&plan(), bench, &LIMITS, &mut watch)
+}
+
+/// Measures the plan with a fault.
+pub fn measured(fault: Fault) -> Measured {
+    run(&mut StandIn::new(fault), &AtomicBool::new(false)).unwrap()
+}
