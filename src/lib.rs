@@ -23,7 +23,7 @@
 //! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are equal to the last bit, but for those of
 //!   the default, which each stage finds in its own way.
 //! * The default search, [`Solver::Hull`](settings::Solver::Hull), meets the exact boundary: what it draws differs from the
-//!   [`mod@reference`] in double precision by hundredths of a texel of a map of 512 rows.
+//!   reference in double precision (the crate `revmap-reference`) by hundredths of a texel of a map of 512 rows.
 //! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand anywhere.
 //! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is left half written.
 //!
@@ -57,7 +57,6 @@
 //! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
 //! | [`mesh`] | the rival: the same boundary as triangles, for measurements |
 //! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
-//! | [`mod@reference`] | the truth: the first hit of every ray, in double precision, on the CPU |
 //! | [`gpu`] | device, renderer, timestamps |
 //! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
@@ -70,7 +69,6 @@ pub mod maps;
 pub mod mesh;
 pub mod pieces;
 pub mod profile;
-pub mod reference;
 pub mod scene;
 pub mod settings;
 pub mod shader;

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use revmap::frame::Frame;
 use revmap::gpu::Renderer;
 use revmap::maps::MapFormat;
-use revmap::reference::{Ray, Reference};
 use revmap::scene::{CameraFrame, Offset, Scene};
 use revmap::settings::{Settings, Solver};
+use revmap_reference::{Ray, Reference};
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write as _;
 

@@ -10,8 +10,8 @@ use rays::{Random, count, outline, profiles};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, outline_of, trace_pieces};
 use revmap::profile::{Outline, Profile, Shape};
-use revmap::reference::{Ray, Reference};
 use revmap::scene::{Camera, Object, Offset, Scene};
+use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
 
 #[derive(Default, Debug)]

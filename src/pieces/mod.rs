@@ -41,9 +41,6 @@ pub use hull::{Band, Hull, HullOptions};
 pub use rows::{ROWS, Record, Tables};
 pub use walk::{PieceHit, Walk, entering_root, trace_pieces};
 
-#[cfg(test)]
-mod tests;
-
 use glam::DVec2;
 
 /// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its left.

@@ -32,7 +32,7 @@ pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
         stage: DrawStage::Reference,
         ..*settings
     };
-    revmap::reference::draw(scene, &settings, &|_, _| {}).unwrap()
+    revmap_reference::draw(scene, &settings, &|_, _| {}).unwrap()
 }
 
 /// One object of a polygon, seen from `eye`.

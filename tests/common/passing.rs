@@ -4,9 +4,9 @@ use super::{device, reference};
 use rayon::prelude::*;
 use revmap::frame::Frame;
 use revmap::gpu::Renderer;
-use revmap::reference::{Ray, Reference};
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::Settings;
+use revmap_reference::{Ray, Reference};
 use std::iter::Sum;
 
 /// Pixels counted.

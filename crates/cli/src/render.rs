@@ -6,9 +6,10 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
+use revmap::gpu;
 use revmap::scene::{Scene, file};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap::{gpu, reference};
+use revmap_reference as reference;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -5,10 +5,10 @@ use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
 use revmap::frame::Frame;
 use revmap::profile::{Outline, Profile, Raster, Shape};
-use revmap::reference::{Analytic, Ray, Reference, contour, draw};
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::Settings;
 use revmap_lab::compare::{CompareOptions, compare, flip_map, silhouette_hausdorff};
+use revmap_reference::{Analytic, Ray, Reference, contour, draw};
 use std::sync::Arc;
 
 fn main() {

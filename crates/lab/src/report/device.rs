@@ -5,8 +5,8 @@ use super::view::View;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, Renderer};
-use revmap::reference;
 use revmap::settings::Settings;
+use revmap_reference as reference;
 
 /// A Vulkan device to measure on.
 pub struct DeviceBench {

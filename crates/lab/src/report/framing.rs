@@ -235,8 +235,8 @@ mod tests {
     #[test]
     fn close_up_most_pixels_hit() {
         use super::super::suite::{Extent, views};
-        use revmap::reference;
         use revmap::settings::Settings;
+        use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
             let settings = Settings {
                 width,

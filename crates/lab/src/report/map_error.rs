@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::reference;
 use revmap::scene::{CameraFrame, Object, Placement, Scene};
 use revmap::settings::Settings;
+use revmap_reference as reference;
 
 /// The error of a view's maps.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
-use crate::scene::{Scene, Shadow};
 use glam::DVec3;
+use revmap::scene::{Scene, Shadow};
 
 /// What a hit looks like.
 pub(super) struct Shaded {

@@ -2,11 +2,11 @@
 //! colour and slope at them. Gradients of the coordinates are taken by differences of the formulas, so that nothing here repeats
 //! the derivations that shaders rest on.
 
-use crate::error::Result;
-use crate::maps::{ArcLength, Level, Projection};
-use crate::profile::Profile;
-use crate::scene::{BumpForm, Object, Scene};
 use glam::DVec3;
+use revmap::error::Result;
+use revmap::maps::{ArcLength, Level, Projection};
+use revmap::profile::Profile;
+use revmap::scene::{BumpForm, Object, Scene};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use super::bracket::{Search, first_zero};
 use super::field::{Field, Nearest};
 use super::is_ray;
-use crate::scene::{Object, Offset};
 use glam::{DVec2, DVec3};
+use revmap::scene::{Object, Offset};
 use std::sync::Arc;
 
 /// Which part of a solid's boundary was met.

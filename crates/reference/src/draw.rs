@@ -3,11 +3,11 @@
 use super::shade::shade;
 use super::texture::Lengths;
 use super::{Ray, Reference};
-use crate::error::Result;
-use crate::frame::Frame;
-use crate::scene::{CameraFrame, Scene};
-use crate::settings::Settings;
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::frame::Frame;
+use revmap::scene::{CameraFrame, Scene};
+use revmap::settings::Settings;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Draws a scene in double precision on the CPU. Of the settings only the size counts.
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// `progress` is told, from any thread, how many rows are done and how many there are.
 ///
 /// # Errors
-/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and [`ArcLength::new`](crate::maps::ArcLength::new).
+/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and [`ArcLength::new`](revmap::maps::ArcLength::new).
 pub fn draw(
     scene: &Scene,
     settings: &Settings,
@@ -46,7 +46,7 @@ pub fn draw(
     Ok(frame)
 }
 
-/// All channels of a pixel, in the order of [`crate::frame::CHANNELS`]; `None` where no box was entered.
+/// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` where no box was entered.
 fn pixel(
     scene: &Scene,
     reference: &Reference,

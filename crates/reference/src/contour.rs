@@ -1,7 +1,7 @@
 //! The outline that an image stands for: where its coverage passes one half.
 
-use crate::profile::{Outline, Raster};
 use glam::DVec2;
+use revmap::profile::{Outline, Raster};
 use std::collections::BTreeMap;
 
 /// The contour at 1/2 of the bilinear interpolation of a raster's coverage, by marching squares.

@@ -1,11 +1,15 @@
 //! The contour against its definition: it parts the points with `F < 0` from the others.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use super::*;
-use crate::profile::Outline;
-use crate::reference::samples;
-use crate::scene::Offset;
+#[path = "common/samples.rs"]
+#[allow(dead_code)]
+mod samples;
+
+use glam::DVec2;
 use proptest::prelude::*;
+use revmap::pieces::{Contour, ContourSource, CutOptions, ROWS, Tables, cut};
+use revmap::profile::Outline;
+use revmap::scene::Offset;
 
 /// Twice the number of turns of the boundary round a point, the axis counted as boundary: 2 inside.
 fn turns(contour: &Contour, q: DVec2) -> f64 {

@@ -16,7 +16,7 @@
 //! ```
 //! use glam::{DVec2, DVec3};
 //! use revmap::profile::{Outline, Profile, Shape};
-//! use revmap::reference::{Ray, trace};
+//! use revmap_reference::{Ray, trace};
 //! use revmap::scene::{Camera, Object, Scene};
 //! use std::sync::Arc;
 //! // A cylinder of radius 1/4, from the floor of its box to the ceiling.
@@ -36,7 +36,8 @@ mod draw;
 mod field;
 mod parts;
 #[cfg(test)]
-pub(crate) mod samples;
+#[path = "../../../tests/common/samples.rs"]
+mod samples;
 mod shade;
 mod solid;
 mod texture;
@@ -46,12 +47,12 @@ pub use contour::contour;
 pub use draw::draw;
 pub use solid::Surface;
 
-use crate::error::{Error, Result, Stage};
-use crate::profile::{Profile, Shape};
-use crate::scene::{Placement, Scene};
 use field::Field;
 use glam::DVec3;
 use parts::{Part, Parts};
+use revmap::error::{Error, Result, Stage};
+use revmap::profile::{Profile, Shape};
+use revmap::scene::{Placement, Scene};
 use solid::{LocalHit, Solid};
 use std::sync::Arc;
 

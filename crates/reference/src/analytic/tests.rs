@@ -3,9 +3,9 @@
 
 use super::super::{Reference, samples, tests};
 use super::*;
-use crate::scene::Placement;
 use glam::DQuat;
 use proptest::prelude::*;
+use revmap::scene::Placement;
 
 /// Numbers in `[0, 1)` by SplitMix64.
 struct Dice(u64);

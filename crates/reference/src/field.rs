@@ -3,8 +3,8 @@
 //! Unsigned distance: the nearest segment, found by a tree of rectangles. Sign: parity of the segments crossed on the way to
 //! `r = +inf`, counted within one of many horizontal slabs; so neither the loops' direction nor their order matters.
 
-use crate::profile::Outline;
 use glam::DVec2;
+use revmap::profile::Outline;
 
 /// Points closer to the axis than this lie on it: a segment between two such closes a loop and is no part of the surface.
 pub(super) const ON_AXIS: f64 = 1e-9;
@@ -308,7 +308,7 @@ impl Slabs {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::reference::samples;
+    use crate::samples;
     use proptest::prelude::*;
 
     fn brute(outline: &Outline, q: DVec2) -> f64 {

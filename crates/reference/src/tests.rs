@@ -3,10 +3,10 @@
 
 use super::samples;
 use super::*;
-use crate::profile::Outline;
-use crate::scene::{Camera, Object, Offset, Specular};
-use crate::settings::Settings;
 use glam::{DQuat, DVec3};
+use revmap::profile::Outline;
+use revmap::scene::{Camera, Object, Offset, Specular};
+use revmap::settings::Settings;
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) fn object(outline: Outline, radius: f64) -> Object {

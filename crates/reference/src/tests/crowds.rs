@@ -1,7 +1,7 @@
 //! Replicas against single objects, copies, images as profiles, odd places of the camera, clearance.
 
 use super::*;
-use crate::profile::Raster;
+use revmap::profile::Raster;
 use std::f64::consts::PI;
 
 /// Rays at and through the unit box, `n` of them, by the golden ratio.

@@ -1,8 +1,8 @@
 //! The copies of a scene in a tree of boxes, so that thousands of them cost a ray little.
 
 use super::solid::Solid;
-use crate::scene::Placement;
 use glam::{DMat3, DVec3};
+use revmap::scene::Placement;
 use std::sync::Arc;
 
 /// One copy of one object.

@@ -1,7 +1,7 @@
 //! Outlines for tests: plain shapes, and random ones that never cross themselves.
 
-use crate::profile::Outline;
 use glam::DVec2;
+use revmap::profile::Outline;
 
 fn outline(points: impl IntoIterator<Item = (f64, f64)>) -> Outline {
     Outline {

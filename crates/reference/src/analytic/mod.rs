@@ -13,11 +13,11 @@ mod path;
 mod roots;
 
 use super::{Hit, Ray, Surface, Trace, is_ray};
-use crate::error::{Error, Result, Stage};
-use crate::profile::{Outline, Shape};
-use crate::scene::{Object, Offset, Scene};
 use glam::{DAffine3, DVec2, DVec3};
 use path::{Curve, Path};
+use revmap::error::{Error, Result, Stage};
+use revmap::profile::{Outline, Shape};
+use revmap::scene::{Object, Offset, Scene};
 
 /// Pieces of a ray shorter than this, in object units, mark it as grazing.
 const SLIVER: f64 = 1e-7;
