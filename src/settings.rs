@@ -12,8 +12,6 @@ pub enum DrawStage {
     Fragment,
     /// A compute shader traces the screen's tiles that boxes cover.
     Compute,
-    /// On the CPU, in double precision: ground truth.
-    Reference,
 }
 
 /// How the first hit along a ray is found.

@@ -10,7 +10,7 @@ use revmap::frame::Frame;
 use revmap::gpu::{self, Device};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene};
-use revmap::settings::{DrawStage, Settings};
+use revmap::settings::Settings;
 use std::sync::{Arc, OnceLock};
 
 /// The device of this process's tests. Without a device or without the layers, tests fail.
@@ -28,11 +28,7 @@ pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
 
 /// Draws the reference.
 pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
-    let settings = Settings {
-        stage: DrawStage::Reference,
-        ..*settings
-    };
-    revmap_reference::draw(scene, &settings, &|_, _| {}).unwrap()
+    revmap_reference::draw(scene, settings, &|_, _| {}).unwrap()
 }
 
 /// One object of a polygon, seen from `eye`.

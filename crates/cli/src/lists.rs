@@ -1,6 +1,6 @@
 //! Options that take several values, of which every combination is measured.
 
-use super::options::{FORMATS, SOURCES, STAGES, SolverParser, name_of, named, size};
+use super::options::{FORMATS, SOURCES, STAGES, SolverParser, Tracing, name_of, named, size};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
@@ -34,7 +34,7 @@ pub struct Lists {
     pub size: Vec<(u32, u32)>,
     /// Where rays are traced [default: fragment,compute]
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
-    pub stage: Vec<DrawStage>,
+    pub stage: Vec<Tracing>,
     /// The searches, meshes among them [default: those worth choosing between; all with --full]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = SolverParser)]
     pub solver: Vec<Solver>,
@@ -90,8 +90,14 @@ impl Lists {
         fn some<T: Copy>(given: &[T]) -> Vec<Option<T>> {
             given.iter().copied().map(Some).collect()
         }
+        let stages: Vec<DrawStage> = (self.stage.iter())
+            .filter_map(|tracing| match tracing {
+                Tracing::Device(stage) => Some(*stage),
+                Tracing::Reference => None, // refused by `check`
+            })
+            .collect();
         Axes {
-            stages: or(&self.stage, &base.stages),
+            stages: or(&stages, &base.stages),
             solvers: or(&self.solver, &base.solvers),
             max_steps: or(&some(&self.max_steps), &base.max_steps),
             sizes: or(&self.size, &base.sizes),
@@ -189,12 +195,12 @@ impl Lists {
     /// # Errors
     /// [`Stage::Usage`].
     pub fn check(&self) -> Result<()> {
-        if self.stage.contains(&DrawStage::Reference) {
+        if self.stage.contains(&Tracing::Reference) {
             return Err(Error::new(
                 Stage::Usage,
                 format!(
                     "{} is what all others are compared with; give fragment or compute",
-                    name_of(&STAGES, &DrawStage::Reference)
+                    name_of(&STAGES, &Tracing::Reference)
                 ),
             )
             .at_key("--stage"));

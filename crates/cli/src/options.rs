@@ -8,11 +8,20 @@ use revmap::settings::{DrawStage, Planes, Settings, Solver};
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
 
+/// Where rays are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tracing {
+    /// On the device, in one of its stages.
+    Device(DrawStage),
+    /// On the CPU, in double precision: ground truth.
+    Reference,
+}
+
 /// Names of the stages.
-pub const STAGES: [(&str, DrawStage); 3] = [
-    ("fragment", DrawStage::Fragment),
-    ("compute", DrawStage::Compute),
-    ("reference", DrawStage::Reference),
+pub const STAGES: [(&str, Tracing); 3] = [
+    ("fragment", Tracing::Device(DrawStage::Fragment)),
+    ("compute", Tracing::Device(DrawStage::Compute)),
+    ("reference", Tracing::Reference),
 ];
 
 /// Names of the searches; the first is the one taken when none is named.
@@ -48,7 +57,7 @@ pub struct Drawing {
     pub size: (u32, u32),
     /// Where rays are traced: in the fragment shader, in a compute shader, or on the CPU in double precision
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
-    pub stage: DrawStage,
+    pub stage: Tracing,
     /// How the first hit along a ray is found
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = SolverParser)]
     pub solver: Solver,
@@ -79,12 +88,15 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The library's settings.
+    /// The library's settings. Of these the reference reads the size alone.
     pub fn settings(&self, planes: Planes) -> Settings {
         Settings {
             width: self.size.0,
             height: self.size.1,
-            stage: self.stage,
+            stage: match self.stage {
+                Tracing::Device(stage) => stage,
+                Tracing::Reference => DrawStage::Fragment,
+            },
             solver: self.solver,
             max_steps: self.max_steps,
             map_rows: self.map_rows,

@@ -1,6 +1,6 @@
 //! `revmap render`: one frame, off screen.
 
-use super::options::{self, Drawing};
+use super::options::{self, Drawing, Tracing};
 use super::output;
 use super::progress::Progress;
 use clap::Args;
@@ -8,7 +8,7 @@ use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
 use revmap::gpu;
 use revmap::scene::{Scene, file};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{Planes, Settings, Solver};
 use revmap_reference as reference;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -51,9 +51,9 @@ impl Render {
             Planes::Color
         };
         let settings = self.drawing.settings(planes);
-        let picture = match settings.stage {
-            DrawStage::Reference => self.on_cpu(&scene, &settings)?,
-            DrawStage::Fragment | DrawStage::Compute => self.on_gpu(&scene, &settings)?,
+        let picture = match self.drawing.stage {
+            Tracing::Reference => self.on_cpu(&scene, &settings)?,
+            Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
         };
         let writing = Instant::now();
         for file in &self.output {
@@ -137,14 +137,15 @@ impl Render {
                 output::note(&line);
             }
         }
-        if let Some(line) = exhausted(settings, &picture.frame, self.drawing.verbose) {
+        let drawn = self.drawing.stage != Tracing::Reference;
+        let bounded = drawn && settings.solver.may_run_out();
+        if let Some(line) = exhausted(&picture.frame, bounded && self.drawing.verbose) {
             output::note(&line);
         }
-        let stage = options::name_of(&options::STAGES, &settings.stage);
-        let solver = settings.solver;
-        let how = match settings.stage {
-            DrawStage::Reference => stage.to_owned(),
-            _ => format!("{stage}, {solver}"),
+        let stage = options::name_of(&options::STAGES, &self.drawing.stage);
+        let how = match self.drawing.stage {
+            Tracing::Reference => stage.to_owned(),
+            Tracing::Device(_) => format!("{stage}, {}", settings.solver),
         };
         for file in &self.output {
             let (name, width, height) = (file.display(), settings.width, settings.height);
@@ -191,10 +192,9 @@ fn steps(frame: &Frame) -> Option<String> {
 }
 
 /// In how many pixels the search ran out of steps, and what helps; without `always`, only where there are any.
-fn exhausted(settings: &Settings, frame: &Frame, always: bool) -> Option<String> {
-    let drawn = settings.stage != DrawStage::Reference && settings.solver.may_run_out();
+fn exhausted(frame: &Frame, always: bool) -> Option<String> {
     match frame.exhausted {
-        0 if drawn && always => Some("no pixel ran out of steps".to_owned()),
+        0 if always => Some("no pixel ran out of steps".to_owned()),
         0 => None,
         count => Some(format!(
             "warning: {count} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",

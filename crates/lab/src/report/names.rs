@@ -9,7 +9,6 @@ pub fn stage(stage: DrawStage) -> &'static str {
     match stage {
         DrawStage::Fragment => "fragment",
         DrawStage::Compute => "compute",
-        DrawStage::Reference => "reference",
     }
 }
 

@@ -3,7 +3,7 @@
 use super::plan::{is_papers_loop, variant};
 use super::row::Row;
 use super::stats::{self, Interval};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{Settings, Solver};
 
 /// One way of drawing against a rival: the loop of the papers in the same stage, or a mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,17 +166,13 @@ fn of_way<'a>(
     })
 }
 
-/// The papers' loop that shows the same picture in the same stage. The reference is held against the fragment stage.
+/// The papers' loop that shows the same picture in the same stage.
 fn papers_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
-    let stage = match row.settings.stage {
-        DrawStage::Reference => DrawStage::Fragment,
-        other => other,
-    };
     rows.iter().find(|r| {
         is_papers_loop(&r.settings)
             && r.view == row.view
             && (r.settings.width, r.settings.height, r.settings.stage)
-                == (row.settings.width, row.settings.height, stage)
+                == (row.settings.width, row.settings.height, row.settings.stage)
             && r.time().is_some()
     })
 }
@@ -217,6 +213,7 @@ mod tests {
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
+    use revmap::settings::DrawStage;
 
     fn papers(mut row: Row) -> Row {
         row.settings = papers_loop(&spindle(), &row.settings);
