@@ -60,13 +60,24 @@
 //! | [`gpu`] | device, renderer, timestamps |
 //! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
-//! Without its default features the crate needs no C++ compiler, reads no files and has no program: what an engine embeds.
+//! # Features
+//!
+//! | feature | default | brings |
+//! |---|---|---|
+//! | `drawing` | yes | profiles from SVG drawings |
+//! | `jpeg` | yes | profiles and textures from JPEG; PNG needs no feature |
+//! | `scene-file` | | scenes from TOML files |
+//! | `exr` | | frames and maps as EXR files |
+//! | `shaderc` | | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
+//!
+//! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in `revmap-lab`; the program is `revmap-cli`.
 
 pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod maps;
 pub mod mesh;
+mod pictures;
 pub mod pieces;
 pub mod profile;
 pub mod scene;

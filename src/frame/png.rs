@@ -3,8 +3,7 @@
 use super::Frame;
 use super::beside::write_beside;
 use crate::error::{Error, Result, Stage};
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use std::io::Write;
 use std::path::Path;
 
 /// Writes the colour of a frame as 8-bit sRGB RGBA. Values are clamped to `[0, 1]`; alpha is linear.
@@ -45,26 +44,32 @@ impl Picture {
     /// # Errors
     /// [`Stage::Frame`], naming the file, when it cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_rgba(
-            path.as_ref(),
-            self.width,
-            self.height,
-            self.rgba.as_flattened(),
-        )
+        write_beside(Stage::Frame, path.as_ref(), |writer| {
+            self.encode_png(writer)
+        })
     }
-}
 
-/// Writes `width * height` RGBA bytes, row 0 on top.
-fn write_rgba(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<()> {
-    write_beside(Stage::Frame, path, |writer| {
-        PngEncoder::new(writer)
-            .write_image(bytes, width, height, ExtendedColorType::Rgba8)
-            .map_err(|e| {
-                let full = matches!(&e, image::ImageError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
-                let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
-                Error::new(Stage::Frame, format!("cannot be written: {why}"))
-            })
-    })
+    /// Writes the bytes of a PNG.
+    ///
+    /// # Errors
+    /// [`Stage::Frame`] when they cannot be written, or there are not `width * height` pixels.
+    pub fn encode_png(&self, writer: impl Write) -> Result<()> {
+        let write = || -> std::result::Result<(), png::EncodingError> {
+            let mut encoder = png::Encoder::new(writer, self.width, self.height);
+            encoder.set_color(png::ColorType::Rgba);
+            encoder.set_depth(png::BitDepth::Eight);
+            encoder.set_compression(png::Compression::Fast);
+            encoder.set_filter(png::Filter::Adaptive);
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(self.rgba.as_flattened())?;
+            writer.finish()
+        };
+        write().map_err(|e| {
+            let full = matches!(&e, png::EncodingError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
+            let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
+            Error::new(Stage::Frame, format!("cannot be written: {why}"))
+        })
+    }
 }
 
 /// The sRGB code value in `[0, 1]` of a linear one (IEC 61966-2-1).

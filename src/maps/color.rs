@@ -3,7 +3,7 @@
 use super::displacement::{Level, read_map};
 use super::halving;
 use crate::error::{Error, Result, Stage};
-use crate::profile::image::decode;
+use crate::pictures::decode;
 use std::path::Path;
 
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
@@ -25,9 +25,7 @@ impl ColorMap {
         let path = path.as_ref();
         let read = || {
             let picture = decode(&read_map(path, "colour map")?, Stage::Map, "PNG or JPEG")?;
-            let picture = picture.into_rgba8();
-            let texels = picture.pixels().map(|p| p.0).collect();
-            Self::from_texels(picture.width(), picture.height(), texels)
+            Self::from_texels(picture.width, picture.height, picture.rgba8())
         };
         read().map_err(|e: Error| e.in_file(path))
     }

@@ -1,11 +1,11 @@
 //! Displacement maps: the slopes of a height map, computed once, scaled as the picture is drawn (Blinn 1978).
 
 use super::files::{encode_png, extension, write_whole};
+use super::half::to_half;
 use super::halving;
 use super::header::Header;
 use crate::error::{Error, Result, Stage};
-use crate::profile::image::decode;
-use half::f16;
+use crate::pictures::decode;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -67,8 +67,8 @@ impl DisplacementMap {
             {
                 return Self::from_file(&bytes, &header);
             }
-            let picture = decode(&bytes, Stage::Map, "PNG or JPEG")?.to_luma32f();
-            Self::from_heights(picture.width(), picture.height(), picture.as_raw(), filter)
+            let picture = decode(&bytes, Stage::Map, "PNG or JPEG")?;
+            Self::from_heights(picture.width, picture.height, &picture.luminance(), filter)
         };
         read().map_err(|e: Error| e.in_file(path))
     }
@@ -125,7 +125,7 @@ impl DisplacementMap {
     /// The levels as `R16G16_SFLOAT` texels, native byte order, each rounded to the nearest half float.
     #[must_use]
     pub fn encode(&self) -> Vec<Level<[u16; 2]>> {
-        let pack = |t: &[f32; 2]| t.map(|v| f16::from_f32(v).to_bits());
+        let pack = |t: &[f32; 2]| t.map(to_half);
         self.levels
             .iter()
             .map(|l| Level {
@@ -191,15 +191,13 @@ impl DisplacementMap {
 
     fn from_file(bytes: &[u8], header: &Header) -> Result<Self> {
         let scale = header.number("scale")? as f32;
-        let picture = decode(bytes, Stage::Map, "PNG")?.into_rgb16();
+        let picture = decode(bytes, Stage::Map, "PNG")?;
         let slope = |code: u16| (f32::from(code) - ZERO) / (ZERO - 1.0) * scale;
-        let slopes = picture
-            .pixels()
-            .map(|p| [slope(p.0[0]), slope(p.0[1])])
-            .collect();
+        let texels = picture.rgb16();
+        let slopes = texels.iter().map(|p| [slope(p[0]), slope(p[1])]).collect();
         Ok(Self::from_slopes(
-            picture.width() as usize,
-            picture.height() as usize,
+            picture.width as usize,
+            picture.height as usize,
             slopes,
         ))
     }

@@ -5,8 +5,9 @@ use super::header::{Header, KEYWORD, shape_header};
 use super::store::unpack_distance;
 use super::{Bounds, MapFormat, MapSource, ShapeMap};
 use crate::error::{Error, Result, Stage};
+use crate::pictures::{MAX_SIDE, Pixels, Png, Samples};
 use crate::profile::Raster;
-use crate::profile::image::MAX_SIDE;
+#[cfg(feature = "exr")]
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -250,14 +251,16 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
     {
         return Err(no_map());
     }
-    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png);
-    let dimensions = image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png)
-        .into_dimensions()
+    let reader = Png::open(bytes)
         .map_err(|e| fault(format!("is no map that can be read ({e}); bake it again")))?;
-    let (columns, rows) = checked_size(u64::from(dimensions.0), u64::from(dimensions.1))?;
-    reader.limits(image::Limits::no_limits());
-    let texels = match reader.decode() {
-        Ok(image::DynamicImage::ImageRgba8(p)) => p.into_raw(),
+    let (columns, rows) = reader.size();
+    let (columns, rows) = checked_size(u64::from(columns), u64::from(rows))?;
+    let texels = match reader.pixels() {
+        Ok(Pixels {
+            channels: 4,
+            samples: Samples::Byte(texels),
+            ..
+        }) => texels,
         Ok(_) => return Err(no_map()),
         Err(e) => return Err(fault(format!("the map is damaged ({e}); bake it again"))),
     };

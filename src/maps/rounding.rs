@@ -1,6 +1,6 @@
 //! Rounding that never lets a stored distance exceed the true one.
 
-use half::f16;
+use super::half::{from_half, to_half};
 
 /// The largest 32-bit float that is not above `v`.
 #[must_use]
@@ -13,20 +13,19 @@ pub fn round_down(v: f64) -> f32 {
     }
 }
 
-/// The largest 16-bit float that is not above `v`; what lies beyond the range becomes its largest or `-inf`.
+/// The bits of the largest 16-bit float that is not above `v`; what lies beyond the range becomes its largest or `-inf`.
 #[must_use]
-pub fn round_down_half(v: f32) -> f16 {
-    let nearest = f16::from_f32(v);
-    if nearest.to_f32() <= v || v.is_nan() {
+pub fn round_down_half(v: f32) -> u16 {
+    let nearest = to_half(v);
+    if from_half(nearest) <= v || v.is_nan() {
         return nearest;
     }
     // The next lower value: one less in magnitude above zero, one more below.
-    let bits = nearest.to_bits();
-    f16::from_bits(match bits {
+    match nearest {
         0x0000 => 0x8001,
-        0x8000.. => bits + 1,
-        _ => bits - 1,
-    })
+        0x8000.. => nearest + 1,
+        _ => nearest - 1,
+    }
 }
 
 #[cfg(test)]
@@ -40,24 +39,24 @@ mod tests {
             let single = round_down(v);
             prop_assert!(f64::from(single) <= v && f64::from(single.next_up()) > v);
             let half = round_down_half(single);
-            prop_assert!(half.to_f32() <= single);
-            let above = f16::from_bits(match half.to_bits() {
+            prop_assert!(from_half(half) <= single);
+            let above = from_half(match half {
                 0x8000 => 0x0001,
-                b @ 0x8001.. => b - 1,
-                b => b + 1,
+                0x8001.. => half - 1,
+                _ => half + 1,
             });
-            prop_assert!(above.to_f32() > single, "{half} for {single}, {above} would do");
+            prop_assert!(above > single, "{} for {single}, {above} would do", from_half(half));
         }
     }
 
     #[test]
     fn ends_of_the_range() {
-        assert_eq!(round_down_half(f32::INFINITY), f16::INFINITY);
-        assert_eq!(round_down_half(1e6), f16::MAX);
-        assert_eq!(round_down_half(-1e6), f16::NEG_INFINITY);
-        assert_eq!(round_down_half(0.0), f16::ZERO);
-        assert_eq!(round_down_half(-1e-30), f16::from_bits(0x8001));
-        assert_eq!(round_down_half(1e-30), f16::ZERO);
-        assert!(round_down_half(f32::NAN).is_nan());
+        assert_eq!(round_down_half(f32::INFINITY), 0x7c00);
+        assert_eq!(round_down_half(1e6), 0x7bff);
+        assert_eq!(round_down_half(-1e6), 0xfc00);
+        assert_eq!(round_down_half(0.0), 0);
+        assert_eq!(round_down_half(-1e-30), 0x8001);
+        assert_eq!(round_down_half(1e-30), 0);
+        assert!(from_half(round_down_half(f32::NAN)).is_nan());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, coverage, exact};
 use crate::error::{Error, Result, Stage};
-use crate::profile::image::MAX_SIDE;
+use crate::pictures::MAX_SIDE;
 use crate::profile::{Profile, Shape};
 use glam::DVec2;
 use std::borrow::Cow;

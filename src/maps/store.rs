@@ -1,8 +1,8 @@
 //! Shape maps as texels of the formats that the GPU reads.
 
+use super::half::from_half;
 use super::rounding::round_down_half;
 use super::{MapFormat, ShapeMap};
-use half::f16;
 
 /// A shape map's texels, row by row from the top, tightly packed, native byte order.
 ///
@@ -43,7 +43,7 @@ impl EncodedMap {
     /// The distances as a shader reads them, object units.
     #[must_use]
     pub fn distances(&self) -> Vec<f32> {
-        let half = |t: &[u8]| f16::from_ne_bytes([t[0], t[1]]).to_f32();
+        let half = |t: &[u8]| from_half(u16::from_ne_bytes([t[0], t[1]]));
         let single = |t: &[u8]| f32::from_ne_bytes([t[0], t[1], t[2], t[3]]);
         let texels = self.bytes.chunks_exact(self.format.texel_bytes());
         match self.format {

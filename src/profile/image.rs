@@ -4,12 +4,8 @@ use super::interface::Interface;
 use super::{Profile, ProfileAxis, Raster, Shape};
 use crate::error::{Error, Result, Stage};
 use crate::maps::header::Header;
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use crate::pictures::{Pixels, Samples, decode, luminance};
 use rayon::prelude::*;
-use std::io::Cursor;
-
-/// Largest width and height of a picture.
-pub(crate) const MAX_SIDE: u32 = 16_384;
 
 /// A profile from the bytes of a PNG or JPEG.
 ///
@@ -38,13 +34,14 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
 
 /// The form of a shape map in its file.
 fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
-    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?.into_rgba8();
+    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
     let raster = Raster {
-        columns: picture.width(),
-        rows: picture.height(),
+        columns: picture.width,
+        rows: picture.height,
         coverage: picture
-            .pixels()
-            .map(|p| f32::from(p.0[3]) / 255.0)
+            .rgba8()
+            .iter()
+            .map(|p| f32::from(p[3]) / 255.0)
             .collect(),
     };
     Ok(Profile {
@@ -78,7 +75,7 @@ pub(super) fn full_fault(what: &str) -> Error {
 /// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture.
 fn read_darkness(bytes: &[u8]) -> Result<Raster> {
     let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
-    let (width, height) = (picture.width(), picture.height());
+    let (width, height) = (picture.width, picture.height);
     if width < 2 || height < 2 {
         return Err(Error::new(
             Stage::Profile,
@@ -94,48 +91,15 @@ fn read_darkness(bytes: &[u8]) -> Result<Raster> {
     })
 }
 
-/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks for.
-pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<DynamicImage> {
-    let fault = |message: String| Error::new(stage, message);
-    let open = || -> Result<_> {
-        let reader = ImageReader::new(Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|e| fault(format!("cannot be read ({e}); give a {kinds} file")))?;
-        match reader.format() {
-            Some(ImageFormat::Png | ImageFormat::Jpeg) => Ok(reader),
-            _ => Err(fault(format!(
-                "is no picture that can be read; give a {kinds} file"
-            ))),
-        }
-    };
-    let broken =
-        |e: image::ImageError| fault(format!("the image is damaged ({e}); save or copy it again"));
-    let (width, height) = open()?.into_dimensions().map_err(broken)?;
-    if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(fault(format!(
-            "the image has {width} x {height} pixels; {MAX_SIDE} x {MAX_SIDE} is the most, scale it down"
-        )));
-    }
-    let mut reader = open()?;
-    // The size is checked already; the decoder's own guess at a limit would refuse large pictures of 16 bits.
-    reader.limits(Limits::no_limits());
-    reader.decode().map_err(broken)
-}
-
 /// Darkness over white from the pixels of any kind of picture.
-fn darkness(picture: &DynamicImage) -> Vec<f32> {
+fn darkness(picture: &Pixels) -> Vec<f32> {
     const BYTE: f32 = 255.0;
     const WORD: f32 = 65_535.0;
-    match picture {
-        DynamicImage::ImageLuma8(p) => grey(p.as_raw(), 1, BYTE),
-        DynamicImage::ImageLumaA8(p) => grey(p.as_raw(), 2, BYTE),
-        DynamicImage::ImageRgb8(p) => color(p.as_raw(), 3, BYTE),
-        DynamicImage::ImageRgba8(p) => color(p.as_raw(), 4, BYTE),
-        DynamicImage::ImageLuma16(p) => grey(p.as_raw(), 1, WORD),
-        DynamicImage::ImageLumaA16(p) => grey(p.as_raw(), 2, WORD),
-        DynamicImage::ImageRgb16(p) => color(p.as_raw(), 3, WORD),
-        DynamicImage::ImageRgba16(p) => color(p.as_raw(), 4, WORD),
-        other => color(other.to_rgba16().as_raw(), 4, WORD),
+    match (&picture.samples, picture.channels) {
+        (Samples::Byte(v), n @ 1..3) => grey(v, n, BYTE),
+        (Samples::Byte(v), n) => color(v, n, BYTE),
+        (Samples::Word(v), n @ 1..3) => grey(v, n, WORD),
+        (Samples::Word(v), n) => color(v, n, WORD),
     }
 }
 
@@ -157,12 +121,6 @@ fn color<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -
             p.get(3).map_or(dark, |&a| dark * (a.into() / full))
         })
         .collect()
-}
-
-/// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
-pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    // Grey comes out exactly as it went in.
-    g + 0.2126 * (r - g) + 0.0722 * (b - g)
 }
 
 /// The part of the picture right of the axis.
@@ -193,7 +151,8 @@ fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
-    use image::{GrayImage, Luma, Rgba, RgbaImage};
+    use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
+    use std::io::Cursor;
 
     fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
         let mut out = Cursor::new(Vec::new());

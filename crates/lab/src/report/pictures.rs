@@ -5,9 +5,7 @@ use super::measure::Seen;
 use super::names::{self, safe};
 use super::plan::Labels;
 use crate::compare::{Heat, heat_map, ramp};
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Result, Stage};
 use revmap::frame::{Frame, Picture};
 use revmap::settings::{DrawStage, Settings};
 use std::path::{Path, PathBuf};
@@ -209,19 +207,10 @@ pub fn reduced(picture: &Picture, factor: u32) -> Picture {
 /// [`Stage::Report`] when it cannot be encoded.
 pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes)
-        .write_image(
-            picture.rgba.as_flattened(),
-            picture.width,
-            picture.height,
-            ExtendedColorType::Rgba8,
-        )
-        .map_err(|e| {
-            Error::new(
-                Stage::Report,
-                format!("a picture cannot be encoded ({e}); draw a smaller one"),
-            )
-        })?;
+    picture.encode_png(&mut bytes).map_err(|mut e| {
+        e.stage = Stage::Report;
+        e
+    })?;
     Ok(bytes)
 }
 
