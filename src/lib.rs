@@ -76,7 +76,6 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod maps;
-pub mod mesh;
 mod pictures;
 pub mod pieces;
 pub mod profile;

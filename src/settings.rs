@@ -38,13 +38,6 @@ pub enum Solver {
     /// The same pieces, found by what the stage does best: in the fragment stage the rasteriser finds them in shells of triangles, in compute
     /// tiles of pixels are first asked as a whole. Objects for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
     Hull,
-    /// The rival: nothing is searched, the same solid is tessellated and rasterised. In the fragment stage alone.
-    Mesh {
-        /// Steps around the axis.
-        segments: u32,
-        /// Most steps along the meridian; fewer where fewer follow it exactly.
-        rings: u32,
-    },
 }
 
 impl Solver {
@@ -64,43 +57,7 @@ impl Solver {
     /// What is taken where none is named.
     pub const DEFAULT: Self = Self::Hull;
 
-    /// A mesh of so many segments around the axis and rings along the meridian.
-    ///
-    /// # Errors
-    /// [`Stage::Usage`] below 3 segments or 2 rings, or beyond [`Solver::MOST_QUADS`] of both together.
-    pub fn mesh(segments: u32, rings: u32) -> Result<Self> {
-        let quads = u64::from(segments) * u64::from(rings);
-        if segments < 3 || rings < 2 || quads > Self::MOST_QUADS {
-            return Err(Error::new(
-                Stage::Usage,
-                format!(
-                    "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 rings, and at most {} of both together",
-                    Self::MOST_QUADS
-                ),
-            ));
-        }
-        Ok(Self::Mesh { segments, rings })
-    }
-
-    /// Most quads of a mesh.
-    pub const MOST_QUADS: u64 = 1 << 22;
-
-    /// Whether it is a mesh.
-    #[must_use]
-    pub const fn is_mesh(self) -> bool {
-        matches!(self, Self::Mesh { .. })
-    }
-
-    /// Most quads of a copy: of a mesh the product of its numbers, of a search none.
-    #[must_use]
-    pub const fn quads(self) -> u64 {
-        match self {
-            Self::Mesh { segments, rings } => segments as u64 * rings as u64,
-            _ => 0,
-        }
-    }
-
-    /// Its name in options and results; of a mesh the first part, [`Display`](fmt::Display) gives the whole: `mesh:64x128`.
+    /// Its name in options and results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -113,7 +70,6 @@ impl Solver {
             Self::Live => "live",
             Self::Quadric => "quadric",
             Self::Hull => "hull",
-            Self::Mesh { .. } => "mesh",
         }
     }
 
@@ -128,7 +84,7 @@ impl Solver {
     pub const fn reads_map(self) -> bool {
         !matches!(
             self,
-            Self::Cone | Self::Relaxed | Self::Quadric | Self::Hull | Self::Mesh { .. }
+            Self::Cone | Self::Relaxed | Self::Quadric | Self::Hull
         )
     }
 
@@ -140,7 +96,7 @@ impl Solver {
     }
 
     /// The bound on steps where none is given: 64 equal ones, or relaxed cones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `cone`, `quadric`, `hull` and meshes have none to bound.
+    /// than any ray of a sound map takes. `cone`, `quadric` and `hull` have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -148,17 +104,14 @@ impl Solver {
             Self::Circle if beveled => 25,
             Self::Circle => 20,
             Self::Live => 512,
-            Self::Cone | Self::Quadric | Self::Hull | Self::Mesh { .. } => 1,
+            Self::Cone | Self::Quadric | Self::Hull => 1,
         }
     }
 }
 
 impl fmt::Display for Solver {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mesh { segments, rings } => write!(f, "{}:{segments}x{rings}", self.name()),
-            _ => f.write_str(self.name()),
-        }
+        f.write_str(self.name())
     }
 }
 
@@ -166,30 +119,21 @@ impl fmt::Display for Solver {
 ///
 /// ```
 /// use revmap::settings::Solver;
-/// assert_eq!("mesh:64x128".parse(), Solver::mesh(64, 128));
-/// assert!("mesh:64".parse::<Solver>().is_err());
+/// assert_eq!("live".parse(), Ok(Solver::Live));
+/// assert!("alive".parse::<Solver>().is_err());
 /// ```
 impl FromStr for Solver {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if let Some(known) = Self::ALL.into_iter().find(|s| s.name() == text) {
-            return Ok(known);
-        }
-        let numbers = text
-            .strip_prefix("mesh:")
-            .and_then(|rest| rest.split_once('x'))
-            .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-        match numbers {
-            Some((segments, rings)) => Self::mesh(segments, rings),
-            None => Err(Error::new(
-                Stage::Usage,
-                format!(
-                    "{text:?} is no search; give one of {}, or a mesh as mesh:64x128",
-                    Self::ALL.map(Self::name).join(", ")
-                ),
-            )),
-        }
+        Self::ALL
+            .into_iter()
+            .find(|s| s.name() == text)
+            .ok_or_else(|| {
+                let names = Self::ALL.map(Self::name).join(", ");
+                let message = format!("{text:?} is no search; give one of {names}");
+                Error::new(Stage::Usage, message)
+            })
     }
 }
 
@@ -226,6 +170,42 @@ pub struct Settings {
     /// Pixels that an object's box covers for each band of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
     /// [`Solver::Live`] the convex one: triangles cost the same however small they are. `u32::MAX`: boxes alone, and no beams either.
     pub hull_from: u32,
+}
+
+/// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage and planes are its output's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchSettings {
+    /// The search.
+    pub solver: Solver,
+    /// Bound on the search's steps; `None` takes the solver's own.
+    pub max_steps: Option<u32>,
+    /// Rows of every shape map; `None` takes each object's own.
+    pub map_rows: Option<u32>,
+    /// Source of distances; `None`: the most accurate for the profile.
+    pub map_source: Option<MapSource>,
+    /// Storage of distances.
+    pub map_format: MapFormat,
+    /// As [`Settings::hull_from`].
+    pub hull_from: u32,
+}
+
+impl From<&Settings> for SearchSettings {
+    fn from(settings: &Settings) -> Self {
+        Self {
+            solver: settings.solver,
+            max_steps: settings.max_steps,
+            map_rows: settings.map_rows,
+            map_source: settings.map_source,
+            map_format: settings.map_format,
+            hull_from: settings.hull_from,
+        }
+    }
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self::from(&Settings::default())
+    }
 }
 
 impl Default for Settings {

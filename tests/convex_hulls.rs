@@ -8,7 +8,7 @@ use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::gpu::Way;
+use revmap::gpu::DrawPath;
 use revmap::maps::MapFormat;
 use revmap::profile::Profile;
 use revmap::scene::{Offset, Scene, Shadow};
@@ -149,7 +149,7 @@ fn all_that_the_box_draws() {
 /// Eyes in the hull are the box's affair; beams take them all.
 #[test]
 fn eyes_anywhere() {
-    const BEAMED: Ways<'static> = [&[Way::Box], &[Way::Beams]];
+    const BEAMED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Beams]];
     for (name, profile) in [
         ("sphere", shapes::sphere()),
         ("glass", shapes::glass()),

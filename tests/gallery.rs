@@ -4,7 +4,7 @@
 mod common;
 
 use common::device;
-use revmap::gpu::Renderer;
+use revmap::gpu::Offscreen;
 use revmap::scene::{Scene, file};
 use revmap::settings::{Planes, Settings, Solver};
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ fn maps_are_as_small_as_the_papers_claim() {
     };
     for (name, file) in scenes() {
         let scene: Scene = file::load(&file, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let renderer = Renderer::new(device(), &scene, &settings).unwrap();
+        let renderer = Offscreen::new(device(), &scene, &settings).unwrap();
         let [shapes, covers] = renderer.map_bytes();
         println!("{name}: {shapes} and {covers} bytes");
         assert!(

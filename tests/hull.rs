@@ -7,7 +7,7 @@ mod common;
 use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use common::{device, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::gpu::{Renderer, Way};
+use revmap::gpu::{DrawPath, Offscreen};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
@@ -167,9 +167,16 @@ fn a_crowd_in_one_depth_buffer() {
         }
         crowd.objects.push(object);
         let [fragment, compute] = [
-            [Way::Hull, Way::Beams],
-            [Way::Hull, if n == 4 { Way::Bins } else { Way::Beams }],
-            [Way::Box, Way::Rectangle],
+            [DrawPath::Hull, DrawPath::Beams],
+            [
+                DrawPath::Hull,
+                if n == 4 {
+                    DrawPath::Bins
+                } else {
+                    DrawPath::Beams
+                },
+            ],
+            [DrawPath::Box, DrawPath::Rectangle],
         ][n % 3];
         ways[0].push(fragment);
         ways[1].push(compute);
@@ -194,7 +201,11 @@ fn copies_of_a_lone_object() {
     let few = copies(3, 1.0);
     assert_same("three", &few, WRAPPED);
     assert_same("64", &copies(64, 0.7), WRAPPED);
-    assert_same("65", &copies(65, 0.7), [&[Way::Hull], &[Way::Bins]]);
+    assert_same(
+        "65",
+        &copies(65, 0.7),
+        [&[DrawPath::Hull], &[DrawPath::Bins]],
+    );
     let mut beside = few.clone();
     beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);
     assert_same("one beside the picture", &beside, WRAPPED);
@@ -202,7 +213,7 @@ fn copies_of_a_lone_object() {
     // The depths of a frame are none of the next one's business.
     for stage in STAGES {
         let settings = settings(Solver::Hull, stage);
-        let mut renderer = Renderer::new(device(), &few, &settings).unwrap();
+        let mut renderer = Offscreen::new(device(), &few, &settings).unwrap();
         renderer.draw().unwrap();
         let mut far = few.clone();
         far.camera.eye = eye(35.0, 4.0);

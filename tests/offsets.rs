@@ -8,7 +8,7 @@ use common::{device, eye, scene_of, shapes};
 use glam::DVec3;
 use rayon::prelude::*;
 use revmap::frame::Frame;
-use revmap::gpu::Renderer;
+use revmap::gpu::Offscreen;
 use revmap::maps::MapFormat;
 use revmap::scene::{CameraFrame, Offset, Scene};
 use revmap::settings::{Settings, Solver};
@@ -194,7 +194,7 @@ fn normals_follow_bevel_and_chamfer() {
                 map_format,
                 ..settings_of
             };
-            let mut renderer = Renderer::new(device(), &first, &settings).unwrap();
+            let mut renderer = Offscreen::new(device(), &first, &settings).unwrap();
             for (name, offset) in all {
                 let scene = with(&plain, offset, 25.0);
                 renderer.update(&scene).unwrap();

@@ -4,12 +4,9 @@
 mod common;
 
 use common::{device, draw, eye, placement, scene_of, shapes};
-use revmap::error::Stage;
 use revmap::frame::Frame;
-use revmap::gpu::{Renderer, Way};
-use revmap::maps::MapSource;
-use revmap::profile::{Profile, Shape};
-use revmap::scene::{Object, Scene, Shadow};
+use revmap::gpu::{DrawPath, Offscreen};
+use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
@@ -24,7 +21,7 @@ fn settings(stage: DrawStage) -> Settings {
     }
 }
 
-fn drawn(renderer: &mut Renderer) -> Frame {
+fn drawn(renderer: &mut Offscreen) -> Frame {
     renderer.draw().unwrap();
     renderer.read().unwrap()
 }
@@ -36,37 +33,33 @@ fn vase() -> Scene {
 /// What is refused before anything is touched: the frame before is drawn on, to the last bit.
 #[test]
 fn what_is_refused_changes_nothing() {
-    let mesh = Solver::mesh(32, 64).unwrap();
     type Case = (&'static str, Solver, fn(&mut Scene));
-    let cases: [Case; 6] = [
-        ("instances", Solver::Hull, |s| {
-            s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3];
-        }),
-        ("objects", Solver::Hull, |s| {
-            s.objects.push(s.objects[0].clone());
-        }),
+    let cases: [Case; 4] = [
         ("up", Solver::Hull, |s| {
             s.camera.up = s.camera.target - s.camera.eye;
         }),
         ("lights", Solver::Hull, |s| {
             s.lights = vec![s.lights[0]; 9];
         }),
-        ("not what the renderer", Solver::Hull, |s| {
-            s.objects[0].profile = shapes::glass().into();
+        ("NaN", Solver::Hull, |s| {
+            s.objects.push(s.objects[0].clone());
+            s.objects[1].offset.extend = f64::NAN;
         }),
-        ("box", mesh, |s| s.objects[0].offset.extend = 0.3),
+        // Two more instances, and no cones for any of them.
+        ("single-valued", Solver::Cone, |s| {
+            s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3];
+            s.objects[0].profile = shapes::glass().into();
+            s.objects.push(s.objects[0].clone());
+        }),
     ];
     for stage in STAGES {
         for (word, solver, spoil) in cases {
-            if solver.is_mesh() && stage == DrawStage::Compute {
-                continue;
-            }
             let settings = Settings {
                 solver,
                 ..settings(stage)
             };
             let scene = vase();
-            let mut renderer = Renderer::new(device(), &scene, &settings).unwrap();
+            let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
             let before = drawn(&mut renderer);
             let mut spoilt = scene.clone();
             spoilt.background = [1.0; 4];
@@ -81,43 +74,39 @@ fn what_is_refused_changes_nothing() {
     device().check().unwrap();
 }
 
-/// A soft shadow wants a map; an exact one is not to be had of a picture, which shows only when it is baked.
+/// Objects come and go, change their profile and number of copies: the same frame as a new one draws.
 #[test]
-fn what_fails_half_way_is_not_drawn() {
-    let vase = shapes::vase();
-    let Shape::Outline(outline) = &vase.shape else {
-        unreachable!()
-    };
-    let picture = Profile {
-        shape: Shape::Raster(outline.rasterize(128, 256)),
-        radius: 0.5,
-    };
+fn other_objects_are_taken_over() {
+    type Change = (&'static str, fn(&mut Scene));
+    let changes: [Change; 5] = [
+        ("three instances", |s| {
+            s.objects[0].instances = (0..3)
+                .map(|n| placement([0.0, 0.7 * f64::from(n) - 0.7, 0.0], [0.0; 3], [0.6; 3]))
+                .collect();
+        }),
+        ("another object", |s| {
+            s.objects.push(Object::new("ball", shapes::sphere().into()));
+            s.objects[1].placement.position.y = 1.0;
+        }),
+        ("another profile", |s| {
+            s.objects[0].profile = shapes::glass().into()
+        }),
+        ("one instance", |s| s.objects[0].instances.clear()),
+        ("one object", |s| {
+            s.objects.remove(0);
+        }),
+    ];
     for stage in STAGES {
-        let settings = Settings {
-            map_source: Some(MapSource::Exact),
-            ..settings(stage)
-        };
-        let mut scene = scene_of(picture.clone(), eye(25.0, 2.2));
-        let mut renderer = Renderer::new(device(), &scene, &settings).unwrap();
-        renderer.draw().unwrap();
-        scene.shadow = Shadow::Soft;
-        let error = renderer.update(&scene).unwrap_err();
-        assert_eq!(error.stage, Stage::Map, "{error}");
-        let refused = [renderer.draw().err(), renderer.read().err()];
-        for error in refused.map(Option::unwrap) {
-            assert_eq!(error.stage, Stage::Draw);
-            assert!(error.message.contains("update"), "{error}");
+        let mut scene = vase();
+        let mut renderer = Offscreen::new(device(), &scene, &settings(stage)).unwrap();
+        drawn(&mut renderer);
+        for (what, change) in changes {
+            change(&mut scene);
+            renderer.update(&scene).unwrap();
+            let kept = drawn(&mut renderer);
+            let fresh = draw(&scene, &settings(stage));
+            assert_eq!(fresh.first_difference(&kept), None, "{stage:?}: {what}");
         }
-        // And again, until one succeeds.
-        renderer.update(&scene).unwrap_err();
-        renderer.draw().unwrap_err();
-        scene.shadow = Shadow::Off;
-        scene.objects[0].offset.extend = 0.02;
-        renderer.update(&scene).unwrap();
-        let mended = drawn(&mut renderer);
-        let fresh = draw(&scene, &settings);
-        assert_eq!(fresh.first_difference(&mended), None);
-        assert!((0..fresh.pixels()).any(|i| fresh.hits(i)));
     }
     device().check().unwrap();
 }
@@ -137,13 +126,11 @@ fn three() -> Scene {
 /// Contours are cut for what has changed, once for each profile and offset; and what is kept is drawn like what is new.
 #[test]
 fn only_what_has_changed_is_cut() {
-    let mesh = Solver::mesh(24, 48).unwrap();
     for (solver, stage) in [
         (Solver::Hull, DrawStage::Fragment),
         (Solver::Hull, DrawStage::Compute),
         (Solver::Quadric, DrawStage::Fragment),
         (Solver::Cone, DrawStage::Fragment),
-        (mesh, DrawStage::Fragment),
         (Solver::Live, DrawStage::Fragment),
     ] {
         let settings = Settings {
@@ -151,18 +138,21 @@ fn only_what_has_changed_is_cut() {
             ..settings(stage)
         };
         let mut scene = three();
-        let mut renderer = Renderer::new(device(), &scene, &settings).unwrap();
+        let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
         let mut updated = |scene: &Scene, cuts: u64, what: &str| {
             renderer.update(scene).unwrap();
             let cuts = if solver.reads_map() { 0 } else { cuts };
-            assert_eq!(renderer.cuts(), cuts, "{solver}, {stage:?}: {what}");
+            assert_eq!(
+                renderer.rebuild_count(),
+                cuts,
+                "{solver}, {stage:?}: {what}"
+            );
             let way = match (solver, stage) {
-                (Solver::Hull | Solver::Live, DrawStage::Fragment) => Way::Hull,
-                (Solver::Hull, _) => Way::Beams,
-                (Solver::Mesh { .. }, _) => Way::Mesh,
-                _ => Way::Box,
+                (Solver::Hull | Solver::Live, DrawStage::Fragment) => DrawPath::Hull,
+                (Solver::Hull, _) => DrawPath::Beams,
+                _ => DrawPath::Box,
             };
-            assert_eq!(renderer.ways(), [way; 3], "{solver}: {what}");
+            assert_eq!(renderer.draw_paths(), [way; 3], "{solver}: {what}");
             let fresh = draw(scene, &settings);
             let kept = drawn(&mut renderer);
             assert_eq!(fresh.first_difference(&kept), None, "{solver}: {what}");
@@ -179,6 +169,7 @@ fn only_what_has_changed_is_cut() {
         updated(&scene, 3, "the camera again");
         scene.objects[1].offset.extend = 0.0;
         updated(&scene, 3, "as its twin");
+        updated(&scene, 3, "until frames in flight are done");
         scene.objects[1].offset.extend = 0.02;
         updated(&scene, 4, "what was forgotten");
         scene.objects[2].offset.extend = 0.02;
@@ -191,8 +182,8 @@ fn only_what_has_changed_is_cut() {
             object.placement.position.x += 100.0;
         }
         renderer.update(&scene).unwrap();
-        let none = [Way::Nothing; 3];
-        assert_eq!(renderer.ways() == none, stage == DrawStage::Compute);
+        let none = [DrawPath::Nothing; 3];
+        assert_eq!(renderer.draw_paths() == none, stage == DrawStage::Compute);
         let frame = drawn(&mut renderer);
         assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }

@@ -1,6 +1,7 @@
 //! Which squares of the screen each instance's box covers: the work list of the compute path.
 
-use crate::scene::{CameraFrame, Placement};
+use super::view::View;
+use crate::scene::Placement;
 use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS};
 use glam::{DVec2, DVec3};
 
@@ -57,17 +58,17 @@ impl Bins {
     /// Adds a batch of boxes of radius `radius`; `first` is its first instance's number. Returns its range of bins.
     pub fn add(
         &mut self,
-        camera: &CameraFrame,
-        size: (u32, u32),
+        view: &View,
         radius: f64,
         first: u32,
         placements: &[Placement],
     ) -> std::ops::Range<u32> {
-        let across = size.0.div_ceil(BIN_PIXELS);
-        let down = size.1.div_ceil(BIN_PIXELS);
+        let [_, full] = view.corners();
+        let bins = |pixels: f64| (pixels / f64::from(BIN_PIXELS)).ceil() as u32;
+        let (across, down) = (bins(full.x), bins(full.y));
         let covered: Vec<_> = placements
             .iter()
-            .map(|p| rectangle(camera, size, BIN_PIXELS, radius, p))
+            .map(|p| rectangle(view, BIN_PIXELS, radius, p))
             .collect();
         let mut counts = vec![0u32; (across * down) as usize];
         let each = |r: &Rectangle, visit: &mut dyn FnMut(usize)| {
@@ -110,8 +111,7 @@ impl Bins {
 
 /// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the picture.
 pub(crate) fn rectangle(
-    camera: &CameraFrame,
-    size: (u32, u32),
+    view: &View,
     unit: u32,
     radius: f64,
     placement: &Placement,
@@ -128,7 +128,7 @@ pub(crate) fn rectangle(
             f64::from(corner / 4 % 2),
         );
         let world = placement.position + placement.rotation * (placement.scale * p);
-        let (pixel, depth) = project(camera, world);
+        let (pixel, depth) = view.project(world);
         nearest = nearest.min(depth);
         farthest = farthest.max(depth);
         low = low.min(pixel);
@@ -137,12 +137,12 @@ pub(crate) fn rectangle(
     if farthest <= 0.0 {
         return None;
     }
-    let full = DVec2::new(f64::from(size.0), f64::from(size.1));
+    let [corner, full] = view.corners();
     if nearest <= 1e-9 * farthest {
         // A box around or beside the eye projects to no rectangle.
-        (low, high) = (DVec2::ZERO, full);
+        (low, high) = (corner, full);
     }
-    low = (low - 1.0).max(DVec2::ZERO);
+    low = (low - 1.0).max(corner);
     high = (high + 1.0).min(full - 1.0);
     if low.x > high.x || low.y > high.y || !(low.is_finite() && high.is_finite()) {
         return None;
@@ -152,14 +152,4 @@ pub(crate) fn rectangle(
         low: (bin(low.x), bin(low.y)),
         high: (bin(high.x), bin(high.y)),
     })
-}
-
-/// Where a world point is seen, in pixels from the upper left corner, and its depth along the view.
-fn project(camera: &CameraFrame, world: DVec3) -> (DVec2, f64) {
-    let from_eye = world - camera.eye;
-    let depth = from_eye.dot(camera.forward);
-    let x = from_eye.dot(camera.right) / (camera.right.length_squared() * depth);
-    let y = from_eye.dot(camera.up) / (camera.up.length_squared() * depth);
-    let pixel = DVec2::new(camera.middle[0] + x, camera.middle[1] - y);
-    (pixel, depth)
 }

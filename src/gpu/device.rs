@@ -1,32 +1,58 @@
-//! An open device: one queue for graphics and compute, and an allocator.
+//! A device to draw on: opened here, or borrowed from a host.
 
 use super::call::Call;
-use super::instance::Instance;
-use super::report::{Candidate, DEVICE_VARIABLE, DeviceReport, candidates, choose};
+use super::instance::{Instance, into_device};
+use super::pipelines::Pipelines;
+use super::report::{
+    Candidate, DEVICE_VARIABLE, DeviceReport, candidates, choose, inspect, refuse,
+};
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// An open Vulkan device. Clones share it; it closes when the last user is gone.
+/// A Vulkan device and what all renderers on it share: memory and pipelines. Clones share it, too.
 #[derive(Clone)]
 pub struct Device {
     pub(crate) shared: Arc<Shared>,
 }
 
+/// A host's device, to be borrowed.
+#[derive(Clone)]
+pub struct HostDevice<'a> {
+    /// The instance that the device belongs to.
+    pub instance: &'a ash::Instance,
+    /// The physical device.
+    pub physical: vk::PhysicalDevice,
+    /// The device, opened with what [`Requirements`](super::Requirements) lists.
+    pub device: &'a ash::Device,
+    /// The family of the queues to which recorded commands are submitted.
+    pub queue_family: u32,
+    /// A queue for [`Offscreen`](super::Offscreen), which submits by itself; renderers need none.
+    pub queue: Option<vk::Queue>,
+    /// The features that the device was opened with.
+    pub features: vk::PhysicalDeviceFeatures,
+    /// The host's allocator; without one a renderer makes its own.
+    pub allocator: Option<Arc<Mutex<Allocator>>>,
+    /// The host's pipeline cache; without one a renderer makes its own.
+    pub pipeline_cache: Option<vk::PipelineCache>,
+}
+
 /// What everything made on a device keeps alive.
 pub(crate) struct Shared {
     // Dropped before the device: see Drop.
-    allocator: Option<Mutex<Allocator>>,
+    allocator: Option<Arc<Mutex<Allocator>>>,
+    pipelines: Option<Pipelines>,
     pub raw: ash::Device,
-    pub queue: Mutex<vk::Queue>,
+    pub queue: Option<Mutex<vk::Queue>>,
     pub family: u32,
     pub limits: vk::PhysicalDeviceLimits,
     pub timestamp_bits: u32,
     pub anisotropy: Option<f32>,
     pub report: DeviceReport,
-    instance: Instance,
+    /// None of a borrowed device.
+    instance: Option<Instance>,
 }
 
 impl Device {
@@ -37,7 +63,16 @@ impl Device {
     /// # Errors
     /// [`Stage::Device`] when there is none, or it lacks what is needed.
     pub fn open(choice: Option<&str>) -> Result<Self> {
-        Self::on(Instance::from_environment()?, choice)
+        Self::on(Instance::from_environment()?, choice, &[])
+    }
+
+    /// As [`Device::open`], with what [`Device::pipeline_cache_data`] gave in another process. Data of another driver, or
+    /// damaged data, is no error: pipelines are compiled anew.
+    ///
+    /// # Errors
+    /// As `open`.
+    pub fn open_with_cache(choice: Option<&str>, cache: &[u8]) -> Result<Self> {
+        Self::on(Instance::from_environment()?, choice, cache)
     }
 
     /// As [`Device::open`], with the validation layers on whatever the environment says: core checks and synchronization.
@@ -45,17 +80,62 @@ impl Device {
     /// # Errors
     /// As `open`, and [`Stage::Device`] when the layer is not installed.
     pub fn open_validated(choice: Option<&str>) -> Result<Self> {
-        Self::on(Instance::new(true)?, choice)
+        Self::on(Instance::new(true)?, choice, &[])
     }
 
-    fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
+    /// Borrows a host's device.
+    ///
+    /// # Errors
+    /// [`Stage::Device`] when the device lacks what is needed; [`Stage::Draw`] of Vulkan.
+    ///
+    /// # Safety
+    /// This call makes layouts, and an allocator and a pipeline cache where the host gives none. They are destroyed with the
+    /// last of: this value, its clones, and all that was made with them.
+    ///
+    /// The caller must see to it that
+    /// * all handles belong together and stay valid until then;
+    /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or later;
+    /// * `host.queue`, where there is one, is used by nobody else while an `Offscreen` submits.
+    pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
+        let mut candidate = inspect(host.instance, 0, host.physical);
+        refuse(&candidate).map_err(into_device)?;
+        candidate.features = host.features;
+        candidate.family = host.queue_family;
+        let shared = Shared::new(
+            &candidate,
+            host.device.clone(),
+            host.queue,
+            Allocation::of(host),
+            host.pipeline_cache,
+            &[],
+        )?;
+        Ok(Self {
+            shared: Arc::new(shared),
+        })
+    }
+
+    fn on(instance: Instance, choice: Option<&str>, cache: &[u8]) -> Result<Self> {
         let variable = std::env::var(DEVICE_VARIABLE)
             .ok()
             .filter(|v| !v.is_empty());
         let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
-        Ok(Self {
-            shared: Arc::new(Shared::new(instance, &chosen)?),
-        })
+        let raw = create(&instance, &chosen)?;
+        // SAFETY: the queue was asked for when the device was made.
+        let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
+        let memory = Allocation::New(&instance.raw, chosen.physical);
+        match Shared::new(&chosen, raw.clone(), Some(queue), memory, None, cache) {
+            Ok(mut shared) => {
+                shared.instance = Some(instance);
+                Ok(Self {
+                    shared: Arc::new(shared),
+                })
+            }
+            Err(error) => {
+                // SAFETY: what was made on the device is gone again.
+                unsafe { raw.destroy_device(None) };
+                Err(into_device(error))
+            }
+        }
     }
 
     /// What it is.
@@ -64,15 +144,45 @@ impl Device {
         &self.shared.report
     }
 
-    /// Takes the validation layers' messages since the last call; always empty without the layers.
+    /// How many pipelines have been compiled on it.
+    #[must_use]
+    pub fn pipelines_compiled(&self) -> u64 {
+        self.shared.pipelines().map_or(0, Pipelines::compiled)
+    }
+
+    /// The driver's compiled pipelines, to be kept and given to [`Device::open_with_cache`].
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] of Vulkan.
+    pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
+        self.shared.pipelines()?.cache_data()
+    }
+
+    /// The device's functions and handle, for what is drawn beside.
+    #[must_use]
+    pub fn raw(&self) -> &ash::Device {
+        &self.shared.raw
+    }
+
+    /// Where device memory comes from, for what is drawn beside.
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] while the device is being closed.
+    pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
+        let closed = || Error::new(Stage::Draw, "the device is being closed");
+        self.shared.allocator.clone().ok_or_else(closed)
+    }
+
+    /// Takes the validation layers' messages since the last call; always empty without the layers, and of a borrowed device.
     #[must_use]
     pub fn take_messages(&self) -> Vec<String> {
-        self.shared
-            .instance
-            .messages
-            .as_ref()
+        self.messages()
             .map(super::messages::Messages::take)
             .unwrap_or_default()
+    }
+
+    fn messages(&self) -> Option<&super::messages::Messages> {
+        self.shared.instance.as_ref()?.messages.as_ref()
     }
 
     /// Fails when the validation layers have had anything to say since the last call.
@@ -97,68 +207,90 @@ impl Device {
     /// Whether the validation layers watch.
     #[must_use]
     pub fn validated(&self) -> bool {
-        self.shared.instance.messages.is_some()
+        self.messages().is_some()
     }
 }
 
-impl Shared {
-    fn new(instance: Instance, chosen: &Candidate) -> Result<Self> {
-        let priorities = [1.0];
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(chosen.family)
-            .queue_priorities(&priorities)];
-        let features = vk::PhysicalDeviceFeatures {
-            fragment_stores_and_atomics: vk::TRUE,
-            sampler_anisotropy: vk::Bool32::from(chosen.anisotropic()),
-            ..Default::default()
-        };
-        let mut extensions = Vec::new();
-        if chosen.portability_subset {
-            extensions.push(ash::khr::portability_subset::NAME.as_ptr());
+/// Where device memory comes from.
+enum Allocation<'a> {
+    Host(Arc<Mutex<Allocator>>),
+    New(&'a ash::Instance, vk::PhysicalDevice),
+}
+
+impl<'a> Allocation<'a> {
+    fn of(host: &HostDevice<'a>) -> Self {
+        match &host.allocator {
+            Some(shared) => Self::Host(shared.clone()),
+            None => Self::New(host.instance, host.physical),
         }
-        let info = vk::DeviceCreateInfo::default()
-            .queue_create_infos(&queues)
-            .enabled_extension_names(&extensions)
-            .enabled_features(&features);
-        // SAFETY: `info` asks only for what the physical device offers.
-        let raw = unsafe { instance.raw.create_device(chosen.physical, &info, None) }
-            .call("vkCreateDevice")
-            .map_err(super::instance::into_device)?;
-        // SAFETY: the queue was asked for above.
-        let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
+    }
+
+    fn allocator(self, device: &ash::Device) -> Result<Arc<Mutex<Allocator>>> {
         const MIB: u64 = 1 << 20;
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.raw.clone(),
-            device: raw.clone(),
-            physical_device: chosen.physical,
+        let (instance, physical_device) = match self {
+            Self::Host(shared) => return Ok(shared),
+            Self::New(instance, physical) => (instance, physical),
+        };
+        Allocator::new(&AllocatorCreateDesc {
+            instance: instance.clone(),
+            device: device.clone(),
+            physical_device,
             debug_settings: AllocatorDebugSettings::default(),
             buffer_device_address: false,
             allocation_sizes: AllocationSizes::new(8 * MIB, 4 * MIB)
                 .with_max_device_memblock_size(128 * MIB)
                 .with_max_host_memblock_size(64 * MIB),
-        });
-        let allocator = match allocator {
-            Ok(allocator) => allocator,
-            Err(e) => {
-                // SAFETY: nothing was made on the device yet.
-                unsafe { raw.destroy_device(None) };
-                return Err(Error::new(
-                    Stage::Device,
-                    format!("no memory allocator: {e}"),
-                ));
-            }
-        };
+        })
+        .map(|allocator| Arc::new(Mutex::new(allocator)))
+        .map_err(|e| Error::new(Stage::Device, format!("no memory allocator: {e}")))
+    }
+}
+
+fn create(instance: &Instance, chosen: &Candidate) -> Result<ash::Device> {
+    let priorities = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(chosen.family)
+        .queue_priorities(&priorities)];
+    let features = chosen.wanted_features();
+    let mut extensions = Vec::new();
+    if chosen.portability_subset {
+        extensions.push(ash::khr::portability_subset::NAME.as_ptr());
+    }
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&features);
+    // SAFETY: `info` asks only for what the physical device offers.
+    unsafe { instance.raw.create_device(chosen.physical, &info, None) }
+        .call("vkCreateDevice")
+        .map_err(into_device)
+}
+
+impl Shared {
+    fn new(
+        chosen: &Candidate,
+        raw: ash::Device,
+        queue: Option<vk::Queue>,
+        memory: Allocation<'_>,
+        pipeline_cache: Option<vk::PipelineCache>,
+        cache_data: &[u8],
+    ) -> Result<Self> {
+        let limits = chosen.properties.limits;
+        let allocator = memory.allocator(&raw)?;
+        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, cache_data)?;
         Ok(Self {
-            allocator: Some(Mutex::new(allocator)),
-            raw,
-            queue: Mutex::new(queue),
+            allocator: Some(allocator),
+            pipelines: Some(pipelines),
+            queue: queue.map(Mutex::new),
             family: chosen.family,
-            limits: chosen.properties.limits,
+            limits,
             timestamp_bits: chosen.timestamp_bits,
-            anisotropy: (features.sampler_anisotropy == vk::TRUE)
-                .then_some(chosen.properties.limits.max_sampler_anisotropy),
+            anisotropy: chosen
+                .anisotropic()
+                .then_some(limits.max_sampler_anisotropy),
             report: chosen.report.clone(),
-            instance,
+            raw,
+            instance: None,
         })
     }
 
@@ -168,15 +300,26 @@ impl Shared {
             .and_then(|a| a.lock().ok())
             .ok_or_else(|| Error::new(Stage::Draw, "the device's allocator is gone after a panic"))
     }
+
+    pub fn pipelines(&self) -> Result<&Pipelines> {
+        self.pipelines
+            .as_ref()
+            .ok_or_else(|| Error::new(Stage::Draw, "the device is being closed"))
+    }
 }
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: everything made on the device held this alive and is gone by now.
+        // SAFETY: everything made on the device held this alive and is gone by now; a host has waited for its own work.
         unsafe {
-            let _ = self.raw.device_wait_idle();
+            if self.instance.is_some() {
+                let _ = self.raw.device_wait_idle();
+            }
+            self.pipelines = None;
             self.allocator = None;
-            self.raw.destroy_device(None);
+            if self.instance.is_some() {
+                self.raw.destroy_device(None);
+            }
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Hulls: what the vertex shader grows, and which objects can be drawn by theirs.
 
-use super::batch::axis_offset;
 use super::bins::{Rectangle, rectangle};
-use super::cuts::Cut;
+use super::block::axis_offset;
+use super::surface::OffsetSurface;
+use super::view::View;
 use crate::maps::envelope::Envelope;
 use crate::pieces::{Hull, HullOptions, Piece, Record};
-use crate::scene::{CameraFrame, Object, Placement};
+use crate::scene::{Object, Placement};
 use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -17,12 +18,12 @@ const CLEARANCE: f64 = 1e-3;
 pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * HULL_TESTS);
 
 /// A hull, and its bands in the layout of `hull.vert`.
-pub(crate) struct Shell {
+pub(crate) struct ProxyHull {
     pub hull: Hull,
     pub vectors: Vec<[u32; 4]>,
 }
 
-impl Shell {
+impl ProxyHull {
     pub fn new(pieces: &[Piece]) -> Self {
         let options = HullOptions {
             sides: HULL_SIDES,
@@ -44,43 +45,33 @@ impl Shell {
 
 /// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas. Rays that are searched
 /// as in the box may be cut by it.
-fn is_whole(object: &Object, cut: &Cut) -> bool {
-    if !cut.is_boundary() {
+fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
+    if !surface.is_boundary() {
         return object.repeat == [1; 3];
     }
     let radius = object.profile.radius;
     let [x, y] = axis_offset(object);
     let side_face = radius - x.abs().max(y.abs());
-    object.repeat == [1; 3] && cut.extent()[0] <= side_face
+    object.repeat == [1; 3] && surface.extent()[0] <= side_face
 }
 
 /// Whether rays of all of an object's copies can be taken between the ends that beams give: they begin outside the solid and no face
 /// of the box shows.
-pub(crate) fn takes_beams(object: &Object, cut: &Cut, camera: &CameraFrame) -> bool {
-    let [r_max, z_min, z_max] = cut.extent();
+pub(crate) fn takes_beams(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    let [r_max, z_min, z_max] = surface.extent();
     let apart = |copy: &Placement| {
-        let eye = flat(seen_from(object, copy, camera).0);
+        let eye = flat(seen_from(object, copy, view).0);
         eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE
     };
-    is_whole(object, cut) && (!cut.is_boundary() || object.placements().iter().all(apart))
+    is_whole(object, surface) && (!surface.is_boundary() || object.placements().iter().all(apart))
 }
 
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.
-fn seen_from(object: &Object, placement: &Placement, camera: &CameraFrame) -> (DVec3, DVec3) {
+fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
     let [x, y] = axis_offset(object);
     let turn = placement.rotation.conjugate();
-    let eye = turn * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0);
-    (eye, turn * camera.forward * placement.scale)
-}
-
-/// A frame, as far as the choice between hull and box depends on it.
-pub(crate) struct View<'a> {
-    pub camera: &'a CameraFrame,
-    pub size: (u32, u32),
-    /// Depth of the near plane.
-    pub near: f64,
-    /// As [`Settings::hull_from`](crate::settings::Settings::hull_from).
-    pub from: u32,
+    let eye = turn * (view.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0);
+    (eye, turn * view.forward * placement.scale)
 }
 
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
@@ -88,21 +79,26 @@ const SAMPLES: usize = 64;
 
 /// The hull of `object`, around its boundary or the envelope of its map, if it shows from this camera all that the box would (the eye is outside all shells,
 /// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
-pub(crate) fn of<'a>(object: &Object, cut: &'a Cut, view: &View) -> Option<Wrapped<'a>> {
-    if !is_whole(object, cut) {
+pub(crate) fn bands(
+    object: &Object,
+    surface: &OffsetSurface,
+    view: &View,
+    least_pixels: u32,
+) -> Option<Vec<Range<u32>>> {
+    if !is_whole(object, surface) {
         return None;
     }
-    let hull = &cut.shell().hull;
+    let hull = &surface.hull().hull;
     let copies = object.placements();
     let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));
     let count = sampled.len().max(1);
     let covered: u64 = sampled
         .clone()
-        .filter_map(|copy| rectangle(view.camera, view.size, 1, object.profile.radius, copy))
+        .filter_map(|copy| rectangle(view, 1, object.profile.radius, copy))
         .map(Rectangle::squares)
         .sum();
     let eyes: Vec<DVec2> = sampled
-        .map(|copy| flat(seen_from(object, copy, view.camera).0))
+        .map(|copy| flat(seen_from(object, copy, view).0))
         .collect();
     let bands = if eyes.len() == copies.len() {
         hull.seen_from(&eyes)
@@ -110,18 +106,11 @@ pub(crate) fn of<'a>(object: &Object, cut: &'a Cut, view: &View) -> Option<Wrapp
         std::iter::once(0..hull.bands.len() as u32).collect()
     };
     let drawn: usize = bands.iter().map(ExactSizeIterator::len).sum();
-    if covered < u64::from(view.from) * (drawn * count) as u64 {
+    if covered < u64::from(least_pixels) * (drawn * count) as u64 {
         return None;
     }
-    let seen = |copy| is_in_front(hull, seen_from(object, copy, view.camera), view.near);
-    copies.iter().all(seen).then_some(Wrapped { hull, bands })
-}
-
-/// A hull, and what of it may be seen.
-pub(crate) struct Wrapped<'a> {
-    pub hull: &'a Hull,
-    /// Runs of bands.
-    pub bands: Vec<Range<u32>>,
+    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view.near);
+    copies.iter().all(seen).then_some(bands)
 }
 
 /// A point as the half-plane has it.

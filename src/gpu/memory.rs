@@ -36,14 +36,9 @@ impl Buffer {
         // SAFETY: the buffer is live.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         let allocation = allocate(device, name, requirements, location, true)?;
+        let (memory, offset) = bound(&mut buffer.allocation, allocation);
         // SAFETY: the allocation meets the buffer's requirements and is bound once.
-        unsafe {
-            device
-                .raw
-                .bind_buffer_memory(raw, allocation.memory(), allocation.offset())
-        }
-        .call("vkBindBufferMemory")?;
-        buffer.allocation = Some(allocation);
+        unsafe { device.raw.bind_buffer_memory(raw, memory, offset) }.call("vkBindBufferMemory")?;
         Ok(buffer)
     }
 
@@ -128,14 +123,9 @@ impl Image {
         // SAFETY: the image is live.
         let requirements = unsafe { device.raw.get_image_memory_requirements(raw) };
         let allocation = allocate(device, name, requirements, MemoryLocation::GpuOnly, false)?;
+        let (memory, offset) = bound(&mut image.allocation, allocation);
         // SAFETY: the allocation meets the image's requirements and is bound once.
-        unsafe {
-            device
-                .raw
-                .bind_image_memory(raw, allocation.memory(), allocation.offset())
-        }
-        .call("vkBindImageMemory")?;
-        image.allocation = Some(allocation);
+        unsafe { device.raw.bind_image_memory(raw, memory, offset) }.call("vkBindImageMemory")?;
         let view = vk::ImageViewCreateInfo::default()
             .image(raw)
             .view_type(vk::ImageViewType::TYPE_2D)
@@ -187,6 +177,14 @@ fn allocate(
                 format!("{name}: no device memory for {mib} MiB ({e}); try a smaller size or fewer map rows"),
             )
         })
+}
+
+/// Hands an allocation to its owner before anything else can fail: whoever owns it frees it.
+fn bound(owner: &mut Option<Allocation>, allocation: Allocation) -> (vk::DeviceMemory, u64) {
+    // SAFETY: the handle is used to bind the resource that owns the allocation, and for nothing else.
+    let place = (unsafe { allocation.memory() }, allocation.offset());
+    *owner = Some(allocation);
+    place
 }
 
 fn free(device: &Shared, allocation: Option<Allocation>) {

@@ -1,47 +1,56 @@
-//! Drawing on a Vulkan device. The only module with `unsafe`, next to the C ABI.
+//! Drawing on a Vulkan device. The only module with `unsafe`.
 //!
-//! A [`Device`] is opened once; a [`Renderer`] holds a scene's maps, blocks and pipelines on it, for one stage and size;
-//! [`Renderer::update`] takes over changed parameters, [`Renderer::draw`] draws, [`Renderer::read`] fetches the frame.
+//! A [`Device`] is opened, or borrowed from a host. On it a [`Renderer`] holds objects and records them into any command buffer;
+//! [`Offscreen`] does so for a whole scene, submits, waits and reads the frame back.
 #![allow(unsafe_code)]
 
-mod batch;
+mod arena;
 mod bins;
+mod block;
+#[doc(hidden)]
 pub mod blocks;
 mod buffers;
 mod call;
 mod clock;
 mod commands;
-mod compute_work;
-mod contours;
-mod cuts;
-mod descriptors;
 mod device;
+mod frame_slot;
 mod hulls;
 mod instance;
 mod memory;
-mod meshes;
 mod messages;
-mod parts;
+mod offscreen;
+mod output;
 mod pipelines;
+mod plan;
+mod prepare;
 mod read_back;
 mod record;
+mod refresh;
 mod render_pass;
 mod renderer;
 mod report;
-mod searches;
+mod requirements;
+mod sampler;
+mod solid;
 mod srgb;
+mod surface;
 mod tables;
 mod target;
 mod textures;
-mod update;
+mod uploads;
 mod usage;
-mod work;
+mod view;
 
-pub use device::Device;
+pub use device::{Device, HostDevice};
 pub use instance::VALIDATION_VARIABLE;
-pub use renderer::{Renderer, Times};
+pub use offscreen::{Guest, Offscreen, Times};
+pub use output::{DepthOrder, Output, PassFormats, PassKind};
+pub use plan::DrawPath;
+pub use renderer::{ObjectId, Renderer};
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
-pub use work::Way;
+pub use requirements::Requirements;
+pub use view::{View, Viewport};
 
 use crate::error::Result;
 use crate::frame::Frame;
@@ -55,12 +64,12 @@ pub struct Drawn {
     pub frame: Frame,
     /// What drawing it took, of a second frame: the first waits for the driver's compiler.
     pub times: Times,
-    /// Bytes on the device: of shape maps, of colour and displacement maps.
+    /// [`Renderer::map_bytes`].
     pub map_bytes: [u64; 2],
     /// [`Renderer::notes`].
     pub notes: Vec<String>,
-    /// [`Renderer::ways`].
-    pub ways: Vec<Way>,
+    /// [`Renderer::draw_paths`].
+    pub draw_paths: Vec<DrawPath>,
 }
 
 /// Draws a scene once: bakes its maps, uploads, draws, reads back.
@@ -68,17 +77,17 @@ pub struct Drawn {
 /// # Errors
 /// Any stage's.
 pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn> {
-    let mut renderer = Renderer::new(device, scene, settings)?;
-    renderer.draw()?;
-    let times = renderer.draw()?;
+    let mut offscreen = Offscreen::new(device, scene, settings)?;
+    offscreen.draw()?;
+    let times = offscreen.draw()?;
     let drawn = Drawn {
-        frame: renderer.read()?,
+        frame: offscreen.read()?,
         times,
-        map_bytes: renderer.map_bytes(),
-        notes: renderer.notes().to_vec(),
-        ways: renderer.ways(),
+        map_bytes: offscreen.map_bytes(),
+        notes: offscreen.notes().to_vec(),
+        draw_paths: offscreen.draw_paths(),
     };
-    drop(renderer);
+    drop(offscreen);
     device.check()?;
     Ok(drawn)
 }

@@ -1,16 +1,16 @@
-//! Pipelines, one per variant and use, made when first wanted and kept.
+//! Pipelines, one per variant, use and output: shared by all renderers of a device, compiled once and kept.
 
 use super::call::Call;
-use super::device::Shared;
+use super::output::{DepthOrder, Output, PassFormats, PassKind};
 use super::render_pass::{color_formats, render_pass};
-use crate::error::Result;
-use crate::mesh::Vertex;
+use crate::error::{Error, Result, Stage};
 use crate::settings::Planes;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{Variant, generated as spirv};
 use ash::vk;
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard};
 
 /// What a pipeline draws with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -23,40 +23,47 @@ pub(crate) enum Kind {
     ConvexHull,
     /// Bins of pixels.
     Compute,
-    /// Meshes, rasterised; `both_sides`: an eye may be inside.
-    Mesh {
-        /// Whether back faces show.
-        both_sides: bool,
-    },
+    /// The list of tiles that an object's rays may meet.
+    Beams,
 }
 
-/// Set layouts, the pipeline layout, the render pass of our own targets, and the pipelines made so far.
+/// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
-    /// By frequency: 0 buffers of a frame, 1 textures of a batch, 2 the target of a compute pass.
+    /// By frequency: 0 buffers of a frame, 1 textures of an object, 2 the target of a compute pass.
     pub set_layouts: [vk::DescriptorSetLayout; 3],
     pub layout: vk::PipelineLayout,
-    pub render_pass: vk::RenderPass,
-    planes: Planes,
     cache: vk::PipelineCache,
-    made: HashMap<(Variant, Kind), vk::Pipeline>,
-    /// The list of tiles that a batch's rays may meet.
-    beam: Option<vk::Pipeline>,
-    device: Arc<Shared>,
+    /// Whether `cache` is ours to destroy.
+    owns_cache: bool,
+    made: Mutex<HashMap<Key, vk::Pipeline>>,
+    compiled: AtomicU64,
+    /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
+    passes: Mutex<HashMap<Planes, vk::RenderPass>>,
+    raw: ash::Device,
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Key {
+    /// None of beams, which read no constant.
+    variant: Option<Variant>,
+    kind: Kind,
+    output: Output,
 }
 
 impl Pipelines {
-    pub fn new(device: &Arc<Shared>, planes: Planes) -> Result<Self> {
+    /// `cache`: a host's; `data`: what [`Pipelines::cache_data`] gave another time.
+    pub fn new(raw: ash::Device, cache: Option<vk::PipelineCache>, data: &[u8]) -> Result<Self> {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
             layout: vk::PipelineLayout::null(),
-            render_pass: vk::RenderPass::null(),
-            planes,
-            cache: vk::PipelineCache::null(),
-            made: HashMap::new(),
-            beam: None,
-            device: device.clone(),
+            cache: cache.unwrap_or_default(),
+            owns_cache: cache.is_none(),
+            made: Mutex::default(),
+            compiled: AtomicU64::new(0),
+            passes: Mutex::default(),
+            raw,
         };
-        let raw = &device.raw;
+        let raw = &all.raw;
         use vk::DescriptorType as T;
         use vk::ShaderStageFlags as S;
         let every = S::VERTEX | S::FRAGMENT | S::COMPUTE;
@@ -108,22 +115,75 @@ impl Pipelines {
             all.layout = raw
                 .create_pipeline_layout(&info, None)
                 .call("vkCreatePipelineLayout")?;
-            all.cache = raw
-                .create_pipeline_cache(&vk::PipelineCacheCreateInfo::default(), None)
-                .call("vkCreatePipelineCache")?;
+            if all.owns_cache {
+                let with = vk::PipelineCacheCreateInfo::default();
+                // Drivers look at the header of the data and pass over what is not theirs; some fail instead.
+                all.cache = raw
+                    .create_pipeline_cache(&with.initial_data(data), None)
+                    .or_else(|_| raw.create_pipeline_cache(&with, None))
+                    .call("vkCreatePipelineCache")?;
+            }
         }
-        all.render_pass = render_pass(device, planes)?;
         Ok(all)
     }
 
-    /// The pipeline of `variant` and `kind`, made now if it is new.
-    pub fn get(&mut self, variant: Variant, kind: Kind) -> Result<vk::Pipeline> {
-        let key = (variant, kind);
-        if let Some(made) = self.made.get(&key) {
+    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new.
+    pub fn get(&self, variant: Variant, kind: Kind, output: &Output) -> Result<vk::Pipeline> {
+        let key = Key {
+            variant: (kind != Kind::Beams).then_some(variant),
+            kind,
+            output: output.clone(),
+        };
+        if let Some(made) = self.made()?.get(&key) {
             return Ok(*made);
         }
-        let entries: Vec<_> = variant
-            .constants()
+        // Compiled without the lock: others compile meanwhile.
+        let made = self.compile(&variant, kind, output)?;
+        let mut all = self.made()?;
+        if let Some(before) = all.get(&key) {
+            // SAFETY: nobody has seen the new one.
+            unsafe { self.raw.destroy_pipeline(made, None) };
+            return Ok(*before);
+        }
+        all.insert(key, made);
+        self.compiled.fetch_add(1, Ordering::Relaxed);
+        Ok(made)
+    }
+
+    /// The render pass of off-screen frames.
+    pub fn own_pass(&self, planes: Planes) -> Result<vk::RenderPass> {
+        let mut passes = self
+            .passes
+            .lock()
+            .map_err(|_| Error::new(Stage::Draw, "the render passes' lock is poisoned"))?;
+        if let Some(known) = passes.get(&planes) {
+            return Ok(*known);
+        }
+        let made = render_pass(&self.raw, planes)?;
+        passes.insert(planes, made);
+        Ok(made)
+    }
+
+    /// How many have been compiled.
+    pub fn compiled(&self) -> u64 {
+        self.compiled.load(Ordering::Relaxed)
+    }
+
+    /// What the driver wants to be kept for another process.
+    pub fn cache_data(&self) -> Result<Vec<u8>> {
+        // SAFETY: the cache is live.
+        unsafe { self.raw.get_pipeline_cache_data(self.cache) }.call("vkGetPipelineCacheData")
+    }
+
+    fn made(&self) -> Result<MutexGuard<'_, HashMap<Key, vk::Pipeline>>> {
+        self.made
+            .lock()
+            .map_err(|_| Error::new(Stage::Draw, "the pipelines' lock is poisoned"))
+    }
+
+    fn compile(&self, variant: &Variant, kind: Kind, output: &Output) -> Result<vk::Pipeline> {
+        let constants = variant.constants();
+        let entries: Vec<_> = constants
             .iter()
             .zip(0u32..)
             .map(|((id, _), n)| {
@@ -133,48 +193,35 @@ impl Pipelines {
                     .size(4)
             })
             .collect();
-        let values: Vec<u32> = variant
-            .constants()
-            .iter()
-            .map(|(_, value)| *value)
-            .collect();
+        let values: Vec<u32> = constants.iter().map(|(_, value)| *value).collect();
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
-        let pipeline = match kind {
-            Kind::Compute => {
-                let words = match self.planes {
+        match (kind, output) {
+            (Kind::Beams, _) => self.compute(spirv::BEAM_COMP, &vk::SpecializationInfo::default()),
+            (Kind::Compute, _) => {
+                let words = match output.planes() {
                     Planes::Color => spirv::TRACE_COLOR_COMP,
                     Planes::All => spirv::TRACE_PLANES_COMP,
                 };
-                self.compute(words, &specialization)?
+                self.compute(words, &specialization)
             }
-            Kind::Box | Kind::Hull | Kind::ConvexHull | Kind::Mesh { .. } => {
-                self.graphics(kind, &specialization)?
-            }
-        };
-        self.made.insert(key, pipeline);
-        Ok(pipeline)
-    }
-
-    /// The pipeline that lists tiles: one, as it reads none of a variant's constants.
-    pub fn beam(&mut self) -> Result<vk::Pipeline> {
-        if let Some(made) = self.beam {
-            return Ok(made);
+            (_, Output::Pass(pass)) => self.graphics(kind, pass, &specialization),
+            (_, Output::Compute(_)) => Err(Error::new(
+                Stage::Draw,
+                "fragments are drawn in a pass, not in compute",
+            )),
         }
-        let made = self.compute(spirv::BEAM_COMP, &vk::SpecializationInfo::default())?;
-        self.beam = Some(made);
-        Ok(made)
     }
 
     fn module(&self, words: &[u32]) -> Result<Module<'_>> {
         let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: the words are SPIR-V made by build.rs.
-        let raw = unsafe { self.device.raw.create_shader_module(&info, None) }
-            .call("vkCreateShaderModule")?;
+        let raw =
+            unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
         Ok(Module {
             raw,
-            device: &self.device,
+            device: &self.raw,
         })
     }
 
@@ -188,26 +235,17 @@ impl Pipelines {
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
             .layout(self.layout);
         // SAFETY: `info` and all it points to live until the call returns.
-        let made = unsafe {
-            self.device
-                .raw
-                .create_compute_pipelines(self.cache, &[info], None)
-        };
+        let made = unsafe { self.raw.create_compute_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateComputePipelines")
     }
 
     fn graphics(
         &self,
         kind: Kind,
+        pass: &PassFormats,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let mesh = matches!(kind, Kind::Mesh { .. });
         let (vertex, color, planes) = match kind {
-            Kind::Mesh { .. } => (
-                spirv::MESH_VERT,
-                spirv::MESH_COLOR_FRAG,
-                spirv::MESH_PLANES_FRAG,
-            ),
             Kind::Hull => (
                 spirv::HULL_VERT,
                 spirv::HULL_COLOR_FRAG,
@@ -225,7 +263,7 @@ impl Pipelines {
             ),
         };
         let vertex = self.module(vertex)?;
-        let fragment = self.module(match self.planes {
+        let fragment = self.module(match pass.planes {
             Planes::Color => color,
             Planes::All => planes,
         })?;
@@ -234,66 +272,40 @@ impl Pipelines {
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
         // Boxes and hulls have no vertices: their corners are made from numbers.
-        let binding = [vk::VertexInputBindingDescription::default()
-            .stride(const { size_of::<Vertex>() as u32 })];
-        let attribute = |location, format, offset| {
-            vk::VertexInputAttributeDescription::default()
-                .location(location)
-                .format(format)
-                .offset(offset)
-        };
-        let attributes = [
-            attribute(
-                0,
-                vk::Format::R32G32B32_SFLOAT,
-                const { std::mem::offset_of!(Vertex, position) as u32 },
-            ),
-            attribute(
-                1,
-                vk::Format::R16G16_SNORM,
-                const { std::mem::offset_of!(Vertex, normal) as u32 },
-            ),
-        ];
-        let mut vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        if mesh {
-            vertices = vertices
-                .vertex_binding_descriptions(&binding)
-                .vertex_attribute_descriptions(&attributes);
-        }
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly =
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(if kind != Kind::Box {
                 vk::PrimitiveTopology::TRIANGLE_LIST
             } else {
                 vk::PrimitiveTopology::TRIANGLE_STRIP
             });
-        let culled = if kind == (Kind::Mesh { both_sides: true }) {
-            vk::CullModeFlags::NONE
-        } else {
-            vk::CullModeFlags::BACK
-        };
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(culled)
+            .cull_mode(vk::CullModeFlags::BACK)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+            .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
-            .depth_compare_op(vk::CompareOp::LESS);
+            .depth_compare_op(match pass.depth {
+                DepthOrder::Normal => vk::CompareOp::LESS,
+                DepthOrder::Reversed => vk::CompareOp::GREATER,
+            });
         let blends = vec![
             vk::PipelineColorBlendAttachmentState::default()
                 .color_write_mask(vk::ColorComponentFlags::RGBA);
-            color_formats(self.planes).len()
+            color_formats(pass.planes).len()
         ];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let info = vk::GraphicsPipelineCreateInfo::default()
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
@@ -303,12 +315,26 @@ impl Pipelines {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(self.layout)
-            .render_pass(self.render_pass);
-        // SAFETY: `info` and all it points to live until the call returns.
+            .layout(self.layout);
+        match &pass.begun {
+            PassKind::RenderPass { pass, subpass } => {
+                info = info.render_pass(*pass).subpass(*subpass);
+            }
+            PassKind::Dynamic {
+                color,
+                depth,
+                stencil,
+            } => {
+                rendering = rendering
+                    .color_attachment_formats(color)
+                    .depth_attachment_format(*depth)
+                    .stencil_attachment_format(*stencil);
+                info = info.push_next(&mut rendering);
+            }
+        }
+        // SAFETY: `info` and all it points to live until the call returns; a render pass lives by the output's promise.
         let made = unsafe {
-            self.device
-                .raw
+            self.raw
                 .create_graphics_pipelines(self.cache, &[info], None)
         };
         first(made, "vkCreateGraphicsPipelines")
@@ -317,17 +343,26 @@ impl Pipelines {
 
 impl Drop for Pipelines {
     fn drop(&mut self) {
-        let raw = &self.device.raw;
-        // SAFETY: every submission was waited for; null handles may be destroyed.
+        let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
+        let passes = self
+            .passes
+            .get_mut()
+            .map(std::mem::take)
+            .unwrap_or_default();
+        // SAFETY: the device's last user is gone; null handles may be destroyed.
         unsafe {
-            for pipeline in self.made.values().chain(&self.beam) {
-                raw.destroy_pipeline(*pipeline, None);
+            for pipeline in made.into_values() {
+                self.raw.destroy_pipeline(pipeline, None);
             }
-            raw.destroy_pipeline_cache(self.cache, None);
-            raw.destroy_render_pass(self.render_pass, None);
-            raw.destroy_pipeline_layout(self.layout, None);
+            for pass in passes.into_values() {
+                self.raw.destroy_render_pass(pass, None);
+            }
+            if self.owns_cache {
+                self.raw.destroy_pipeline_cache(self.cache, None);
+            }
+            self.raw.destroy_pipeline_layout(self.layout, None);
             for layout in self.set_layouts {
-                raw.destroy_descriptor_set_layout(layout, None);
+                self.raw.destroy_descriptor_set_layout(layout, None);
             }
         }
     }
@@ -344,7 +379,7 @@ fn first(
 
 struct Module<'a> {
     raw: vk::ShaderModule,
-    device: &'a Shared,
+    device: &'a ash::Device,
 }
 
 impl Module<'_> {
@@ -364,6 +399,6 @@ impl Module<'_> {
 impl Drop for Module<'_> {
     fn drop(&mut self) {
         // SAFETY: pipelines made of a module do not need it afterwards.
-        unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
+        unsafe { self.device.destroy_shader_module(self.raw, None) };
     }
 }

@@ -1,83 +1,76 @@
-//! The commands of a frame.
+//! The commands of a frame. Recording neither fails nor changes anything.
 
 use super::bins::Rectangle;
+use super::frame_slot::FrameSlot;
 use super::hulls;
-use super::renderer::Renderer;
+use super::plan::{Tiles, Work};
+use super::renderer::{Draw, Entry, Renderer};
 use super::usage::{Usage, buffer_barrier};
-use super::work::{Batch, Tiles, Work};
-use crate::settings::DrawStage;
 use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS};
 use ash::vk;
 
 impl Renderer {
-    /// Records a whole frame.
-    pub(super) fn record(&self, cmd: vk::CommandBuffer) {
-        self.clock.start(cmd);
-        // Depths are compared where there is more than one draw or dispatch.
-        let several = |b: &Batch| matches!(&b.work, Work::Beams { copies, .. } if copies.len() > 1);
-        let compared = self.batches.len() > 1 || self.batches.iter().any(several);
-        self.target.clear(cmd, self.background, compared);
-        if self.settings.stage == DrawStage::Compute {
-            self.record_compute(cmd);
-        } else {
-            self.target
-                .begin(cmd, self.pipelines.render_pass, self.background);
-            self.record_fragment(cmd);
-            // SAFETY: the render pass was begun above.
-            unsafe { self.device.raw.cmd_end_render_pass(cmd) };
-        }
-        self.clock.stop(cmd);
-    }
-
-    /// Draws every batch's boxes or meshes, within a render pass.
-    fn record_fragment(&self, cmd: vk::CommandBuffer) {
-        if let Some(meshes) = &self.meshes {
-            for &number in meshes.order() {
-                let batch = &self.batches[number];
-                self.bind(
-                    cmd,
-                    batch,
-                    vk::PipelineBindPoint::GRAPHICS,
-                    batch.block_offset,
-                );
-                meshes.draw(cmd, number, &batch.instances);
-            }
+    /// Records the draws of the frame that was prepared for `slot`, within a pass of the output's formats. A slot that is not there
+    /// records nothing.
+    ///
+    /// # Safety
+    /// This call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. It sets neither viewport nor scissor, which
+    /// are dynamic.
+    ///
+    /// The caller must see to it that
+    /// * [`Renderer::prepare`] was called for `slot` since its last frame, and nothing was added or removed in between;
+    /// * `cmd` is recording, within a pass that is compatible with the output, with the view's viewport and a scissor set;
+    /// * the renderer lives, and `slot` is not prepared again, until the commands have run.
+    pub unsafe fn record(&self, cmd: vk::CommandBuffer, slot: usize) {
+        let Some(slot) = self.frames.get(slot) else {
             return;
-        }
-        for batch in &self.batches {
-            self.bind(
-                cmd,
-                batch,
-                vk::PipelineBindPoint::GRAPHICS,
-                batch.block_offset,
-            );
-            let count = batch.instances.end - batch.instances.start;
-            let first = batch.instances.start;
-            let raw = &self.device.raw;
-            // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as `self`.
-            unsafe {
-                if let Work::Hull { bands } = &batch.work {
-                    let kind = vk::IndexType::UINT32;
-                    raw.cmd_bind_index_buffer(cmd, self.buffers.corners.raw, 0, kind);
-                    for run in bands {
-                        let (corners, begin) = (
-                            hulls::corners(run.end - run.start),
-                            hulls::corners(run.start),
-                        );
-                        raw.cmd_draw_indexed(cmd, corners, count, begin, 0, first);
-                    }
-                } else {
-                    raw.cmd_draw(cmd, 14, count, 0, first);
-                }
+        };
+        let raw = &self.device.raw;
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        for (&number, entry) in self.order.iter().zip(self.ordered()) {
+            let Some(work) = &entry.draw.work else {
+                continue;
             };
+            self.bind(cmd, slot, entry, point, number);
+            let first = entry.instances.start;
+            let count = entry.instances.end - first;
+            // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the caller promised.
+            unsafe {
+                match work {
+                    Work::Hull(bands) => {
+                        let kind = vk::IndexType::UINT32;
+                        raw.cmd_bind_index_buffer(cmd, self.corners.raw, 0, kind);
+                        for run in bands {
+                            let corners = hulls::corners(run.end - run.start);
+                            let begin = hulls::corners(run.start);
+                            raw.cmd_draw_indexed(cmd, corners, count, begin, 0, first);
+                        }
+                    }
+                    Work::Box => raw.cmd_draw(cmd, 14, count, 0, first),
+                    _ => {}
+                }
+            }
         }
     }
 
-    /// Traces every batch's bins.
-    fn record_compute(&self, cmd: vk::CommandBuffer) {
+    /// Records the dispatches of the frame that was prepared for `slot`, outside of a pass, into a target that was cleared.
+    ///
+    /// # Safety
+    /// This call binds compute pipelines and sets, dispatches, and records barriers between its own dispatches. It records none
+    /// before its first and after its last write.
+    ///
+    /// The caller must see to it that
+    /// * `prepare` was called for `slot` since its last frame, and nothing was added or removed in between;
+    /// * `cmd` is recording, outside of a pass; writes to the target before are made available to compute shaders;
+    /// * the renderer lives, and `slot` is not prepared again, until the commands have run.
+    pub(crate) unsafe fn record_compute(&self, cmd: vk::CommandBuffer, slot: usize) {
+        let Some(slot) = self.frames.get(slot) else {
+            return;
+        };
         let raw = &self.device.raw;
         let groups = BIN_PIXELS / GROUP_PIXELS;
         let most = self.device.limits.max_compute_work_group_count[1];
+        let point = vk::PipelineBindPoint::COMPUTE;
         let mut first = true;
         // What is next reads the depths that were written before.
         let mut after_the_last = || {
@@ -92,46 +85,45 @@ impl Renderer {
                 unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
             }
         };
-        for batch in &self.batches {
-            let point = vk::PipelineBindPoint::COMPUTE;
-            match &batch.work {
-                Work::Beams { list, copies } => {
+        for (&number, entry) in self.order.iter().zip(self.ordered()) {
+            match &entry.draw.work {
+                Some(Work::Beams(copies)) => {
                     for tiles in copies {
                         after_the_last();
-                        self.bind(cmd, batch, point, tiles.block_offset);
-                        self.record_beams(cmd, batch, *list, tiles);
+                        self.bind(cmd, slot, entry, point, tiles.block.unwrap_or(number));
+                        self.record_beams(cmd, slot, &entry.draw, tiles);
                     }
                 }
-                Work::Rectangle(Rectangle { low, high }) => {
+                Some(Work::Rectangle(Rectangle { low, high })) => {
                     after_the_last();
-                    self.bind(cmd, batch, point, batch.block_offset);
+                    self.bind(cmd, slot, entry, point, number);
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
                     self.dispatch(cmd, [0, low.0 | low.1 << 16], groups);
                 }
-                Work::Bins(bins) => {
+                Some(Work::Bins(bins)) => {
                     after_the_last();
-                    self.bind(cmd, batch, point, batch.block_offset);
+                    self.bind(cmd, slot, entry, point, number);
                     for start in bins.clone().step_by(most.max(1) as usize) {
                         let count = (bins.end - start).min(most);
                         self.dispatch(cmd, [start, 0], [groups * groups, count]);
                     }
                 }
-                Work::Nothing | Work::Box | Work::Hull { .. } | Work::Mesh => {}
+                Some(Work::Nothing | Work::Box | Work::Hull(_)) | None => {}
             }
         }
     }
 
+    /// Whether compute compares depths: there is more than one dispatch.
+    pub(crate) fn compares_depths(&self) -> bool {
+        let several = |e: &Entry| matches!(&e.draw.work, Some(Work::Beams(all)) if all.len() > 1);
+        self.order.len() > 1 || self.ordered().any(several)
+    }
+
     /// Lists the tiles that a single instance's rays may meet, then traces those.
-    fn record_beams(
-        &self,
-        cmd: vk::CommandBuffer,
-        batch: &Batch,
-        list: vk::Pipeline,
-        tiles: &Tiles,
-    ) {
+    fn record_beams(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, draw: &Draw, tiles: &Tiles) {
         let (at, Rectangle { low, high }) = (tiles.at, tiles.rectangle);
         let raw = &self.device.raw;
-        let words = &self.buffers.bins;
+        let words = &slot.lists;
         let none: [u32; 4] = [0, 1, 1, 0];
         let pushed = [at, low.0 | low.1 << 16];
         let groups = |a: u32, b: u32| (b - a + 1).div_ceil(GROUP_PIXELS);
@@ -157,9 +149,9 @@ impl Renderer {
                 Usage::TransferWrite,
                 Usage::ComputeWrite,
             );
-            raw.cmd_bind_pipeline(cmd, point, list);
+            raw.cmd_bind_pipeline(cmd, point, draw.list);
             let bytes = bytemuck::bytes_of(&pushed);
-            raw.cmd_push_constants(cmd, self.pipelines.layout, stage, 0, bytes);
+            raw.cmd_push_constants(cmd, self.layout(), stage, 0, bytes);
             raw.cmd_dispatch(cmd, groups(low.0, high.0), groups(low.1, high.1), 1);
             buffer_barrier(
                 &self.device,
@@ -168,7 +160,7 @@ impl Renderer {
                 Usage::ComputeWrite,
                 Usage::TileRead,
             );
-            raw.cmd_bind_pipeline(cmd, point, batch.pipeline);
+            raw.cmd_bind_pipeline(cmd, point, draw.pipeline);
             raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
         }
     }
@@ -180,37 +172,36 @@ impl Renderer {
         unsafe {
             let stage = vk::ShaderStageFlags::COMPUTE;
             let bytes = bytemuck::bytes_of(&pushed);
-            raw.cmd_push_constants(cmd, self.pipelines.layout, stage, 0, bytes);
+            raw.cmd_push_constants(cmd, self.layout(), stage, 0, bytes);
             raw.cmd_dispatch(cmd, groups[0], groups[1], 1);
         }
     }
 
-    /// Binds a batch's pipeline and sets, and the block at `block_offset`.
+    /// Binds an entry's pipeline and sets, and the block of this number.
     fn bind(
         &self,
         cmd: vk::CommandBuffer,
-        batch: &Batch,
+        slot: &FrameSlot,
+        entry: &Entry,
         point: vk::PipelineBindPoint,
-        block_offset: u32,
+        block: u32,
     ) {
-        let sets = [
-            self.descriptors.frame,
-            batch.textures,
-            self.descriptors.target,
-        ];
-        // SAFETY: the sets fit the layout, and all they name lives as long as `self`.
+        let textures = entry.prepared.as_ref().map(|p| p.textures.set);
+        let sets = [slot.set, textures.unwrap_or_default(), slot.target_set];
+        // Planes go to a target's words; nothing else of a pass names one.
+        let count = if self.target.is_some() { 3 } else { 2 };
+        let offsets = [block * slot.stride, entry.draw.tables_offset];
+        let raw = &self.device.raw;
+        // SAFETY: the sets fit the layout, and all they name lives as long as the caller of `record` promised.
         unsafe {
-            self.device
-                .raw
-                .cmd_bind_pipeline(cmd, point, batch.pipeline);
-            self.device.raw.cmd_bind_descriptor_sets(
-                cmd,
-                point,
-                self.pipelines.layout,
-                0,
-                &sets,
-                &[block_offset, batch.tables_offset],
-            );
+            raw.cmd_bind_pipeline(cmd, point, entry.draw.pipeline);
+            raw.cmd_bind_descriptor_sets(cmd, point, self.layout(), 0, &sets[..count], &offsets);
         }
+    }
+
+    fn layout(&self) -> vk::PipelineLayout {
+        self.device
+            .pipelines()
+            .map_or(vk::PipelineLayout::null(), |p| p.layout)
     }
 }

@@ -1,7 +1,6 @@
 //! The render pass of the fragment stage, and the formats that it draws into.
 
 use super::call::Call;
-use super::device::Shared;
 use crate::error::Result;
 use crate::settings::Planes;
 use ash::vk;
@@ -17,7 +16,7 @@ pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
 /// Cleared at its start; its colours are left ready to be copied from.
-pub(crate) fn render_pass(device: &Shared, planes: Planes) -> Result<vk::RenderPass> {
+pub(crate) fn render_pass(raw: &ash::Device, planes: Planes) -> Result<vk::RenderPass> {
     let mut attachments: Vec<_> = color_formats(planes)
         .iter()
         .map(|format| {
@@ -82,5 +81,5 @@ pub(crate) fn render_pass(device: &Shared, planes: Planes) -> Result<vk::RenderP
         .subpasses(&subpasses)
         .dependencies(&dependencies);
     // SAFETY: `info` and all it points to live until the call returns.
-    unsafe { device.raw.create_render_pass(&info, None) }.call("vkCreateRenderPass")
+    unsafe { raw.create_render_pass(&info, None) }.call("vkCreateRenderPass")
 }

@@ -47,6 +47,17 @@ impl Candidate {
     }
 }
 
+impl Candidate {
+    /// The features that are used where they are offered.
+    pub fn wanted_features(&self) -> vk::PhysicalDeviceFeatures {
+        vk::PhysicalDeviceFeatures {
+            fragment_stores_and_atomics: vk::TRUE,
+            sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
+            ..Default::default()
+        }
+    }
+}
+
 /// All devices that the Vulkan loader offers.
 ///
 /// # Errors
@@ -75,7 +86,7 @@ pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
     Ok(all
         .into_iter()
         .enumerate()
-        .map(|(index, physical)| inspect(instance, index, physical))
+        .map(|(index, physical)| inspect(&instance.raw, index, physical))
         .collect())
 }
 
@@ -117,18 +128,24 @@ pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Ca
         }
     };
     let chosen = all.swap_remove(position);
-    if chosen.report.missing.is_empty() {
-        Ok(chosen)
-    } else {
-        Err(Error::new(
-            Stage::Device,
-            format!(
-                "{} lacks {}; choose another with --device",
-                chosen.report.name,
-                chosen.report.missing.join(", ")
-            ),
-        ))
+    refuse(&chosen)?;
+    Ok(chosen)
+}
+
+/// Fails for a device that lacks something.
+pub(crate) fn refuse(candidate: &Candidate) -> Result<()> {
+    let report = &candidate.report;
+    if report.missing.is_empty() {
+        return Ok(());
     }
+    Err(Error::new(
+        Stage::Device,
+        format!(
+            "{} lacks {}; choose another with --device",
+            report.name,
+            report.missing.join(", ")
+        ),
+    ))
 }
 
 fn rank(kind: vk::PhysicalDeviceType) -> u8 {
@@ -160,8 +177,11 @@ fn version(v: u32) -> String {
     )
 }
 
-fn inspect(instance: &Instance, index: usize, physical: vk::PhysicalDevice) -> Candidate {
-    let raw = &instance.raw;
+pub(crate) fn inspect(
+    raw: &ash::Instance,
+    index: usize,
+    physical: vk::PhysicalDevice,
+) -> Candidate {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut extended = vk::PhysicalDeviceProperties2::default();
     // SAFETY: plain queries of a live physical device.

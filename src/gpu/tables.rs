@@ -5,7 +5,7 @@ use crate::pieces::{Cones, Piece, Tables};
 use crate::shader::generated::{BEAM_FIRST_NODE, PIECE_ROWS};
 
 /// A table that may stand anywhere in a buffer.
-pub(crate) struct Packed {
+pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
     /// How many of them the search itself reads, from the beginning on.
     pub own: usize,
@@ -15,7 +15,7 @@ pub(crate) struct Packed {
     beam_nodes: u32,
 }
 
-impl Packed {
+impl GpuTables {
     /// `Solid.pieces` of a table that begins with vector `begin` of the buffer.
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;

@@ -4,7 +4,6 @@ use super::call::Call;
 use super::commands::Commands;
 use super::device::Shared;
 use super::memory::{Buffer, Image, ImageKind};
-use super::pipelines::Pipelines;
 use super::render_pass::{DEPTH_FORMAT, color_formats};
 use super::usage::{Usage, buffer_barrier, image_barrier};
 use crate::error::{Error, Result, Stage};
@@ -13,6 +12,15 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
+/// What compute shaders, and fragments of all planes, write to besides attachments.
+pub(crate) struct ComputeTarget {
+    /// Two words a pixel (`pixel_words.glsl`).
+    pub words: vk::Buffer,
+    /// Storage images of all planes; none where colour alone is drawn, or fragments draw.
+    pub images: Vec<vk::ImageView>,
+}
+
+/// The images of an off-screen frame.
 pub(crate) struct Target {
     pub width: u32,
     pub height: u32,
@@ -30,7 +38,7 @@ pub(crate) struct Target {
 impl Target {
     pub fn new(
         device: &Arc<Shared>,
-        pipelines: &Pipelines,
+        render_pass: vk::RenderPass,
         stage: DrawStage,
         planes: Planes,
         (width, height): (u32, u32),
@@ -99,7 +107,7 @@ impl Target {
                 .collect();
             target.depth = Some(depth);
             let info = vk::FramebufferCreateInfo::default()
-                .render_pass(pipelines.render_pass)
+                .render_pass(render_pass)
                 .attachments(&views)
                 .width(width)
                 .height(height)
@@ -120,6 +128,15 @@ impl Target {
             )?);
         }
         Ok(target)
+    }
+
+    /// What shaders write to besides attachments.
+    pub fn for_shaders(&self) -> Option<ComputeTarget> {
+        let storage = |i: &&Image| i.kind.usage.contains(vk::ImageUsageFlags::STORAGE);
+        Some(ComputeTarget {
+            words: self.words.as_ref()?.raw,
+            images: self.images.iter().filter(storage).map(|i| i.view).collect(),
+        })
     }
 
     /// Records the clearing of what no render pass clears.

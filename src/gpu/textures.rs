@@ -1,343 +1,329 @@
-//! The textures of a scene on the device, each uploaded once however many objects share it.
+//! What an object's shader samples: colour and displacement maps, each on the device once, and the sets that bind them.
 
-use super::batch::{MapFacts, MapKey};
-use super::commands::{Commands, upload_texture};
-use super::descriptors::{Sampler, Wrap};
+use super::call::Call;
 use super::device::Shared;
 use super::memory::Image;
+use super::sampler::{Sampler, Wrap};
+use super::solid::{ArcTexture, ShapeTexture};
+use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
-use crate::maps::envelope::Envelope;
-use crate::maps::{
-    ArcLength, BakeOptions, Bounds, ColorMap, DisplacementMap, MapFormat, Projection, ShapeMap,
-};
-use crate::scene::{Object, Scene, Shadow};
-use crate::settings::Settings;
+use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use ash::vk;
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, Weak};
 
-/// One shape map, and the table of lengths where an object of that shape asks for it.
-struct Shape {
-    key: MapKey,
-    facts: MapFacts,
-    /// None where the search reads no map.
-    image: Option<Image>,
-    arc: Option<Image>,
+/// A colour or displacement map on the device. It keeps the map, whose address is its key.
+struct Covering<M> {
+    _map: Arc<M>,
+    image: Arc<Image>,
 }
 
+/// The textures of one object or of many that look alike, and the descriptor set that binds them.
+pub(crate) struct TextureSet {
+    pub set: vk::DescriptorSet,
+    color: Option<Arc<Covering<ColorMap>>>,
+    slopes: Option<Arc<Covering<DisplacementMap>>>,
+    shape: Option<Arc<ShapeTexture>>,
+    arc: Option<Arc<ArcTexture>>,
+    shadows: Arc<ShadowMaps>,
+    pool: Arc<SetPool>,
+}
+
+/// The shape maps that shadows read, in the order of their numbers.
+#[derive(Default)]
+pub(crate) struct ShadowMaps {
+    pub maps: Vec<Arc<ShapeTexture>>,
+}
+
+/// What a set is made of, by address.
+type Key = ([usize; 5], bool);
+
+/// All textures of a renderer.
 pub(crate) struct Textures {
-    shapes: Vec<Shape>,
-    colors: Vec<(Arc<ColorMap>, Image)>,
-    displacements: Vec<(Arc<DisplacementMap>, Image)>,
+    colors: HashMap<usize, Weak<Covering<ColorMap>>>,
+    slopes: HashMap<usize, Weak<Covering<DisplacementMap>>>,
+    sets: HashMap<Key, Weak<TextureSet>>,
     /// Bound where an object has no texture of a kind.
-    blank: Image,
+    blank: Arc<Image>,
     map_sampler: Sampler,
     /// Around and along repeated; around repeated and along clamped.
     surface_samplers: [Sampler; 2],
+    pool: Arc<SetPool>,
 }
 
-/// What a set of textures is made of.
-pub(crate) type Bound = Vec<(vk::ImageView, vk::Sampler)>;
+/// What an object binds.
+pub(crate) struct Bound<'a> {
+    pub look: &'a Texturing,
+    pub shape: Option<Arc<ShapeTexture>>,
+    pub arc: Option<Arc<ArcTexture>>,
+    pub shadows: &'a Arc<ShadowMaps>,
+}
 
 impl Textures {
-    pub fn new(
-        device: &Arc<Shared>,
-        commands: &Commands,
-        scene: &Scene,
-        settings: &Settings,
-    ) -> Result<Self> {
-        let blank = upload_texture(
-            device,
-            commands,
-            "blank",
-            vk::Format::R32_SFLOAT,
-            (1, 1),
-            &[&[0; 4]],
-        )?;
-        let papers = settings.map_format == MapFormat::Rgba8;
-        let mut all = Self {
-            shapes: Vec::new(),
-            colors: Vec::new(),
-            displacements: Vec::new(),
-            blank,
-            map_sampler: Sampler::new(
-                device,
-                if papers {
-                    Wrap::MapLinear
-                } else {
-                    Wrap::MapNearest
-                },
-            )?,
+    pub fn new(device: &Arc<Shared>, uploads: &mut Uploads, format: MapFormat) -> Result<Self> {
+        let wrap = if format == MapFormat::Rgba8 {
+            Wrap::MapLinear
+        } else {
+            Wrap::MapNearest
+        };
+        let texel = vk::Format::R32_SFLOAT;
+        Ok(Self {
+            colors: HashMap::new(),
+            slopes: HashMap::new(),
+            sets: HashMap::new(),
+            blank: uploads.image(device, "blank", texel, (1, 1), &[&[0; 4]])?,
+            map_sampler: Sampler::new(device, wrap)?,
             surface_samplers: [
                 Sampler::new(device, Wrap::SurfaceRepeated)?,
                 Sampler::new(device, Wrap::SurfaceAround)?,
             ],
-        };
-        // Not every search needs a map; a soft shadow is measured in one.
-        let mapped = settings.solver.reads_map() || scene.shadow == Shadow::Soft;
-        for (number, object) in scene.objects.iter().enumerate() {
-            all.add(device, commands, object, settings, mapped)
-                .map_err(|e| {
-                    let e = e.at_key(format!("object.{number}.profile"));
-                    match &object.file {
-                        Some(file) => e.in_file(file),
-                        None => e,
-                    }
-                })?;
-        }
-        Ok(all)
+            pool: Arc::new(SetPool::new(device)),
+        })
     }
 
-    fn add(
+    /// The set of an object, shared by all that bind the same.
+    pub fn set(
         &mut self,
         device: &Arc<Shared>,
-        commands: &Commands,
-        object: &Object,
-        settings: &Settings,
-        mapped: bool,
-    ) -> Result<()> {
-        let upload = |name: &str, format, size, levels: &[&[u8]]| {
-            upload_texture(device, commands, name, format, size, levels)
-        };
-        let key = MapKey::new(object, settings);
-        let place = match self.shapes.iter().position(|s| s.key == key) {
-            Some(place) => place,
-            None => {
-                let (facts, image) = if mapped {
-                    let (facts, image) = shape_map(device, commands, &key, settings.map_format)?;
-                    (facts, Some(image))
-                } else {
-                    (unmapped(&key), None)
-                };
-                self.shapes.push(Shape {
-                    key,
-                    facts,
-                    image,
-                    arc: None,
-                });
-                self.shapes.len() - 1
-            }
-        };
-        let shape = &mut self.shapes[place];
-        if object.texturing.projection == Projection::Arc && shape.arc.is_none() {
-            let lengths = ArcLength::new(&object.profile)?;
-            let table = lengths.table(shape.facts.columns, shape.facts.rows);
-            // 16-bit normalised textures are not everywhere; 32-bit floats are.
-            let texels: Vec<f32> = table
-                .texels
-                .iter()
-                .map(|t| f32::from(*t) / f32::from(u16::MAX))
-                .collect();
-            let size = (table.columns, table.rows);
-            let bytes: &[u8] = bytemuck::cast_slice(&texels);
-            shape.arc = Some(upload(
-                "arc lengths",
-                vk::Format::R32_SFLOAT,
-                size,
-                &[bytes],
-            )?);
-            shape.facts.arc_length = lengths.total();
+        uploads: &mut Uploads,
+        bound: Bound,
+    ) -> Result<Arc<TextureSet>> {
+        let Bound {
+            look,
+            shape,
+            arc,
+            shadows,
+        } = bound;
+        let around =
+            (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
+        let address = |of: Option<usize>| of.unwrap_or(0);
+        let key = (
+            [
+                address(shape.as_ref().map(|s| Arc::as_ptr(s) as usize)),
+                address(look.color_map.as_ref().map(|m| Arc::as_ptr(m) as usize)),
+                address(
+                    look.displacement_map
+                        .as_ref()
+                        .map(|m| Arc::as_ptr(m) as usize),
+                ),
+                address(arc.as_ref().map(|a| Arc::as_ptr(a) as usize)),
+                Arc::as_ptr(shadows) as usize,
+            ],
+            around,
+        );
+        if let Some(known) = self.sets.get(&key).and_then(Weak::upgrade) {
+            return Ok(known);
         }
-        if let Some(map) = &object.texturing.color_map
-            && !self.colors.iter().any(|(known, _)| Arc::ptr_eq(known, map))
-        {
+        self.sets.retain(|_, known| known.strong_count() > 0);
+        let color = match &look.color_map {
+            Some(map) => Some(self.color(device, uploads, map)?),
+            None => None,
+        };
+        let slopes = match &look.displacement_map {
+            Some(map) => Some(self.slopes(device, uploads, map)?),
+            None => None,
+        };
+        let made = Arc::new(TextureSet {
+            set: self.pool.take()?,
+            color,
+            slopes,
+            shape: shape,
+            arc: arc,
+            shadows: shadows.clone(),
+            pool: self.pool.clone(),
+        });
+        self.write(device, &made, around);
+        self.sets.insert(key, Arc::downgrade(&made));
+        Ok(made)
+    }
+
+    fn color(
+        &mut self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        map: &Arc<ColorMap>,
+    ) -> Result<Arc<Covering<ColorMap>>> {
+        covering(&mut self.colors, map, || {
             let levels: Vec<&[u8]> = map
                 .levels
                 .iter()
                 .map(|l| bytemuck::cast_slice(&l.texels))
                 .collect();
             let [w, h] = map.size();
-            let image = upload("colour map", vk::Format::R8G8B8A8_SRGB, (w, h), &levels)?;
-            self.colors.push((map.clone(), image));
-        }
-        if let Some(map) = &object.texturing.displacement_map
-            && !self
-                .displacements
-                .iter()
-                .any(|(known, _)| Arc::ptr_eq(known, map))
-        {
+            let format = vk::Format::R8G8B8A8_SRGB;
+            uploads.image(device, "colour map", format, (w, h), &levels)
+        })
+    }
+
+    fn slopes(
+        &mut self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        map: &Arc<DisplacementMap>,
+    ) -> Result<Arc<Covering<DisplacementMap>>> {
+        covering(&mut self.slopes, map, || {
             let encoded = map.encode();
             let levels: Vec<&[u8]> = encoded
                 .iter()
                 .map(|l| bytemuck::cast_slice(&l.texels))
                 .collect();
             let [w, h] = map.size();
-            let image = upload(
-                "displacement map",
-                vk::Format::R16G16_SFLOAT,
-                (w, h),
-                &levels,
-            )?;
-            self.displacements.push((map.clone(), image));
-        }
-        Ok(())
+            let format = vk::Format::R16G16_SFLOAT;
+            uploads.image(device, "displacement map", format, (w, h), &levels)
+        })
     }
 
-    /// Makes an object's shape map where the search was to do without it.
-    pub fn demand_map(
-        &mut self,
-        device: &Arc<Shared>,
-        commands: &Commands,
-        object: &Object,
-        settings: &Settings,
-    ) -> Result<()> {
-        let (place, _) = self.shape(object, settings)?;
-        let shape = &mut self.shapes[place];
-        if shape.image.is_none() {
-            let (facts, image) = shape_map(device, commands, &shape.key, settings.map_format)?;
-            shape.facts = MapFacts {
-                arc_length: shape.facts.arc_length,
-                ..facts
-            };
-            shape.image = Some(image);
-        }
-        Ok(())
-    }
-
-    /// Which of the shape maps is `object`'s, and what it is.
-    pub fn shape(&self, object: &Object, settings: &Settings) -> Result<(usize, MapFacts)> {
-        let profile = &object.profile;
-        self.shapes
-            .iter()
-            .position(|s| Arc::ptr_eq(&s.key.profile, profile) && s.key.fits(object, settings))
-            .map(|place| (place, self.shapes[place].facts.clone()))
-            .ok_or_else(|| {
-                Error::new(
-                    Stage::Draw,
-                    format!(
-                        "{} is not what the renderer was made with; make a new one",
-                        object.name
-                    ),
-                )
-            })
-    }
-
-    /// The textures of an object's batch, by binding.
-    pub fn of(&self, object: &Object, shape: usize) -> Bound {
-        let shape = &self.shapes[shape];
-        let look = &object.texturing;
-        let along = usize::from(
-            (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar,
+    /// Points a new set to its textures: four of the object's own, then those that shadows read.
+    fn write(&self, device: &Shared, made: &TextureSet, around: bool) {
+        let info = |image: &Image, sampler: &Sampler| {
+            vk::DescriptorImageInfo::default()
+                .image_view(image.view)
+                .sampler(sampler.raw)
+                .image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+        };
+        let (map, surface) = (
+            &self.map_sampler,
+            &self.surface_samplers[usize::from(around)],
         );
-        let sampler = self.surface_samplers[along].raw;
-        let blank = (self.blank.view, self.map_sampler.raw);
-        let color = look.color_map.as_ref().and_then(|map| {
-            let found = self
-                .colors
-                .iter()
-                .find(|(known, _)| Arc::ptr_eq(known, map));
-            found.map(|(_, image)| (image.view, sampler))
-        });
-        let slopes = look.displacement_map.as_ref().and_then(|map| {
-            let found = self
-                .displacements
-                .iter()
-                .find(|(known, _)| Arc::ptr_eq(known, map));
-            found.map(|(_, image)| (image.view, sampler))
-        });
-        let arc = shape
-            .arc
-            .as_ref()
-            .map(|image| (image.view, self.map_sampler.raw));
-        let mut bound = vec![
-            shape
-                .image
+        let blank = info(&self.blank, map);
+        let shape = |s: &Arc<ShapeTexture>| info(&s.texture, map);
+        let own = [
+            made.shape.as_ref().map_or(blank, shape),
+            made.color
                 .as_ref()
-                .map_or(blank, |i| (i.view, self.map_sampler.raw)),
-            color.unwrap_or(blank),
-            slopes.unwrap_or(blank),
-            arc.unwrap_or(blank),
+                .map_or(blank, |c| info(&c.image, surface)),
+            made.slopes
+                .as_ref()
+                .map_or(blank, |c| info(&c.image, surface)),
+            made.arc.as_ref().map_or(blank, |a| info(&a.texture, map)),
         ];
-        let maps = self.shapes.iter().map(|s| {
-            s.image
-                .as_ref()
-                .map_or(blank, |i| (i.view, self.map_sampler.raw))
-        });
-        bound.extend(
-            maps.chain(std::iter::repeat(blank))
-                .take(MAX_SHADOW_MAPS as usize),
-        );
-        bound
+        let shadows: Vec<_> = made
+            .shadows
+            .maps
+            .iter()
+            .map(shape)
+            .chain(std::iter::repeat(blank))
+            .take(MAX_SHADOW_MAPS as usize)
+            .collect();
+        let writes: Vec<_> = (0u32..)
+            .zip(own.chunks(1))
+            .chain([(4, shadows.as_slice())])
+            .map(|(binding, infos)| {
+                vk::WriteDescriptorSet::default()
+                    .dst_set(made.set)
+                    .dst_binding(binding)
+                    .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+                    .image_info(infos)
+            })
+            .collect();
+        // SAFETY: the set is new, or all frames that used it are done.
+        unsafe { device.raw.update_descriptor_sets(&writes, &[]) };
     }
 
-    /// Fails where shadows need more maps at once than a shader is given.
-    pub fn check_shadows(&self) -> Result<()> {
-        let (count, most) = (self.shapes.len(), MAX_SHADOW_MAPS as usize);
-        if count > most {
-            return Err(Error::new(
-                Stage::Scene,
-                format!("shadows between {count} different shapes; at most {most} are drawn: share profiles, or set \"off\""),
-            )
-            .at_key("shadow"));
+    /// Bytes of colour and displacement maps on the device.
+    pub fn bytes(&self) -> u64 {
+        let colors = self.colors.values().filter_map(Weak::upgrade);
+        let slopes = self.slopes.values().filter_map(Weak::upgrade);
+        colors.map(|c| c.image.bytes()).sum::<u64>() + slopes.map(|c| c.image.bytes()).sum::<u64>()
+    }
+}
+
+fn covering<M>(
+    all: &mut HashMap<usize, Weak<Covering<M>>>,
+    map: &Arc<M>,
+    upload: impl FnOnce() -> Result<Arc<Image>>,
+) -> Result<Arc<Covering<M>>> {
+    let key = Arc::as_ptr(map) as usize;
+    if let Some(known) = all.get(&key).and_then(Weak::upgrade) {
+        return Ok(known);
+    }
+    all.retain(|_, known| known.strong_count() > 0);
+    let made = Arc::new(Covering {
+        _map: map.clone(),
+        image: upload()?,
+    });
+    all.insert(key, Arc::downgrade(&made));
+    Ok(made)
+}
+
+impl Drop for TextureSet {
+    fn drop(&mut self) {
+        self.pool.give_back(self.set);
+    }
+}
+
+/// Descriptor sets of textures: pools grow as sets are wanted, and sets that were given back are taken again.
+struct SetPool {
+    state: Mutex<Sets>,
+    device: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Sets {
+    pools: Vec<vk::DescriptorPool>,
+    free: Vec<vk::DescriptorSet>,
+}
+
+/// Sets of one pool.
+const SETS: u32 = 64;
+
+impl SetPool {
+    fn new(device: &Arc<Shared>) -> Self {
+        Self {
+            state: Mutex::default(),
+            device: device.clone(),
         }
-        Ok(())
     }
 
-    /// Bytes on the device: of shape maps, of colour and displacement maps.
-    pub fn bytes(&self) -> [u64; 2] {
-        let shapes = self.shapes.iter().map(|s| {
-            [&s.image, &s.arc]
-                .into_iter()
-                .flatten()
-                .map(Image::bytes)
-                .sum::<u64>()
-        });
-        let colors = self.colors.iter().map(|(_, i)| i.bytes());
-        let slopes = self.displacements.iter().map(|(_, i)| i.bytes());
-        [shapes.sum(), colors.chain(slopes).sum()]
+    fn take(&self) -> Result<vk::DescriptorSet> {
+        let mut state = self
+            .state
+            .lock()
+            .map_err(|_| Error::new(Stage::Draw, "the pool of textures is poisoned"))?;
+        if let Some(set) = state.free.pop() {
+            return Ok(set);
+        }
+        let raw = &self.device.raw;
+        let sizes = [vk::DescriptorPoolSize::default()
+            .ty(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+            .descriptor_count(SETS * (4 + MAX_SHADOW_MAPS))];
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(SETS)
+            .pool_sizes(&sizes);
+        // SAFETY: a plain creation, destroyed in Drop.
+        let pool =
+            unsafe { raw.create_descriptor_pool(&info, None) }.call("vkCreateDescriptorPool")?;
+        state.pools.push(pool);
+        let layouts = vec![self.device.pipelines()?.set_layouts[1]; SETS as usize];
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(pool)
+            .set_layouts(&layouts);
+        // SAFETY: the pool was sized for these.
+        state.free =
+            unsafe { raw.allocate_descriptor_sets(&info) }.call("vkAllocateDescriptorSets")?;
+        state
+            .free
+            .pop()
+            .ok_or_else(|| Error::new(Stage::Draw, "a pool of textures gave no set"))
+    }
+
+    fn give_back(&self, set: vk::DescriptorSet) {
+        if let Ok(mut state) = self.state.lock() {
+            state.free.push(set);
+        }
     }
 }
 
-fn shape_map(
-    device: &Arc<Shared>,
-    commands: &Commands,
-    key: &MapKey,
-    format: MapFormat,
-) -> Result<(MapFacts, Image)> {
-    let map = ShapeMap::bake(
-        &key.profile,
-        &BakeOptions {
-            source: key.source,
-            rows: key.rows,
-            reach: key.reach,
-        },
-    )?;
-    let encoded = map.encode(format);
-    let vk_format = match format {
-        MapFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
-        MapFormat::R16 => vk::Format::R16_SFLOAT,
-        MapFormat::R32 => vk::Format::R32_SFLOAT,
-    };
-    let size = (encoded.columns, encoded.rows);
-    let levels = [encoded.bytes.as_slice()];
-    let image = upload_texture(device, commands, "shape map", vk_format, size, &levels)?;
-    let facts = MapFacts {
-        columns: encoded.columns,
-        rows: encoded.rows,
-        scale: encoded.scale,
-        bounds: map.bounds,
-        arc_length: 1.0,
-        envelope: Envelope::of(&map).map(Arc::new),
-    };
-    Ok((facts, image))
-}
-
-/// The facts of a map that is not there: its size, were it baked, and what the solid occupies.
-fn unmapped(key: &MapKey) -> MapFacts {
-    let rows = f64::from(key.rows);
-    MapFacts {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
-        columns: (key.reach.max(key.profile.radius) * rows).ceil() as u32,
-        rows: key.rows,
-        scale: 1.0,
-        // Of a solid that is not there nothing is clipped; nothing is met either.
-        bounds: key.profile.bounds().unwrap_or(Bounds {
-            r_min: 0.0,
-            r_max: key.profile.radius,
-            z_min: 0.0,
-            z_max: 1.0,
-        }),
-        arc_length: 1.0,
-        envelope: None,
+impl Drop for SetPool {
+    fn drop(&mut self) {
+        let Ok(state) = self.state.get_mut() else {
+            return;
+        };
+        for pool in state.pools.drain(..) {
+            // SAFETY: the renderer's frames are done; the sets go with their pool.
+            unsafe { self.device.raw.destroy_descriptor_pool(pool, None) };
+        }
     }
 }

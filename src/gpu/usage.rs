@@ -22,8 +22,6 @@ pub(crate) enum Usage {
     TileRead,
     /// Added to by fragment shaders.
     FragmentAtomic,
-    /// Vertices and indices.
-    VertexInput,
     /// Read by the host.
     HostRead,
 }
@@ -38,7 +36,6 @@ impl Usage {
             Self::ComputeWrite => S::COMPUTE_SHADER,
             Self::TileRead => S::COMPUTE_SHADER | S::DRAW_INDIRECT,
             Self::FragmentAtomic => S::FRAGMENT_SHADER,
-            Self::VertexInput => S::VERTEX_INPUT,
             Self::HostRead => S::HOST,
         }
     }
@@ -52,7 +49,6 @@ impl Usage {
             Self::Sampled => A::SHADER_READ,
             Self::ComputeWrite | Self::FragmentAtomic => A::SHADER_READ | A::SHADER_WRITE,
             Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
-            Self::VertexInput => A::VERTEX_ATTRIBUTE_READ | A::INDEX_READ,
             Self::HostRead => A::HOST_READ,
         }
     }
@@ -64,11 +60,9 @@ impl Usage {
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
             Self::TransferRead => L::TRANSFER_SRC_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite
-            | Self::TileRead
-            | Self::FragmentAtomic
-            | Self::VertexInput
-            | Self::HostRead => L::GENERAL,
+            Self::ComputeWrite | Self::TileRead | Self::FragmentAtomic | Self::HostRead => {
+                L::GENERAL
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Whether a scene's values make sense. Every message names the key as a scene file would.
 
-use super::{Camera, Light, Object, Placement, Scene};
+use super::{Camera, Light, Lighting, Object, Offset, Placement, Scene};
 use crate::error::{Error, Result, Stage};
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -23,16 +23,61 @@ impl Scene {
     /// [`Stage::Scene`]: the first value out of its range, with its key (`object.0.scale`) and what would be right.
     pub fn check(&self) -> Result<()> {
         color("background", &self.background)?;
-        color("ambient", &self.ambient)?;
         camera(&self.camera)?;
-        for (i, one) in self.lights.iter().enumerate() {
-            light(one).map_err(|e| under("light", i, e))?;
-        }
+        lighting(&self.ambient, &self.lights)?;
         for (i, one) in self.objects.iter().enumerate() {
             object(one).map_err(|e| under("object", i, e))?;
         }
         Ok(())
     }
+}
+
+impl Lighting {
+    /// Looks at every value.
+    ///
+    /// # Errors
+    /// As [`Scene::check`].
+    pub fn check(&self) -> Result<()> {
+        lighting(&self.ambient, &self.lights)
+    }
+}
+
+impl Object {
+    /// Looks at every value.
+    ///
+    /// # Errors
+    /// As [`Scene::check`], with keys such as `scale`.
+    pub fn check(&self) -> Result<()> {
+        object(self)
+    }
+}
+
+impl Offset {
+    /// Looks at every value.
+    ///
+    /// # Errors
+    /// As [`Object::check`].
+    pub fn check(&self) -> Result<()> {
+        offset(*self)
+    }
+}
+
+impl Placement {
+    /// Looks at every value.
+    ///
+    /// # Errors
+    /// As [`Object::check`].
+    pub fn check(&self) -> Result<()> {
+        placement(self)
+    }
+}
+
+fn lighting(ambient: &[f32], lights: &[Light]) -> Result<()> {
+    color("ambient", ambient)?;
+    for (i, one) in lights.iter().enumerate() {
+        light(one).map_err(|e| under("light", i, e))?;
+    }
+    Ok(())
 }
 
 fn fail(key: &str, message: impl Into<String>) -> Error {
@@ -130,7 +175,7 @@ fn object(object: &Object) -> Result<()> {
     for factor in object.texturing.repeat {
         factor_in_range("texture_repeat", factor)?;
     }
-    offset(object)?;
+    offset(object.offset)?;
     for at in object.axis {
         if !(0.0..=1.0).contains(&at) {
             return Err(fail(
@@ -154,8 +199,7 @@ fn object(object: &Object) -> Result<()> {
     Ok(())
 }
 
-fn offset(object: &Object) -> Result<()> {
-    let offset = object.offset;
+fn offset(offset: Offset) -> Result<()> {
     number("extend", offset.extend)?;
     if !(offset.bevel >= 0.0 && offset.bevel <= LARGE) {
         return Err(fail(

@@ -72,6 +72,16 @@ impl Scene {
         }
     }
 
+    /// What lights it.
+    #[must_use]
+    pub fn lighting(&self) -> Lighting {
+        Lighting {
+            ambient: self.ambient,
+            lights: self.lights.clone(),
+            shadow: self.shadow,
+        }
+    }
+
     /// The ambient light of a scene that names none: enough to tell a shape turned from the light.
     pub const AMBIENT: [f32; 3] = [0.1; 3];
 }
@@ -120,6 +130,28 @@ impl Default for Light {
         Self {
             direction: DVec3::new(-0.4, -0.6, -0.7),
             color: [1.0; 3],
+        }
+    }
+}
+
+/// What lights a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    /// Light that comes from everywhere, linear RGB.
+    pub ambient: [f32; 3],
+    /// Lights from afar.
+    pub lights: Vec<Light>,
+    /// Whether objects darken each other and themselves.
+    pub shadow: Shadow,
+}
+
+impl Default for Lighting {
+    /// A little ambient light, one white light, no shadows.
+    fn default() -> Self {
+        Self {
+            ambient: Scene::AMBIENT,
+            lights: vec![Light::default()],
+            shadow: Shadow::Off,
         }
     }
 }

@@ -63,6 +63,28 @@ impl Object {
         }
     }
 
+    /// Whether it looks the same in its own space: all values but placement and instances are equal, what is shared is one.
+    pub(crate) fn same_look(&self, other: &Self) -> bool {
+        fn one<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
+            match (a, b) {
+                (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+                (a, b) => a.is_none() && b.is_none(),
+            }
+        }
+        let (a, b) = (&self.texturing, &other.texturing);
+        let look = (self.color, self.specular, self.offset, self.axis);
+        let shape = (self.map_rows, self.repeat, self.mirror);
+        let covering = (a.bump, a.bump_form, a.projection, a.repeat);
+        Arc::ptr_eq(&self.profile, &other.profile)
+            && self.name == other.name
+            && self.file == other.file
+            && look == (other.color, other.specular, other.offset, other.axis)
+            && shape == (other.map_rows, other.repeat, other.mirror)
+            && covering == (b.bump, b.bump_form, b.projection, b.repeat)
+            && one(&a.color_map, &b.color_map)
+            && one(&a.displacement_map, &b.displacement_map)
+    }
+
     /// Where every copy stands: the instances, or the one placement.
     #[must_use]
     pub fn placements(&self) -> &[Placement] {

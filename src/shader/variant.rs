@@ -2,8 +2,8 @@
 
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
-use crate::scene::{BumpForm, Object, Scene, Shadow};
-use crate::settings::{Settings, Solver};
+use crate::scene::{BumpForm, Lighting, Object, Shadow};
+use crate::settings::{SearchSettings, Solver};
 
 /// The values of the specialisation constants of `variant.glsl`; also the key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,21 +43,21 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The variant that draws `object` of `scene` as `settings` ask.
+    /// The variant that draws `object` by `solver`.
     #[must_use]
-    pub fn new(settings: &Settings, scene: &Scene, object: &Object) -> Self {
+    pub fn new(
+        settings: &SearchSettings,
+        solver: Solver,
+        lighting: &Lighting,
+        object: &Object,
+    ) -> Self {
         let beveled = is_beveled(object);
         // A ray towards a light meets every solid of the scene by the code of the one that it left: that code must do for all of
         // them. The general forms are right for plain solids too.
-        let met = if scene.shadow == Shadow::Off {
-            std::slice::from_ref(object)
-        } else {
-            &scene.objects
-        };
-        let general = |of: fn(&Object) -> u32| met.iter().chain([object]).map(of).max();
+        let general = lighting.shadow != Shadow::Off;
         let texturing = &object.texturing;
         Self {
-            solver: match settings.solver {
+            solver: match solver {
                 Solver::Circle => g::SOLVER_CIRCLE,
                 Solver::Cone => g::SOLVER_CONE,
                 Solver::Relaxed => g::SOLVER_RELAXED,
@@ -66,7 +66,6 @@ impl Variant {
                 Solver::Linear => g::SOLVER_LINEAR,
                 Solver::Relief => g::SOLVER_RELIEF,
                 Solver::Secant => g::SOLVER_SECANT,
-                Solver::Mesh { .. } => g::SOLVER_MESH,
             },
             map_format: match settings.map_format {
                 MapFormat::Rgba8 => g::FORMAT_RGBA8,
@@ -74,10 +73,14 @@ impl Variant {
             },
             max_steps: settings
                 .max_steps
-                .unwrap_or_else(|| settings.solver.default_steps(beveled))
+                .unwrap_or_else(|| solver.default_steps(beveled))
                 .max(1),
-            offset: general(offset_of).unwrap_or(g::OFFSET_BEVELED),
-            cells: general(|o| u32::from(o.repeat != [1; 3])).unwrap_or(1),
+            offset: if general {
+                g::OFFSET_BEVELED
+            } else {
+                offset_of(object)
+            },
+            cells: u32::from(general || object.repeat != [1; 3]),
             projection: match texturing.projection {
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
@@ -90,14 +93,14 @@ impl Variant {
                 BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
                 BumpForm::Papers => g::BUMP_PAPERS,
             },
-            lights: u32::try_from(scene.lights.len()).unwrap_or(g::MAX_LIGHTS),
+            lights: u32::try_from(lighting.lights.len()).unwrap_or(g::MAX_LIGHTS),
             own_tables: 0,
             single: 0,
             ahead: 0,
             depth_test: 1,
             depth_keep: 1,
             tests: g::HULL_TESTS,
-            shadow: match scene.shadow {
+            shadow: match lighting.shadow {
                 Shadow::Off => g::SHADOW_OFF,
                 Shadow::Hard => g::SHADOW_HARD,
                 Shadow::Soft => g::SHADOW_SOFT,

@@ -3,7 +3,7 @@
 use super::{device, reference};
 use rayon::prelude::*;
 use revmap::frame::Frame;
-use revmap::gpu::Renderer;
+use revmap::gpu::Offscreen;
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::Settings;
 use revmap_reference::{Ray, Reference};
@@ -86,7 +86,7 @@ pub fn counts<const N: usize>(
     settings: [&Settings; N],
     texel: f64,
 ) -> Vec<[Count; N]> {
-    let mut renderers = settings.map(|s| Renderer::new(device(), &scenes[0], s).unwrap());
+    let mut renderers = settings.map(|s| Offscreen::new(device(), &scenes[0], s).unwrap());
     let all = scenes.iter().map(|scene| {
         let truth = reference(scene, settings[0]);
         renderers.each_mut().map(|renderer| {

@@ -2,18 +2,18 @@
 
 use super::device;
 use revmap::frame::Frame;
-use revmap::gpu::{self, Way};
+use revmap::gpu::{self, DrawPath};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings};
 
 pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
 /// How a scene's objects are to be drawn, in either stage.
-pub type Ways<'a> = [&'a [Way]; 2];
+pub type Ways<'a> = [&'a [DrawPath]; 2];
 
 /// By what is tested here, and by what it falls back to.
-pub const WRAPPED: Ways<'static> = [&[Way::Hull], &[Way::Beams]];
-pub const BOXED: Ways<'static> = [&[Way::Box], &[Way::Rectangle]];
+pub const WRAPPED: Ways<'static> = [&[DrawPath::Hull], &[DrawPath::Beams]];
+pub const BOXED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Rectangle]];
 
 /// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart than half a texel of 512 rows.
 pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
@@ -33,6 +33,6 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
     let drawn = gpu::draw(device(), scene, settings).unwrap();
     let wanted = ways[usize::from(settings.stage == DrawStage::Compute)];
-    assert_eq!(drawn.ways, wanted, "{name}, {:?}", settings.stage);
+    assert_eq!(drawn.draw_paths, wanted, "{name}, {:?}", settings.stage);
     drawn.frame
 }

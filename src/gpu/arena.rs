@@ -1,0 +1,156 @@
+//! One storage buffer for the tables and bands of all surfaces: each stands at one place for as long as it lives.
+
+use super::buffers::storage;
+use super::device::Shared;
+use super::memory::Buffer;
+use super::surface::{OffsetSurface, Part};
+use crate::error::{Error, Result, Stage};
+use crate::shader::generated::PIECE_VECTORS;
+use range_alloc::RangeAllocator;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, Weak};
+
+type Ranges = Arc<Mutex<RangeAllocator<u32>>>;
+
+/// The buffer and what of it is free.
+pub(crate) struct TableArena {
+    pub buffer: Buffer,
+    /// Counts buffers: descriptor sets that name an older one must be written anew.
+    pub generation: u64,
+    ranges: Ranges,
+    /// Vectors of 16 bytes to a unit: what every beginning is aligned to.
+    unit: u32,
+    placed: Vec<(Weak<OffsetSurface>, Part)>,
+    /// Length of `placed` from which on the dead are taken out.
+    crowded: usize,
+    device: Arc<Shared>,
+}
+
+/// A place in the arena, free again when dropped.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    range: Range<u32>,
+    unit: u32,
+    ranges: Ranges,
+}
+
+impl Slot {
+    /// The vector with which it begins.
+    pub fn begin(&self) -> u32 {
+        self.range.start * self.unit
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        if let Ok(mut ranges) = self.ranges.lock() {
+            ranges.free_range(self.range.clone());
+        }
+    }
+}
+
+/// Units of an arena that is made anew.
+const FIRST_UNITS: u32 = 1024;
+
+impl TableArena {
+    pub fn new(device: &Arc<Shared>) -> Result<Self> {
+        let align = device.limits.min_uniform_buffer_offset_alignment.max(16);
+        let unit = u32::try_from(align / 16).unwrap_or(16);
+        Ok(Self {
+            buffer: buffer(device, unit, FIRST_UNITS)?,
+            generation: 0,
+            ranges: Arc::new(Mutex::new(RangeAllocator::new(0..FIRST_UNITS))),
+            unit,
+            placed: Vec::new(),
+            crowded: 64,
+            device: device.clone(),
+        })
+    }
+
+    /// Gives a part of a surface its place and writes it there, if it has none. Returns the vector with which it begins, and the
+    /// buffer that was too small, which frames in flight may still read.
+    pub fn place(
+        &mut self,
+        surface: &Arc<OffsetSurface>,
+        part: Part,
+    ) -> Result<(u32, Option<Buffer>)> {
+        if let Some(slot) = surface.slot(part) {
+            return Ok((slot.begin(), None));
+        }
+        let vectors = surface.vectors(part);
+        let units = u32::try_from(vectors.len().max(1))
+            .unwrap_or(u32::MAX)
+            .div_ceil(self.unit);
+        let mut old = None;
+        let free = self.ranges()?.allocate_range(units);
+        let range = match free {
+            Ok(range) => range,
+            Err(_) => {
+                old = Some(self.grow(units)?);
+                self.ranges()?.allocate_range(units).map_err(|_| full())?
+            }
+        };
+        let slot = Slot {
+            range,
+            unit: self.unit,
+            ranges: self.ranges.clone(),
+        };
+        let begin = surface.keep_slot(part, slot);
+        self.write(begin, vectors)?;
+        self.placed.push((Arc::downgrade(surface), part));
+        if self.placed.len() > self.crowded {
+            self.placed
+                .retain(|(surface, _)| surface.strong_count() > 0);
+            self.crowded = 2 * self.placed.len().max(32);
+        }
+        Ok((begin, old))
+    }
+
+    fn ranges(&self) -> Result<std::sync::MutexGuard<'_, RangeAllocator<u32>>> {
+        self.ranges.lock().map_err(|_| full())
+    }
+
+    /// Twice the room, with everything that lives at the places where it was.
+    fn grow(&mut self, more: u32) -> Result<Buffer> {
+        let units = self.ranges()?.initial_range().end;
+        let wanted = units.saturating_mul(2).max(units.saturating_add(more));
+        let bigger = buffer(&self.device, self.unit, wanted)?;
+        self.ranges()?.grow_to(wanted);
+        let old = std::mem::replace(&mut self.buffer, bigger);
+        self.generation += 1;
+        let placed = std::mem::take(&mut self.placed);
+        for (surface, part) in &placed {
+            if let Some(surface) = surface.upgrade()
+                && let Some(slot) = surface.slot(*part)
+            {
+                self.write(slot.begin(), surface.vectors(*part))?;
+            }
+        }
+        self.placed = placed;
+        Ok(old)
+    }
+
+    fn write(&mut self, begin: u32, vectors: &[[u32; 4]]) -> Result<()> {
+        let bytes: &[u8] = bytemuck::cast_slice(vectors);
+        let from = 16 * begin as usize;
+        self.buffer
+            .mapped()?
+            .get_mut(from..from + bytes.len())
+            .ok_or_else(full)?
+            .copy_from_slice(bytes);
+        Ok(())
+    }
+}
+
+fn full() -> Error {
+    Error::new(
+        Stage::Draw,
+        "the tables of all solids do not fit; draw fewer different ones",
+    )
+}
+
+/// With a window's length behind the last unit: the window on the last tables is as long as on all others.
+fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
+    let vectors = u64::from(unit) * u64::from(units) + u64::from(PIECE_VECTORS);
+    storage(device, "tables", 16 * vectors)
+}

@@ -1,0 +1,190 @@
+//! From values of a scene to what shaders read.
+
+use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
+use super::output::DepthOrder;
+use super::solid::MapFacts;
+use super::view::View;
+use crate::error::{Error, Result, Stage};
+use crate::maps::MapFormat;
+use crate::profile::Shape;
+use crate::scene::{Lighting, Object, Offset, Placement};
+use crate::settings::{SearchSettings, Solver};
+use crate::shader::generated::MAX_LIGHTS;
+use glam::DVec3;
+
+/// The largest offset that the surface takes in the box.
+pub(crate) fn largest_width(offset: &Offset) -> f64 {
+    offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
+}
+
+/// How far from the axis the map must reach: to the solid's own radius where that stays within the box's inscribed
+/// cylinder about a centred axis, else to what of the solid the box can hold.
+pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
+    let radius = object.profile.radius;
+    let widest = match &object.profile.shape {
+        Shape::Outline(outline) => outline
+            .loops
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, p| most.max(p.x)),
+        Shape::Raster(_) => radius,
+    };
+    let solid = widest + largest_width(&object.offset);
+    if solid <= radius && axis_offset(object) == [0.0; 2] {
+        return radius;
+    }
+    (solid + margin).min(farthest_corner(object)).max(radius)
+}
+
+/// Fails where a map's format cannot show what the object asks for.
+pub(crate) fn check_format(
+    object: &Object,
+    solver: Solver,
+    settings: &SearchSettings,
+) -> Result<()> {
+    if solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
+        return Err(Error::new(
+            Stage::Scene,
+            "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric",
+        )
+        .at_key("extend"));
+    }
+    Ok(())
+}
+
+/// Where the axis stands, object units from the middle of the box.
+pub(crate) fn axis_offset(object: &Object) -> [f64; 2] {
+    object.axis.map(|o| (2.0 * o - 1.0) * object.profile.radius)
+}
+
+/// Distance from the axis to the farthest vertical edge of the box.
+fn farthest_corner(object: &Object) -> f64 {
+    let [x, y] = axis_offset(object).map(f64::abs);
+    (x + object.profile.radius).hypot(y + object.profile.radius)
+}
+
+/// The batch's block; `instances` are its range, `shadow_map` its map's index among those that shadows read.
+pub(crate) fn solid_block(
+    object: &Object,
+    map: &MapFacts,
+    arc_length: f64,
+    instances: &std::ops::Range<u32>,
+    shadow_map: u32,
+    solver: Solver,
+) -> SolidBlock {
+    let texel = 1.0 / f64::from(map.rows);
+    let width = largest_width(&object.offset);
+    let grow = width.max(0.0) + texel;
+    let [x, y] = axis_offset(object);
+    // Where the map ends, what is read from it ends.
+    let reach = if solver.reads_map() {
+        f64::from(map.columns) * texel
+    } else {
+        f64::INFINITY
+    };
+    let clip = (map.bounds.r_max + grow)
+        .min(farthest_corner(object) + texel)
+        .min(reach);
+    #[allow(clippy::cast_possible_truncation)]
+    let f = |v: f64| v as f32;
+    let look = &object.texturing;
+    let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
+    SolidBlock {
+        #[allow(clippy::cast_precision_loss)] // at most 16384
+        map: [map.columns as f32, map.rows as f32, f(texel), map.scale],
+        bounds: [
+            f(object.profile.radius),
+            f(clip),
+            f((map.bounds.z_min - grow).max(0.0)),
+            f((map.bounds.z_max + grow).min(1.0)),
+        ],
+        offset: [
+            f(object.offset.extend),
+            f(object.offset.bevel),
+            f(object.offset.chamfer),
+            f(width),
+        ],
+        axis: [f(x), f(y), f(1.0 / arc_length), 0.0],
+        albedo: [object.color[0], object.color[1], object.color[2], 1.0],
+        specular: [
+            object.specular.strength,
+            object.specular.shininess,
+            0.0,
+            0.0,
+        ],
+        texturing: [f(look.repeat[0]), f(look.repeat[1]), f(look.bump), 0.0],
+        cells: [
+            object.repeat[0],
+            object.repeat[1],
+            object.repeat[2],
+            mirrored,
+        ],
+        instances: [
+            instances.start,
+            instances.end - instances.start,
+            shadow_map,
+            0,
+        ],
+        pieces: [0; 4],
+        hull: [0; 4],
+        single: object.placements().first().map(instance_block).unwrap_or_default(),
+    }
+}
+
+#[allow(clippy::cast_possible_truncation)]
+pub(crate) fn instance_block(placement: &Placement) -> InstanceBlock {
+    let p = placement.position.as_vec3();
+    let q = placement.rotation.normalize();
+    let s = placement.scale.as_vec3();
+    InstanceBlock {
+        position_sx: [p.x, p.y, p.z, s.x],
+        rotation: [q.x as f32, q.y as f32, q.z as f32, q.w as f32],
+        scale_yz: [s.y, s.z, 0.0, 0.0],
+    }
+}
+
+/// The frame's block: eye, rays, lights, depths.
+pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
+    let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
+    for (block, light) in lights.iter_mut().zip(&lighting.lights) {
+        let towards = -light.direction.normalize_or_zero().as_vec3();
+        block.towards = towards.extend(0.0).to_array();
+        block.color = [light.color[0], light.color[1], light.color[2], 0.0];
+    }
+    #[allow(clippy::cast_possible_truncation)]
+    let vector = |v: DVec3, w: f64| v.as_vec3().extend(w as f32).to_array();
+    let [constant, factor] = view.depth;
+    let (sense, near_value) = match view.order {
+        DepthOrder::Normal => (1.0, 0.0),
+        DepthOrder::Reversed => (-1.0, 1.0),
+    };
+    let [red, green, blue] = lighting.ambient;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pixels
+    let size = [view.viewport.width, view.viewport.height.abs()].map(|v| v as u32);
+    FrameBlock {
+        clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
+        eye: vector(view.eye, view.near),
+        dir_00: vector(view.dir_00, view.pixel_size()),
+        dir_x: vector(view.dir_x, constant),
+        dir_y: vector(view.dir_y, factor),
+        forward: vector(view.forward, sense),
+        ambient: [red, green, blue, near_value],
+        size: [
+            size[0],
+            size[1],
+            u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS),
+            0,
+        ],
+        lights,
+    }
+}
+
+/// Fails for more lights than shaders hold.
+pub(crate) fn check_lights(lighting: &Lighting) -> Result<()> {
+    let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
+    if count > most as usize {
+        let message = format!("{count} lights; at most {most} are drawn");
+        return Err(Error::new(Stage::Scene, message).at_key("light"));
+    }
+    Ok(())
+}

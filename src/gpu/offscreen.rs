@@ -1,0 +1,304 @@
+//! Frames without a host: a target, commands, and reading back; the first user of [`Renderer`].
+
+use super::clock::Clock;
+use super::commands::Commands;
+use super::device::{Device, Shared};
+use super::output::{DepthOrder, Output, PassFormats, PassKind};
+use super::plan::DrawPath;
+use super::renderer::{ObjectId, Renderer};
+use super::target::Target;
+use super::view::View;
+use crate::error::{Error, Result, Stage};
+use crate::frame::Frame;
+use crate::scene::{CameraFrame, Scene};
+use crate::settings::{DrawStage, SearchSettings, Settings};
+use ash::vk;
+use glam::DVec3;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What one frame cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    /// Milliseconds that the CPU took to take over changes and to record.
+    pub prepare_ms: f64,
+    /// Milliseconds between GPU timestamps around the work; `None` where the device has none.
+    pub gpu_ms: Option<f64>,
+    /// Milliseconds from submission to completion by the wall clock.
+    pub frame_ms: f64,
+}
+
+/// A scene on a device and a picture that it is drawn into.
+pub struct Offscreen {
+    // Vulkan objects in order of destruction; `device` last.
+    renderer: Renderer,
+    target: Target,
+    commands: Commands,
+    clock: Clock,
+    ids: Vec<ObjectId>,
+    view: View,
+    background: [f32; 4],
+    settings: Settings,
+    /// From the first thing that an update changes to the last: what one that failed in between has left must not be drawn.
+    stale: bool,
+    /// Null in compute.
+    pass: vk::RenderPass,
+    device: Arc<Shared>,
+}
+
+/// Something else that is drawn in an off-screen frame's pass, into the same depth buffer.
+pub trait Guest {
+    /// Records its draws.
+    ///
+    /// # Safety
+    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], viewport and scissor set. What is recorded must stay
+    /// valid until the frame was drawn.
+    unsafe fn record(&self, cmd: vk::CommandBuffer);
+}
+
+impl Offscreen {
+    /// Bakes and uploads the scene's maps and makes a target of the settings' size. Pipelines are compiled by the first frame.
+    ///
+    /// # Errors
+    /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
+    pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
+        let shared = device.shared.clone();
+        let commands = Commands::new(&shared)?;
+        let size = (settings.width, settings.height);
+        let raw = match settings.stage {
+            DrawStage::Compute => vk::RenderPass::null(),
+            _ => shared.pipelines()?.own_pass(settings.planes)?,
+        };
+        let target = Target::new(&shared, raw, settings.stage, settings.planes, size)?;
+        let output = match settings.stage {
+            DrawStage::Compute => Output::Compute(settings.planes),
+            _ => Output::Pass(PassFormats {
+                begun: PassKind::RenderPass {
+                    pass: raw,
+                    subpass: 0,
+                },
+                samples: 1,
+                depth: DepthOrder::Normal,
+                planes: settings.planes,
+            }),
+        };
+        let mut renderer = Renderer::new(device, output, &SearchSettings::from(settings), 1)?;
+        renderer.set_target(target.for_shaders());
+        let mut offscreen = Self {
+            renderer,
+            target,
+            commands,
+            clock: Clock::new(&shared)?,
+            ids: Vec::new(),
+            view: view_of(scene, size)?,
+            background: scene.background,
+            settings: *settings,
+            stale: true,
+            pass: raw,
+            device: shared,
+        };
+        offscreen.update(scene)?;
+        Ok(offscreen)
+    }
+
+    /// Takes over a scene: camera, lights, objects, more or fewer of them. Cost follows what differs from the scene before.
+    ///
+    /// # Errors
+    /// Of the scene's values ([`Stage::Scene`]), of profiles and maps: what was drawn before can be drawn on. Of Vulkan
+    /// ([`Stage::Draw`]): nothing is drawn before an update succeeds.
+    pub fn update(&mut self, scene: &Scene) -> Result<()> {
+        scene.check()?;
+        let view = view_of(scene, (self.settings.width, self.settings.height))?;
+        self.take_over(scene)?;
+        self.view = view;
+        self.background = scene.background;
+        self.stale = true;
+        self.renderer.plan(&self.view)?;
+        self.stale = false;
+        Ok(())
+    }
+
+    /// All or nothing: what fails is taken back.
+    fn take_over(&mut self, scene: &Scene) -> Result<()> {
+        let lighting = scene.lighting();
+        super::block::check_lights(&lighting)?;
+        let before = self.renderer.lighting.clone();
+        let (kept, there) = (scene.objects.len().min(self.ids.len()), self.ids.len());
+        let mut removed = Vec::new();
+        for id in self.ids.split_off(kept) {
+            removed.push(self.renderer.object(id)?.clone());
+            self.renderer.remove(id)?;
+        }
+        let mut change = || {
+            self.renderer.set_lighting(&lighting)?;
+            for (&id, object) in self.ids.iter().zip(&scene.objects) {
+                self.renderer.set(id, object.clone())?;
+            }
+            for object in &scene.objects[kept..] {
+                self.ids.push(self.renderer.add(object.clone())?);
+            }
+            self.renderer.refresh()
+        };
+        let result = change();
+        if result.is_err() {
+            for id in self.ids.split_off(kept) {
+                self.renderer.remove(id)?;
+            }
+            for object in removed {
+                self.ids.push(self.renderer.add(object)?);
+            }
+            self.renderer.set_lighting(&before)?;
+            // What never was drawn has nothing to go back to.
+            if there > 0 {
+                self.renderer.refresh()?;
+            }
+        }
+        result
+    }
+
+    /// Draws one frame and waits for it.
+    ///
+    /// # Errors
+    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
+    pub fn draw(&mut self) -> Result<Times> {
+        self.draw_with(None)
+    }
+
+    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. In compute there is no pass, and the guest
+    /// is not asked.
+    ///
+    /// # Errors
+    /// As [`Offscreen::draw`].
+    pub fn draw_with(&mut self, guest: Option<&dyn Guest>) -> Result<Times> {
+        self.check_whole()?;
+        let start = Instant::now();
+        let Self {
+            renderer,
+            target,
+            commands,
+            clock,
+            view,
+            background,
+            ..
+        } = self;
+        let (compute, pass) = (self.settings.stage == DrawStage::Compute, self.pass);
+        commands.record(|cmd| {
+            // SAFETY: `cmd` is recording, and the frame before was waited for.
+            unsafe { renderer.prepare(cmd, 0, view)? };
+            clock.start(cmd);
+            target.clear(cmd, *background, renderer.compares_depths());
+            // SAFETY: the frame was prepared above; the target was cleared, the pass is of the output's formats and sets viewport and
+            // scissor; the commands are waited for before anything is dropped.
+            unsafe {
+                if compute {
+                    renderer.record_compute(cmd, 0);
+                } else {
+                    target.begin(cmd, pass, *background);
+                    renderer.record(cmd, 0);
+                    if let Some(guest) = guest {
+                        guest.record(cmd);
+                    }
+                    self.device.raw.cmd_end_render_pass(cmd);
+                }
+            }
+            clock.stop(cmd);
+            Ok(())
+        })?;
+        let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
+        let start = Instant::now();
+        self.commands.submit_and_wait()?;
+        let frame_ms = start.elapsed().as_secs_f64() * 1e3;
+        Ok(Times {
+            prepare_ms,
+            gpu_ms: self.clock.milliseconds()?,
+            frame_ms,
+        })
+    }
+
+    /// The pass that a guest's pipelines are made for; null in compute. It lives as long as the device.
+    #[must_use]
+    pub fn render_pass(&self) -> vk::RenderPass {
+        self.pass
+    }
+
+    /// The view of the last scene.
+    #[must_use]
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The frame that was drawn last.
+    ///
+    /// # Errors
+    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
+    pub fn read(&self) -> Result<Frame> {
+        self.check_whole()?;
+        let planes = self.target.read(&self.commands)?;
+        super::read_back::frame(&self.settings, self.background, &planes)
+    }
+
+    /// As [`Renderer::map_bytes`].
+    #[must_use]
+    pub fn map_bytes(&self) -> [u64; 2] {
+        self.renderer.map_bytes()
+    }
+
+    /// As [`Renderer::notes`].
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        self.renderer.notes()
+    }
+
+    /// As [`Renderer::draw_paths`], since the last update that succeeded.
+    #[must_use]
+    pub fn draw_paths(&self) -> Vec<DrawPath> {
+        self.renderer.draw_paths()
+    }
+
+    /// As [`Renderer::rebuild_count`].
+    #[must_use]
+    pub fn rebuild_count(&self) -> u64 {
+        self.renderer.rebuild_count()
+    }
+
+    fn check_whole(&self) -> Result<()> {
+        if self.stale {
+            return Err(Error::new(
+                Stage::Draw,
+                "the last update failed half way; update again with what can be drawn, or make a new one",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The view of a scene's camera, with depths between which every box lies.
+fn view_of(scene: &Scene, size: (u32, u32)) -> Result<View> {
+    let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
+    View::from_camera(&scene.camera, size, depth_range(scene, &camera))
+}
+
+/// Depths between which every box lies; near is never closer than a ten-thousandth of far.
+fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
+    let mut low = f64::INFINITY;
+    let mut high: f64 = 0.0;
+    for object in &scene.objects {
+        // Corners of hulls stand out a little, those of convex ones by some texels more.
+        let radius = 1.04 * object.profile.radius + 0.02;
+        let half = DVec3::new(radius, radius, 0.502);
+        for p in object.placements() {
+            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));
+            let depth = (middle - camera.eye).dot(camera.forward);
+            let reach = (p.rotation.conjugate() * camera.forward * p.scale)
+                .abs()
+                .dot(half);
+            low = low.min(depth - reach);
+            high = high.max(depth + reach);
+        }
+    }
+    if high <= 0.0 {
+        return [1.0, 2.0];
+    }
+    let far = high * 1.001;
+    [(low * 0.999).max(far * 1e-4), far]
+}

@@ -1,0 +1,193 @@
+//! How each object is drawn: plain data, chosen from the view, the placements and the surface.
+
+use super::bins::{Bins, Rectangle, rectangle};
+use super::hulls;
+use super::surface::OffsetSurface;
+use super::view::View;
+use crate::scene::Object;
+use crate::shader::generated::GROUP_PIXELS;
+use ash::vk;
+use std::ops::Range;
+
+/// How an object is drawn; chosen anew when it, or the view, changes: [`Renderer::draw_paths`](super::Renderer::draw_paths).
+///
+/// A search and what it searches are two things: a box may be drawn by any of the searches, a rectangle or bins too; hulls and
+/// beams are what [`Solver::Hull`](crate::settings::Solver::Hull) and [`Solver::Live`](crate::settings::Solver::Live) take where
+/// they can.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DrawPath {
+    /// Compute stage: not at all, as it is beside the picture or behind the eye. In the fragment stage the rasteriser finds that
+    /// out, and no object is `Nothing`.
+    Nothing,
+    /// Fragment stage: the fragments of its boxes are searched.
+    Box,
+    /// Fragment stage: by the proxy hulls of its surface; of a search on the map the fragments of its convex hull are searched.
+    Hull,
+    /// Compute stage, a single copy: the pixels of its rectangle on the screen are searched.
+    Rectangle,
+    /// Compute stage, several copies: the squares of the screen that they cover are searched.
+    Bins,
+    /// Compute stage, one copy or a few large ones: the tiles of each rectangle that beams have found to be near the copy are
+    /// searched.
+    Beams,
+}
+
+/// A draw path with what it needs to be recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Work {
+    Nothing,
+    Box,
+    /// Runs of the hull's bands that may be seen.
+    Hull(Vec<Range<u32>>),
+    /// In work groups.
+    Rectangle(Rectangle),
+    /// Among all bins.
+    Bins(Range<u32>),
+    /// One an instance that shows.
+    Beams(Vec<Tiles>),
+}
+
+/// The tiles of one instance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tiles {
+    /// What beams choose from, in work groups.
+    pub rectangle: Rectangle,
+    /// The word where their list begins; counted from the end of all bins' words until these are known.
+    pub at: u32,
+    /// Number of the block that holds this instance alone; none where the object's own does.
+    pub block: Option<u32>,
+    /// Among the object's.
+    pub instance: usize,
+}
+
+impl Work {
+    pub fn path(&self) -> DrawPath {
+        match self {
+            Self::Nothing => DrawPath::Nothing,
+            Self::Box => DrawPath::Box,
+            Self::Hull(_) => DrawPath::Hull,
+            Self::Rectangle(_) => DrawPath::Rectangle,
+            Self::Bins(_) => DrawPath::Bins,
+            Self::Beams(_) => DrawPath::Beams,
+        }
+    }
+}
+
+/// What a choice depends on besides the object.
+pub(crate) struct Planner<'a> {
+    pub view: &'a View,
+    pub limits: &'a vk::PhysicalDeviceLimits,
+    /// As [`SearchSettings::hull_from`](crate::settings::SearchSettings::hull_from).
+    pub least_pixels: u32,
+}
+
+impl Planner<'_> {
+    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn.
+    pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>) -> Work {
+        let fits = |surface: &&OffsetSurface| {
+            !surface.is_boundary()
+                || (self.limits.max_fragment_input_components >= hulls::COMPONENTS
+                    && self.limits.max_vertex_output_components >= hulls::COMPONENTS + 4)
+        };
+        wrapped
+            .filter(fits)
+            .and_then(|surface| hulls::bands(object, surface, self.view, self.least_pixels))
+            .map_or(Work::Box, Work::Hull)
+    }
+
+    /// In compute; `first` is the object's first instance.
+    pub fn compute(
+        &self,
+        object: &Object,
+        wrapped: Option<&OffsetSurface>,
+        first: u32,
+        lists: &mut Lists,
+    ) -> Work {
+        let radius = object.profile.radius;
+        let placements = object.placements();
+        if let Some(surface) = wrapped
+            && placements.len() <= MOST_BEAMED
+            && hulls::takes_beams(object, surface, self.view)
+        {
+            let shown: Vec<(usize, Rectangle)> = placements
+                .iter()
+                .enumerate()
+                .filter_map(|(n, copy)| {
+                    Some((n, rectangle(self.view, GROUP_PIXELS, radius, copy)?))
+                })
+                .collect();
+            if shown.is_empty() {
+                return Work::Nothing;
+            }
+            if self.beams_pay(&shown, placements.len(), lists) {
+                return lists.beams(&shown, placements.len());
+            }
+        }
+        match placements {
+            [one] => rectangle(self.view, GROUP_PIXELS, radius, one)
+                .map_or(Work::Nothing, Work::Rectangle),
+            _ => {
+                let bins = lists.bins.add(self.view, radius, first, placements);
+                if bins.is_empty() {
+                    Work::Nothing
+                } else {
+                    Work::Bins(bins)
+                }
+            }
+        }
+    }
+
+    fn beams_pay(&self, shown: &[(usize, Rectangle)], copies: usize, lists: &Lists) -> bool {
+        // A tile listed is a work group.
+        let most = self.limits.max_compute_work_group_count[0];
+        // All lists stand in one buffer, of which a quarter is for them: bins need the rest.
+        let words: u64 = shown.iter().map(|(_, r)| words_of(*r) as u64).sum();
+        let room = u64::from(self.limits.max_storage_buffer_range) / 16;
+        let fits =
+            lists.tiles as u64 + words <= room && shown.iter().all(|(_, r)| r.padded() <= most);
+        let squares: u64 = shown.iter().map(|(_, r)| r.squares()).sum();
+        fits && (copies == 1 || squares >= LEAST_TILES * shown.len() as u64)
+    }
+}
+
+/// Most copies of an object to which beams are sent one by one: each costs two dispatches.
+const MOST_BEAMED: usize = 64;
+
+/// Tiles that each of several copies should cover for a list of its own to pay.
+const LEAST_TILES: u64 = 64;
+
+/// Words of the list of a rectangle's tiles: the dispatch, and four a tile.
+fn words_of(rectangle: Rectangle) -> usize {
+    4 + 4 * rectangle.padded() as usize
+}
+
+/// What the objects of a frame put into buffers that they share, in compute.
+#[derive(Default)]
+pub(crate) struct Lists {
+    pub bins: Bins,
+    /// Words of the lists that beams fill, behind those of the bins.
+    pub tiles: usize,
+    /// Blocks of single copies, behind those of the objects.
+    pub copies: u32,
+}
+
+impl Lists {
+    /// Lists of tiles for the copies that show.
+    fn beams(&mut self, shown: &[(usize, Rectangle)], copies: usize) -> Work {
+        let tiles = shown.iter().map(|&(instance, rectangle)| {
+            let at = self.tiles as u32;
+            self.tiles += words_of(rectangle);
+            let block = (copies > 1).then(|| {
+                self.copies += 1;
+                self.copies - 1
+            });
+            Tiles {
+                rectangle,
+                at,
+                block,
+                instance,
+            }
+        });
+        Work::Beams(tiles.collect())
+    }
+}

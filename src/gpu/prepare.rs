@@ -1,0 +1,333 @@
+//! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows what has changed.
+
+use super::block::{frame_block, instance_block, solid_block};
+use super::blocks::{InstanceBlock, SolidBlock};
+use super::buffers::{indices, write_slice};
+use super::hulls;
+use super::output::Output;
+use super::pipelines::Kind;
+use super::plan::{Lists, Planner, Work};
+use super::renderer::{Entry, Renderer};
+use super::surface::Part;
+use super::view::View;
+use crate::error::{Error, Result, Stage};
+use crate::scene::Shadow;
+use crate::shader::generated::PIECE_VECTORS;
+use ash::vk;
+use rayon::prelude::*;
+
+/// From so many objects on they are planned on all cores.
+const MANY: usize = 256;
+
+impl Renderer {
+    /// Prepares the frame of slot `slot`, seen by `view`: takes over what was set, writes what changed, records copies of new
+    /// textures. To be called outside of a render pass, before [`Renderer::record`].
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] or [`Stage::Profile`](crate::error::Stage) for what cannot be drawn, with the key `object.N...`, N counted in
+    /// order: everything stays as it was before it was set. [`Stage::Usage`] for a slot that is not there or a view of the other
+    /// depth order. [`Stage::Draw`] of Vulkan.
+    ///
+    /// # Safety
+    /// This call writes to memory that the frame before in `slot` read; records image copies and their barriers into `cmd`; drops what
+    /// no frame in flight reads any more.
+    ///
+    /// The caller must see to it that
+    /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
+    /// * the commands recorded for `slot` before have run, or were never submitted;
+    /// * commands of other slots that were recorded before are submitted before these.
+    pub unsafe fn prepare(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        slot: usize,
+        view: &View,
+    ) -> Result<()> {
+        self.check(slot, view)?;
+        self.frame += 1;
+        let done = |r: &(u64, _)| r.0 < self.frame;
+        let count = self.retired.iter().take_while(|r| done(r)).count();
+        self.retired.drain(..count);
+        self.refresh()?;
+        self.plan(view)?;
+        let staging = self.uploads.record(&self.device, cmd);
+        if !staging.is_empty() {
+            self.retire(staging);
+        }
+        self.write(slot, view)
+    }
+
+    fn check(&self, slot: usize, view: &View) -> Result<()> {
+        let usage = |message: String| Err(Error::new(Stage::Usage, message));
+        if slot >= self.frames.len() {
+            return usage(format!(
+                "frame slot {slot}; there are {}",
+                self.frames.len()
+            ));
+        }
+        if view.order != self.output.depth_order() {
+            return usage("the view's depth order is not the output's; give both the same".into());
+        }
+        if matches!(self.output, Output::Compute(_)) && self.target.is_none() {
+            return usage("compute has no target yet; set one".into());
+        }
+        Ok(())
+    }
+
+    /// Whether the output shows hulls.
+    pub(super) fn draws_hulls(&self) -> bool {
+        matches!(self.output, Output::Pass(_))
+    }
+
+    /// Chooses how everything that changed is drawn, or everything, if the view did.
+    pub(super) fn plan(&mut self, view: &View) -> Result<()> {
+        let moved = self.view != Some(*view);
+        if moved || (!self.draws_hulls() && !self.unplanned.is_empty()) {
+            // In compute all objects' lists stand in one buffer.
+            self.unplanned.clone_from(&self.order);
+        }
+        if self.unplanned.is_empty() {
+            return Ok(());
+        }
+        let mut numbers = std::mem::take(&mut self.unplanned);
+        if !moved && self.draws_hulls() {
+            numbers.sort_unstable();
+            numbers.dedup();
+        }
+        self.view = Some(*view);
+        self.version += 1;
+        let planned = if self.draws_hulls() {
+            self.plan_fragment(view, &numbers)
+        } else {
+            self.plan_compute(view, &numbers)?
+        };
+        for (place, (number, work)) in numbers.into_iter().zip(planned).enumerate() {
+            self.apply(number, place, work)?;
+        }
+        Ok(())
+    }
+
+    fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
+        let planner = Planner {
+            view,
+            limits: &self.device.limits,
+            least_pixels: self.settings.hull_from,
+        };
+        let entries = &self.entries;
+        let plan = |number: &u32| {
+            let entry = entries[*number as usize].as_ref();
+            entry.map_or(Work::Nothing, |entry| {
+                let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
+                planner.fragment(&entry.object, wrapped)
+            })
+        };
+        if numbers.len() < MANY {
+            numbers.iter().map(plan).collect()
+        } else {
+            numbers.par_iter().with_min_len(64).map(plan).collect()
+        }
+    }
+
+    /// Plans all objects; the lists that they share are kept for [`Renderer::write`].
+    fn plan_compute(&mut self, view: &View, numbers: &[u32]) -> Result<Vec<Work>> {
+        let planner = Planner {
+            view,
+            limits: &self.device.limits,
+            least_pixels: self.settings.hull_from,
+        };
+        let mut lists = Lists::default();
+        let mut planned: Vec<Work> = numbers
+            .iter()
+            .map(|number| {
+                let entry = self.entries[*number as usize].as_ref();
+                entry.map_or(Work::Nothing, |entry| {
+                    let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
+                    planner.compute(&entry.object, wrapped, entry.instances.start, &mut lists)
+                })
+            })
+            .collect();
+        // Lists of tiles stand behind all bins, whose number is known only now; blocks of copies behind those of all objects.
+        let words = lists.bins.words();
+        let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX);
+        for work in &mut planned {
+            if let Work::Beams(copies) = work {
+                for tiles in copies {
+                    tiles.at += u32::try_from(words.len()).unwrap_or(u32::MAX);
+                    tiles.block = tiles.block.map(|n| blocks + n);
+                }
+            }
+        }
+        self.lists = (words, lists.tiles, lists.copies);
+        Ok(planned)
+    }
+
+    /// Gives an entry the pipeline and the tables that its work asks for; `place` is its own among all, in compute.
+    fn apply(&mut self, number: u32, place: usize, work: Work) -> Result<()> {
+        let last = self.order.len().saturating_sub(1);
+        let casts = self.lighting.shadow != Shadow::Off;
+        let Some(entry) = &mut self.entries[number as usize] else {
+            return Ok(());
+        };
+        let Some(prepared) = &entry.prepared else {
+            entry.draw.work = None;
+            return Ok(());
+        };
+        let mut variant = prepared.variant;
+        variant.single = u32::from(entry.object.placements().len() == 1);
+        let (mut bands, mut tables) = (None, prepared.surface.as_ref());
+        let kind = match &work {
+            Work::Hull(_) => {
+                bands = prepared.wrapped.as_ref();
+                if bands.is_some_and(|s| s.is_boundary()) {
+                    // A hull's own fragments read none of the tree; shadows' rays do.
+                    tables = tables.filter(|_| casts);
+                    variant.tests = bands.map_or(0, |s| s.hull().hull.tests());
+                    Kind::Hull
+                } else {
+                    variant.ahead = 1;
+                    Kind::ConvexHull
+                }
+            }
+            Work::Box => Kind::Box,
+            _ => Kind::Compute,
+        };
+        if kind == Kind::Compute {
+            let mut several = false;
+            if let Work::Beams(copies) = &work {
+                (variant.ahead, variant.single) = (1, 1);
+                several = copies.len() > 1;
+                // Of an envelope beams alone read something.
+                tables = tables.or(prepared.wrapped.as_ref());
+            }
+            variant.depth_test = u32::from(place > 0 || several);
+            variant.depth_keep = u32::from(place < last || several);
+        }
+        let mut replaced = Vec::new();
+        let mut put = |surface: Option<&_>, part| match surface {
+            Some(surface) => self.arena.place(surface, part).map(|(begin, old)| {
+                replaced.extend(old);
+                Some(begin)
+            }),
+            None => Ok(None),
+        };
+        let bands_at = put(bands, Part::Bands)?;
+        let tables_at = put(tables, Part::Tables)?;
+        if let Some(surface) = tables {
+            variant.own_tables = u32::from(surface.tables().own <= PIECE_VECTORS as usize);
+        }
+        let most = bands.map_or(0, |s| s.hull().hull.bands.len());
+        if entry.draw.key != Some((variant, kind)) {
+            let pipelines = self.device.pipelines()?;
+            entry.draw.pipeline = pipelines.get(variant, kind, &self.output)?;
+            entry.draw.key = Some((variant, kind));
+        }
+        if matches!(work, Work::Beams(_)) && entry.draw.list == vk::Pipeline::null() {
+            let pipelines = self.device.pipelines()?;
+            entry.draw.list = pipelines.get(variant, Kind::Beams, &self.output)?;
+        }
+        entry.draw.bands = bands_at.unwrap_or(0);
+        entry.draw.tables = tables_at.unwrap_or(0);
+        entry.draw.tables_offset = 16 * entry.draw.tables;
+        entry.draw.work = Some(work);
+        self.mark(number);
+        for old in replaced {
+            self.retire(old);
+        }
+        self.fit_corners(most)
+    }
+
+    /// Sees to it that there are corners for hulls of so many bands.
+    fn fit_corners(&mut self, bands: usize) -> Result<()> {
+        let bytes = 4 * hulls::corners(u32::try_from(bands).unwrap_or(u32::MAX)) as usize;
+        if self.corners.bytes < bytes as u64 {
+            let bands = bands.next_power_of_two();
+            let all = hulls::indices(bands);
+            let mut corners = indices(&self.device, 4 * all.len())?;
+            write_slice(&mut corners, &all)?;
+            let old = std::mem::replace(&mut self.corners, corners);
+            self.retire(old);
+        }
+        Ok(())
+    }
+
+    /// Writes what of a slot is older than the renderer.
+    fn write(&mut self, slot: usize, view: &View) -> Result<()> {
+        let frame = frame_block(view, &self.lighting);
+        let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX) + self.lists.2;
+        let instances = self.instances.initial_range().end;
+        let slots = &mut self.frames;
+        let to = &mut slots[slot];
+        to.fit(blocks, instances)?;
+        to.write_frame(&frame)?;
+        let bit = 1u32 << slot;
+        let mut stale = std::mem::take(&mut to.stale);
+        if std::mem::take(&mut to.empty) {
+            stale.clone_from(&self.order);
+        }
+        for number in stale {
+            let Some(entry) = &mut self.entries[number as usize] else {
+                continue;
+            };
+            entry.stale &= !bit;
+            let Some(block) = entry.block() else { continue };
+            to.write_block(number, &block)?;
+            let placed: Vec<InstanceBlock> = entry
+                .object
+                .placements()
+                .iter()
+                .map(instance_block)
+                .collect();
+            to.write_instances(entry.instances.start, &placed)?;
+        }
+        if self.listed[slot] != self.version {
+            let casts = self.lighting.shadow != Shadow::Off;
+            if casts {
+                let all: Vec<SolidBlock> = self
+                    .order
+                    .iter()
+                    .filter_map(|&n| self.entries[n as usize].as_ref()?.block())
+                    .collect();
+                to.write_shadows(&all)?;
+            }
+            if matches!(self.output, Output::Compute(_)) {
+                let (words, tiles, _) = &self.lists;
+                to.write_lists(words, words.len() + tiles)?;
+                for &number in &self.order {
+                    let Some(entry) = &self.entries[number as usize] else {
+                        continue;
+                    };
+                    if let (Some(Work::Beams(copies)), Some(mut block)) =
+                        (&entry.draw.work, entry.block())
+                    {
+                        for tiles in copies {
+                            let Some(number) = tiles.block else { continue };
+                            block.single =
+                                instance_block(&entry.object.placements()[tiles.instance]);
+                            to.write_block(number, &block)?;
+                        }
+                    }
+                }
+            }
+            self.listed[slot] = self.version;
+        }
+        let target = self.target.as_ref().map(|(t, n)| (t, *n));
+        to.name((&self.arena.buffer, self.arena.generation), target);
+        Ok(())
+    }
+}
+
+impl Entry {
+    /// What shaders read of it; none before it is prepared.
+    fn block(&self) -> Option<SolidBlock> {
+        let p = self.prepared.as_ref()?;
+        let length = p.arc.as_ref().map_or(1.0, |a| a.length);
+        let (instances, map) = (&self.instances, p.shadow_map);
+        let mut block = solid_block(&self.object, &p.facts, length, instances, map, p.solver);
+        block.hull[0] = self.draw.bands;
+        let walked = p.surface.as_ref().or(p.wrapped.as_ref());
+        if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {
+            block.pieces = surface.tables().block(self.draw.tables);
+            block.hull[1] = surface.tables().beams(self.draw.tables);
+        }
+        Some(block)
+    }
+}

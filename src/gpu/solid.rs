@@ -1,0 +1,312 @@
+//! Prepared solids: everything that is made from one profile, keyed in one place and shared by all objects that show it.
+//!
+//! The cache holds nothing alive. Objects do, and frames in flight; what the last of them lets go is gone.
+
+use super::device::Shared;
+use super::memory::Image;
+use super::surface::{OffsetSurface, Recipe};
+use super::uploads::Uploads;
+use crate::error::{Error, Result, Stage};
+use crate::maps::envelope::Envelope;
+use crate::maps::{ArcLength, BakeOptions, Bounds, MapFormat, MapSource, ShapeMap};
+use crate::pieces::{Contour, ContourSource, CutOptions, outline_of};
+use crate::profile::{Profile, Shape};
+use crate::scene::{Object, Offset};
+use crate::settings::SearchSettings;
+use ash::vk;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Arc, Mutex, OnceLock, Weak};
+
+/// The solids of a renderer, by profile.
+#[derive(Default)]
+pub(crate) struct SolidCache {
+    /// By the profile's address, which a solid keeps from being used again.
+    solids: HashMap<usize, Weak<Solid>>,
+}
+
+/// All that is made from one profile.
+pub(crate) struct Solid {
+    pub outlined: Arc<Outlined>,
+    surfaces: Kept<SurfaceKey, OffsetSurface>,
+    maps: Kept<MapKey, ShapeTexture>,
+    arcs: Kept<(u32, u32), ArcTexture>,
+}
+
+/// What of a profile does not depend on the offset.
+pub(crate) struct Outlined {
+    pub profile: Arc<Profile>,
+    source: OnceLock<Result<(ContourSource, CutOptions)>>,
+}
+
+/// A table of weak references that forgets the dead.
+struct Kept<K, V>(Mutex<HashMap<K, Weak<V>>>);
+
+impl<K, V> Default for Kept<K, V> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: Hash + Eq, V> Kept<K, V> {
+    fn get(&self, key: K, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
+        let mut all = self
+            .0
+            .lock()
+            .map_err(|_| Error::new(Stage::Draw, "a solid's lock is poisoned"))?;
+        if let Some(known) = all.get(&key).and_then(Weak::upgrade) {
+            return Ok(known);
+        }
+        if all.len() == all.capacity() {
+            all.retain(|_, known| known.strong_count() > 0);
+        }
+        let made = Arc::new(make()?);
+        all.insert(key, Arc::downgrade(&made));
+        Ok(made)
+    }
+}
+
+#[derive(PartialEq, Eq, Hash)]
+enum SurfaceKey {
+    /// Bits of the offset.
+    Pieces([u64; 3]),
+    /// Likewise, rows, whether relaxed.
+    Cones([u64; 3], u32, bool),
+    /// The map, and bits of what its envelope is grown by.
+    Envelope(MapKey, u64),
+}
+
+/// What a shape map is baked from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MapKey {
+    pub rows: u32,
+    pub source: MapSource,
+    pub format: MapFormat,
+    pub columns: u32,
+}
+
+/// A shape map on the device.
+pub(crate) struct ShapeTexture {
+    pub key: MapKey,
+    pub facts: MapFacts,
+    pub texture: Arc<Image>,
+    envelope: Option<Envelope>,
+}
+
+/// Lengths along the outline on the device, for a map of the same size.
+pub(crate) struct ArcTexture {
+    /// Length of the longest part of the outline, object units.
+    pub length: f64,
+    pub texture: Arc<Image>,
+}
+
+/// What a shader must know of a map, baked or not.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MapFacts {
+    pub columns: u32,
+    pub rows: u32,
+    pub scale: f32,
+    pub bounds: Bounds,
+}
+
+impl SolidCache {
+    /// The solid of a profile.
+    pub fn get(&mut self, profile: &Arc<Profile>) -> Arc<Solid> {
+        let key = Arc::as_ptr(profile) as usize;
+        if let Some(known) = self.solids.get(&key).and_then(Weak::upgrade) {
+            return known;
+        }
+        self.solids.retain(|_, known| known.strong_count() > 0);
+        let solid = Arc::new(Solid::new(profile));
+        self.solids.insert(key, Arc::downgrade(&solid));
+        solid
+    }
+}
+
+impl Solid {
+    fn new(profile: &Arc<Profile>) -> Self {
+        Self {
+            outlined: Arc::new(Outlined {
+                profile: profile.clone(),
+                source: OnceLock::new(),
+            }),
+            surfaces: Kept::default(),
+            maps: Kept::default(),
+            arcs: Kept::default(),
+        }
+    }
+
+    /// The boundary as quadrics; not made yet where it is new.
+    pub fn pieces(&self, offset: &Offset) -> Result<Arc<OffsetSurface>> {
+        self.surfaces.get(SurfaceKey::Pieces(bits(offset)), || {
+            let recipe = Recipe::Pieces(self.outlined.clone(), *offset);
+            Ok(OffsetSurface::new(recipe))
+        })
+    }
+
+    /// The boundary as empty cones; not made yet where it is new.
+    pub fn cones(&self, offset: &Offset, rows: u32, relaxed: bool) -> Result<Arc<OffsetSurface>> {
+        let key = SurfaceKey::Cones(bits(offset), rows, relaxed);
+        self.surfaces.get(key, || {
+            let recipe = Recipe::Cones(self.outlined.clone(), *offset, rows, relaxed);
+            Ok(OffsetSurface::new(recipe))
+        })
+    }
+
+    /// Where the solid of `map` may be under offsets up to `by`; none of a solid that lies partly outside of its map.
+    pub fn envelope(&self, map: &ShapeTexture, by: f64) -> Result<Option<Arc<OffsetSurface>>> {
+        let Some(envelope) = &map.envelope else {
+            return Ok(None);
+        };
+        let key = SurfaceKey::Envelope(map.key, by.to_bits());
+        let made = self.surfaces.get(key, || {
+            Ok(OffsetSurface::new(Recipe::Envelope(envelope.grown(by))))
+        });
+        made.map(Some)
+    }
+
+    /// The shape map, baked and on its way to the device where it is new.
+    pub fn map(
+        &self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        key: MapKey,
+    ) -> Result<Arc<ShapeTexture>> {
+        self.maps.get(key, || {
+            ShapeTexture::bake(device, uploads, &self.outlined.profile, key)
+        })
+    }
+
+    /// The table of lengths along the outline.
+    pub fn arc(
+        &self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        facts: &MapFacts,
+    ) -> Result<Arc<ArcTexture>> {
+        self.arcs.get((facts.columns, facts.rows), || {
+            let lengths = ArcLength::new(&self.outlined.profile)?;
+            let table = lengths.table(facts.columns, facts.rows);
+            // 16-bit normalised textures are not everywhere; 32-bit floats are.
+            let texels: Vec<f32> = table
+                .texels
+                .iter()
+                .map(|t| f32::from(*t) / f32::from(u16::MAX))
+                .collect();
+            let size = (table.columns, table.rows);
+            let bytes: &[u8] = bytemuck::cast_slice(&texels);
+            let format = vk::Format::R32_SFLOAT;
+            Ok(ArcTexture {
+                length: lengths.total(),
+                texture: uploads.image(device, "arc lengths", format, size, &[bytes])?,
+            })
+        })
+    }
+}
+
+/// Of both zeros one.
+fn bits(offset: &Offset) -> [u64; 3] {
+    [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits())
+}
+
+impl Outlined {
+    /// The contour under `offset`, and how closely it is to be followed.
+    ///
+    /// # Errors
+    /// Where the profile has none, or it does not close.
+    pub fn contour(&self, offset: &Offset) -> Result<(Contour, &CutOptions)> {
+        let source = self.source.get_or_init(|| match &self.profile.shape {
+            Shape::Outline(outline) => Ok((ContourSource::new(outline)?, CutOptions::default())),
+            Shape::Raster(raster) => {
+                let traced = outline_of(raster);
+                let tolerance = traced.tolerance;
+                let source = ContourSource::new(&traced.outline)?;
+                Ok((source, CutOptions { tolerance }))
+            }
+        });
+        match source {
+            Ok((source, options)) => Ok((source.contour(offset)?, options)),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
+
+impl MapKey {
+    /// The map that `object` wants; `columns` as many as its solid needs under its offset.
+    pub fn new(object: &Object, settings: &SearchSettings) -> Self {
+        let outline = matches!(object.profile.shape, Shape::Outline(_));
+        let source = settings.map_source.unwrap_or(if outline {
+            MapSource::Exact
+        } else {
+            MapSource::Coverage
+        });
+        let rows = settings.map_rows.unwrap_or(object.map_rows);
+        let reach = super::block::reach(object, 2.0 / f64::from(rows.max(1)));
+        Self {
+            rows,
+            source,
+            format: settings.map_format,
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
+            columns: (reach.max(object.profile.radius) * f64::from(rows) - 1e-9).ceil() as u32,
+        }
+    }
+
+    /// Whether a map of this key serves where `other` is wanted: it may reach farther.
+    pub fn holds(&self, other: &Self) -> bool {
+        self.columns >= other.columns
+            && Self {
+                columns: other.columns,
+                ..*self
+            } == *other
+    }
+
+    /// What a shader is told of the map where no map is baked: its size, and what the solid occupies.
+    pub fn unbaked(&self, profile: &Profile) -> MapFacts {
+        MapFacts {
+            columns: self.columns,
+            rows: self.rows,
+            scale: 1.0,
+            // Of a solid that is not there nothing is clipped; nothing is met either.
+            bounds: profile.bounds().unwrap_or(Bounds {
+                r_min: 0.0,
+                r_max: profile.radius,
+                z_min: 0.0,
+                z_max: 1.0,
+            }),
+        }
+    }
+}
+
+impl ShapeTexture {
+    fn bake(
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        profile: &Profile,
+        key: MapKey,
+    ) -> Result<Self> {
+        let options = BakeOptions {
+            source: key.source,
+            rows: key.rows,
+            reach: f64::from(key.columns) / f64::from(key.rows),
+        };
+        let map = ShapeMap::bake(profile, &options)?;
+        let encoded = map.encode(key.format);
+        let format = match key.format {
+            MapFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
+            MapFormat::R16 => vk::Format::R16_SFLOAT,
+            MapFormat::R32 => vk::Format::R32_SFLOAT,
+        };
+        let size = (encoded.columns, encoded.rows);
+        Ok(Self {
+            key,
+            facts: MapFacts {
+                columns: encoded.columns,
+                rows: encoded.rows,
+                scale: encoded.scale,
+                bounds: map.bounds,
+            },
+            texture: uploads.image(device, "shape map", format, size, &[&encoded.bytes])?,
+            envelope: Envelope::of(&map),
+        })
+    }
+}

@@ -1,0 +1,148 @@
+//! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what is made of them for the GPU.
+
+use super::arena::Slot;
+use super::hulls::ProxyHull;
+use super::solid::Outlined;
+use super::tables::GpuTables;
+use crate::error::Result;
+use crate::maps::envelope::Envelope;
+use crate::pieces::{Cones, Piece, cut};
+use crate::scene::Offset;
+use std::sync::{Arc, OnceLock};
+
+/// One surface, made when first wanted, shared by all objects that show it.
+pub(crate) struct OffsetSurface {
+    recipe: Recipe,
+    made: OnceLock<Result<Made>>,
+    tables: OnceLock<GpuTables>,
+    hull: OnceLock<ProxyHull>,
+    slots: [OnceLock<Slot>; 2],
+}
+
+/// What a surface is made from.
+pub(crate) enum Recipe {
+    /// Quadrics that follow the outline under an offset.
+    Pieces(Arc<Outlined>, Offset),
+    /// A row of so many empty cones around it, relaxed or not.
+    Cones(Arc<Outlined>, Offset, u32, bool),
+    /// Where a map's solid may be.
+    Envelope(Envelope),
+}
+
+enum Made {
+    /// And their largest radius, least and largest `z`.
+    Pieces(Vec<Piece>, [f64; 3]),
+    Cones(Cones),
+    Envelope,
+}
+
+/// The two parts of a surface that stand in the arena.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// What searches walk.
+    Tables,
+    /// What the vertex shaders of hulls grow.
+    Bands,
+}
+
+impl OffsetSurface {
+    pub fn new(recipe: Recipe) -> Self {
+        Self {
+            recipe,
+            made: OnceLock::new(),
+            tables: OnceLock::new(),
+            hull: OnceLock::new(),
+            slots: [OnceLock::new(), OnceLock::new()],
+        }
+    }
+
+    /// Whether it is made, or has failed to be.
+    pub fn is_made(&self) -> bool {
+        self.made.get().is_some()
+    }
+
+    /// Makes it, if it is not made yet.
+    pub fn make(&self) {
+        let _ = self.made();
+    }
+
+    /// Why there is no such surface.
+    pub fn failure(&self) -> Option<&crate::error::Error> {
+        self.made().err()
+    }
+
+    fn made(&self) -> std::result::Result<&Made, &crate::error::Error> {
+        self.made.get_or_init(|| self.recipe.follow()).as_ref()
+    }
+
+    /// What the search walks.
+    pub fn tables(&self) -> &GpuTables {
+        self.tables
+            .get_or_init(|| match (self.made(), &self.recipe) {
+                (Ok(Made::Pieces(pieces, _)), _) => GpuTables::pieces(pieces),
+                (Ok(Made::Cones(cones)), _) => GpuTables::cones(cones),
+                (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuTables::envelope(envelope),
+                _ => GpuTables::pieces(&[]),
+            })
+    }
+
+    /// What the rasteriser draws; of cones nothing.
+    pub fn hull(&self) -> &ProxyHull {
+        self.hull.get_or_init(|| match (self.made(), &self.recipe) {
+            (Ok(Made::Pieces(pieces, _)), _) => ProxyHull::new(pieces),
+            (Ok(Made::Envelope), Recipe::Envelope(envelope)) => ProxyHull::convex(envelope),
+            _ => ProxyHull::new(&[]),
+        })
+    }
+
+    /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays are searched as in the box.
+    pub fn is_boundary(&self) -> bool {
+        !matches!(self.recipe, Recipe::Envelope(_))
+    }
+
+    /// Largest radius, least and largest `z`; of pieces alone.
+    pub fn extent(&self) -> [f64; 3] {
+        match self.made() {
+            Ok(Made::Pieces(_, extent)) => *extent,
+            _ => [0.0; 3],
+        }
+    }
+
+    pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
+        match part {
+            Part::Tables => &self.tables().vectors,
+            Part::Bands => &self.hull().vectors,
+        }
+    }
+
+    pub fn slot(&self, part: Part) -> Option<&Slot> {
+        self.slots[part as usize].get()
+    }
+
+    /// Keeps the place of a part; returns the vector with which it begins.
+    pub fn keep_slot(&self, part: Part, slot: Slot) -> u32 {
+        self.slots[part as usize].get_or_init(|| slot).begin()
+    }
+}
+
+impl Recipe {
+    fn follow(&self) -> Result<Made> {
+        match self {
+            Self::Pieces(outlined, offset) => {
+                let (contour, options) = outlined.contour(offset)?;
+                let pieces = cut(&contour, options);
+                let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
+                let extent = pieces.iter().fold(none, |m, p| {
+                    [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+                });
+                Ok(Made::Pieces(pieces, extent))
+            }
+            Self::Cones(outlined, offset, rows, relaxed) => {
+                let (contour, _) = outlined.contour(offset)?;
+                let make = if *relaxed { Cones::relaxed } else { Cones::new };
+                Ok(Made::Cones(make(&contour, *rows)?))
+            }
+            Self::Envelope(_) => Ok(Made::Envelope),
+        }
+    }
+}

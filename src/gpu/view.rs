@@ -1,0 +1,209 @@
+//! A view of the scene: rays of pixels and the depths that their hits get, from a camera or from a host's matrices.
+
+use super::output::DepthOrder;
+use crate::error::{Error, Result, Stage};
+use crate::scene::{Camera, CameraFrame};
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+/// The part of the framebuffer that is drawn, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// Left edge.
+    pub x: f64,
+    /// Upper edge; the lower one where `height` is negative.
+    pub y: f64,
+    /// Width, positive.
+    pub width: f64,
+    /// Height; negative where clip space has `y` upwards (Vulkan 1.1).
+    pub height: f64,
+}
+
+/// An eye, the ray of every pixel, and the depth of every point.
+///
+/// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j dir_y)`. Its direction is not
+/// normalised: `t` is the depth along `forward`, and the depth buffer holds `depth[0] + depth[1] / t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    pub(crate) eye: DVec3,
+    pub(crate) dir_00: DVec3,
+    pub(crate) dir_x: DVec3,
+    pub(crate) dir_y: DVec3,
+    pub(crate) forward: DVec3,
+    pub(crate) clip_from_world: DMat4,
+    pub(crate) depth: [f64; 2],
+    /// `t` of the near plane.
+    pub(crate) near: f64,
+    pub(crate) order: DepthOrder,
+    pub(crate) viewport: Viewport,
+}
+
+impl View {
+    /// The view of `camera` in pictures of `size` pixels, with depth 0 at `near` and 1 at `far`, both along the view.
+    ///
+    /// # Errors
+    /// As [`CameraFrame::new`]; [`Stage::Scene`] unless `0 < near < far`.
+    pub fn from_camera(camera: &Camera, size: (u32, u32), [near, far]: [f64; 2]) -> Result<Self> {
+        if !(near > 0.0 && far > near && far.is_finite()) {
+            return Err(wrong(format!(
+                "the depth range {near} to {far} is none; give 0 < near < far"
+            )));
+        }
+        let camera = CameraFrame::new(camera, size.0, size.1)?;
+        // depth = constant + factor / t
+        let constant = far / (far - near);
+        let factor = -far * near / (far - near);
+        let pixel = camera.right.length();
+        let right = camera.right / (pixel * pixel * camera.middle[0]);
+        let down = -camera.up / (pixel * pixel * camera.middle[1]);
+        let row = |v: DVec3| DVec4::new(v.x, v.y, v.z, -v.dot(camera.eye));
+        let depth_row = row(camera.forward);
+        let clip_from_world = DMat4::from_cols(
+            row(right),
+            row(down),
+            depth_row * constant + DVec4::W * factor,
+            depth_row,
+        )
+        .transpose();
+        Ok(Self {
+            eye: camera.eye,
+            dir_00: camera.pixel(0, 0),
+            dir_x: camera.right,
+            dir_y: -camera.up,
+            forward: camera.forward,
+            clip_from_world,
+            depth: [constant, factor],
+            near,
+            order: DepthOrder::Normal,
+            viewport: Viewport {
+                x: 0.0,
+                y: 0.0,
+                width: f64::from(size.0),
+                height: f64::from(size.1),
+            },
+        })
+    }
+
+    /// The view of a host's matrices, column vectors, clip space as Vulkan's (`0 <= z <= w`): `projection * view` takes a world
+    /// point to clip space. Jitter, off-centre frusta, infinite and reversed depth are what the projection says.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] for a projection that is not of perspective, whose near plane is not at right angles to the view, or
+    /// that mirrors the picture; for an empty viewport; for numbers that are not finite.
+    pub fn from_matrices(
+        view: DMat4,
+        projection: DMat4,
+        viewport: Viewport,
+        order: DepthOrder,
+    ) -> Result<Self> {
+        let clip_from_world = projection * view;
+        let fits = viewport.width > 0.0 && viewport.height != 0.0;
+        if !clip_from_world.is_finite() || !fits {
+            return Err(wrong(
+                "the matrices or the viewport are not of a picture; give finite numbers and a width above 0",
+            ));
+        }
+        let inverse = clip_from_world.inverse();
+        let eye = view.inverse().w_axis;
+        let eye = eye.truncate() / eye.w;
+        let rows = clip_from_world.transpose();
+        let (z_row, forward) = (rows.z_axis, rows.w_axis.truncate());
+        if forward.length() < 1e-12 || !inverse.is_finite() || !eye.is_finite() {
+            return Err(wrong(
+                "the projection is not of perspective; give one whose last row looks along the view",
+            ));
+        }
+        // clip z = constant * clip w + factor
+        let constant = z_row.truncate().dot(forward) / forward.length_squared();
+        let factor = (clip_from_world * eye.extend(1.0)).z;
+        let bent = z_row.truncate() - forward * constant;
+        if bent.length() > 1e-6 * z_row.truncate().length().max(forward.length()) {
+            return Err(wrong(
+                "the near plane is not at right angles to the view; give a projection without an oblique plane",
+            ));
+        }
+        let direction = |x: f64, y: f64| {
+            let ndc = DVec2::new(
+                2.0 * (x - viewport.x) / viewport.width - 1.0,
+                2.0 * (y - viewport.y) / viewport.height - 1.0,
+            );
+            // Clip points of one w: the eye's own image (0, 0, factor, 0) and the pixel's at w = 1.
+            let point = inverse * DVec4::new(ndc.x, ndc.y, constant, 1.0);
+            point.truncate()
+        };
+        let dir_00 = direction(0.5, 0.5);
+        let (dir_x, dir_y) = (direction(1.5, 0.5) - dir_00, direction(0.5, 1.5) - dir_00);
+        if dir_x.cross(dir_y).dot(forward) <= 0.0 {
+            return Err(wrong(
+                "the view mirrors the picture; turn one axis of the projection or of the viewport round",
+            ));
+        }
+        let near_value = f64::from(u8::from(order == DepthOrder::Reversed));
+        let near = factor / (near_value - constant);
+        if !(near > 0.0 && near.is_finite()) {
+            return Err(wrong(
+                "the near plane is not in front of the eye; give a projection for this depth order",
+            ));
+        }
+        Ok(Self {
+            eye,
+            dir_00,
+            dir_x,
+            dir_y,
+            forward,
+            clip_from_world,
+            depth: [constant, factor],
+            near,
+            order,
+            viewport,
+        })
+    }
+
+    /// From world space to clip space.
+    #[must_use]
+    pub fn clip_from_world(&self) -> DMat4 {
+        self.clip_from_world
+    }
+
+    /// The eye, world units.
+    #[must_use]
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// Where the view looks; the depth of a point is `(point - eye) . forward`.
+    #[must_use]
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
+    /// The depth that a point at `t` has in the depth buffer.
+    #[must_use]
+    pub fn depth_at(&self, t: f64) -> f64 {
+        self.depth[0] + self.depth[1] / t
+    }
+
+    /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth along the view.
+    pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
+        let from_eye = world - self.eye;
+        let depth = from_eye.dot(self.forward);
+        let beside = from_eye / depth - self.dir_00;
+        let along = |d: DVec3| beside.dot(d) / d.length_squared() + 0.5;
+        (DVec2::new(along(self.dir_x), along(self.dir_y)), depth)
+    }
+
+    /// The corners of the viewport: upper left, lower right, pixels.
+    pub(crate) fn corners(&self) -> [DVec2; 2] {
+        let v = &self.viewport;
+        let (top, bottom) = (v.y.min(v.y + v.height), v.y.max(v.y + v.height));
+        [DVec2::new(v.x, top), DVec2::new(v.x + v.width, bottom)]
+    }
+
+    /// A pixel's size at unit depth.
+    pub(crate) fn pixel_size(&self) -> f64 {
+        self.dir_x.length()
+    }
+}
+
+fn wrong(message: impl Into<String>) -> Error {
+    Error::new(Stage::Scene, message).at_key("view")
+}
