@@ -4,7 +4,7 @@ use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::Envelope;
 use crate::maps::{Bounds, MapFormat, MapSource};
-use crate::profile::{Profile, Shape};
+use crate::profile::Profile;
 use crate::scene::{CameraFrame, Object, Offset, Placement, Scene};
 use crate::settings::{Settings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
@@ -31,12 +31,7 @@ impl PartialEq for MapKey {
 
 impl MapKey {
     pub fn new(object: &Object, settings: &Settings) -> Self {
-        let outline = matches!(object.profile.shape, Shape::Outline(_));
-        let source = settings.map_source.unwrap_or(if outline {
-            MapSource::Exact
-        } else {
-            MapSource::Coverage
-        });
+        let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
         Self {
             profile: object.profile.clone(),
@@ -62,14 +57,7 @@ pub(crate) fn largest_width(offset: &Offset) -> f64 {
 /// cylinder about a centred axis, else to what of the solid the box can hold.
 fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
-    let widest = match &object.profile.shape {
-        Shape::Outline(outline) => outline
-            .loops
-            .iter()
-            .flatten()
-            .fold(0.0, |most: f64, p| most.max(p.x)),
-        Shape::Raster(_) => radius,
-    };
+    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
     let solid = widest + largest_width(&object.offset);
     if solid <= radius && axis_offset(object) == [0.0; 2] {
         return radius;

@@ -1,8 +1,8 @@
 //! What the searches that read no map are made from: the contour of each profile, as far as no offset changes it.
 
 use crate::error::{Error, Result, Stage};
-use crate::pieces::{Contour, ContourSource, CutOptions, outline_of};
-use crate::profile::{Profile, Shape};
+use crate::pieces::{Contour, ContourSource, CutOptions};
+use crate::profile::Profile;
 use crate::scene::{Object, Offset, Scene};
 use crate::settings::Settings;
 use std::sync::Arc;
@@ -67,22 +67,13 @@ impl Contours {
 
 impl ProfileContour {
     fn new(object: &Object) -> Self {
-        let (source, options) = match &object.profile.shape {
-            Shape::Outline(outline) => (ContourSource::new(outline), CutOptions::default()),
-            Shape::Raster(raster) => {
-                // The curve that the picture was drawn from, as well as its pixels tell.
-                let traced = outline_of(raster);
-                let tolerance = traced.tolerance;
-                (
-                    ContourSource::new(&traced.outline),
-                    CutOptions { tolerance },
-                )
-            }
-        };
+        let profile = object.profile.clone();
         Self {
-            profile: object.profile.clone(),
-            source,
-            options,
+            source: ContourSource::new(&profile.outline),
+            options: CutOptions {
+                tolerance: profile.tolerance,
+            },
+            profile,
         }
     }
 

@@ -331,7 +331,7 @@ fn unmapped(key: &MapKey) -> MapFacts {
         rows: key.rows,
         scale: 1.0,
         // Of a solid that is not there nothing is clipped; nothing is met either.
-        bounds: key.profile.bounds().unwrap_or(Bounds {
+        bounds: key.profile.outline.bounds().unwrap_or(Bounds {
             r_min: 0.0,
             r_max: key.profile.radius,
             z_min: 0.0,

@@ -1,17 +1,14 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::pieces::ContourSource;
-use crate::profile::{Profile, Shape};
+use crate::profile::Profile;
 use crate::scene::Offset;
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
-    let Shape::Outline(outline) = &profile.shape else {
-        unreachable!()
-    };
-    ContourSource::new(outline)
+    ContourSource::new(&profile.outline)
         .unwrap()
         .contour(offset)
         .unwrap()

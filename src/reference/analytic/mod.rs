@@ -14,7 +14,7 @@ mod roots;
 
 use super::{Hit, Ray, Surface, Trace, is_ray};
 use crate::error::{Error, Result, Stage};
-use crate::profile::{Outline, Shape};
+use crate::profile::Outline;
 use crate::scene::{Object, Offset, Scene};
 use glam::{DAffine3, DVec2, DVec3};
 use path::{Curve, Path};
@@ -103,9 +103,6 @@ impl Analytic {
 impl Solid {
     fn new(object: &Object) -> Result<Self> {
         let refuse = |what: &str| Err(Error::new(Stage::Scene, what));
-        let Shape::Outline(outline) = &object.profile.shape else {
-            return refuse("the analytic reference takes outlines only; use the bracketing one");
-        };
         if object.repeat != [1; 3] {
             return refuse("the analytic reference knows no replicas; use the bracketing one");
         }
@@ -122,7 +119,7 @@ impl Solid {
         let axis =
             DVec2::new(object.axis[0], object.axis[1]) * (2.0 * radius) - DVec2::splat(radius);
         Ok(Self {
-            outline: outline.clone(),
+            outline: object.profile.outline.clone(),
             radius,
             axis,
             pieces,

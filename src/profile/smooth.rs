@@ -75,10 +75,23 @@ const BENT: f64 = 0.75;
 const NEAR: f64 = 1.5;
 
 /// The smoothed curve's points.
-pub(super) fn smooth(trail: &Trail, graded: bool) -> Vec<DVec2> {
+pub(super) fn smooth(mut trail: Trail, graded: bool) -> Vec<DVec2> {
+    if trail.points.len() < 3 {
+        return trail.points;
+    }
     let noise = if graded { GRADED } else { BINARY };
-    let line = Line::new(trail);
-    let corners = line.corners(&noise);
+    let mut line = Line::new(&trail);
+    let mut corners = line.corners(&noise);
+    if let Some(first) = corners.first().map(|c| c.index - line.first)
+        && trail.closed
+    {
+        // A closed trail begins with a corner, so that no run passes its ends.
+        trail.points.rotate_left(first);
+        line = Line::new(&trail);
+        for corner in &mut corners {
+            corner.index -= first;
+        }
+    }
     line.runs(&corners, &noise)
 }
 
@@ -144,12 +157,17 @@ impl Line {
             if own >= noise.turn {
                 continue;
             }
-            let near = |j: usize| (self.place[j] - self.place[k]).abs() < 2.5;
-            let sharpest = (range.start..k)
-                .rev()
-                .take_while(|&j| near(j))
-                .chain((k + 1..range.end).take_while(|&j| near(j)))
-                .all(|j| turns[j] > own || (turns[j] == own && j > k));
+            let near = |j: &usize| (self.place[*j] - self.place[k]).abs() < 2.5;
+            let before = (0..k).rev().take_while(near);
+            let after = (k + 1..self.points.len()).take_while(near);
+            let sharpest = before.chain(after).all(|j| {
+                // Past its ends a closed trail goes round again.
+                let turn = match self.closed {
+                    true => turns[self.first + (j + self.count - self.first) % self.count],
+                    false => turns[j],
+                };
+                turn > own || (turn == own && j > k)
+            });
             if sharpest {
                 let point = self.sides(k, noise).and_then(meeting);
                 corners.push(Corner {
