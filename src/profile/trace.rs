@@ -39,7 +39,7 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
         return Err(empty_fault("image"));
     }
     Ok(Profile {
-        radius: nodes.size().x / raster.rows as f64,
+        radius: nodes.size().x / f64::from(raster.rows),
         raster: (!split).then_some(raster),
         ..Profile::new(outline, 0.0)
     })
@@ -81,11 +81,11 @@ impl<'a> Nodes<'a> {
     fn outline(&self) -> Outline {
         let trails = self.trails();
         let graded = self.graded(&trails);
-        let texel = 1.0 / f64::from(self.raster.rows.max(1));
+        let rows = f64::from(self.raster.rows);
         let size = self.size();
         let place = |p: DVec2| {
             let p = p.clamp(DVec2::ZERO, size);
-            DVec2::new(p.x * texel, 1.0 - p.y * texel)
+            DVec2::new(p.x / rows, 1.0 - p.y / rows)
         };
         let loops: Vec<Vec<DVec2>> = trails
             .iter()
@@ -95,7 +95,7 @@ impl<'a> Nodes<'a> {
         let mut outline = enclosed(&loops, Rule::Positive);
         // A crossing may have been rounded out of the box.
         for p in outline.loops.iter_mut().flatten() {
-            p.x = p.x.min(size.x * texel);
+            p.x = p.x.min(size.x / rows);
         }
         outline
     }
@@ -303,3 +303,6 @@ struct Links {
     links: Vec<u32>,
     closed: bool,
 }
+
+#[cfg(test)]
+mod tests;
