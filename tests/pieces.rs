@@ -246,9 +246,7 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
             2.0 * limits.1
         );
         for (kind, traced) in [("binary", binary), ("grey", bytes)] {
-            let options = CutOptions {
-                tolerance: traced.tolerance,
-            };
+            let options = CutOptions::default();
             let offset = Offset::default();
             let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, count);
             let (wrong, p99) = (

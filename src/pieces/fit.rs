@@ -15,7 +15,6 @@
 //! Stretches grow greedily: as neighbours share their ends exactly, nothing is lost at the joints.
 
 use super::{Contour, Piece};
-use crate::profile::TOLERANCE;
 use glam::DVec2;
 
 /// How contours are cut.
@@ -26,10 +25,11 @@ pub struct CutOptions {
 }
 
 impl Default for CutOptions {
-    /// What exact outlines are cut with.
+    /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much, and the 99th percentile of all
+    /// rays stays below a fiftieth.
     fn default() -> Self {
         Self {
-            tolerance: TOLERANCE,
+            tolerance: 0.0035 / 512.0,
         }
     }
 }

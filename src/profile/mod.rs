@@ -57,10 +57,6 @@ pub struct Raster {
     pub coverage: Vec<f32>,
 }
 
-/// [`Profile::tolerance`] of exact outlines: a 285th of a texel of a map of 512 rows. Along grazing rays it becomes six times as
-/// much, and the 99th percentile of all rays stays below a fiftieth.
-pub(crate) const TOLERANCE: f64 = 0.0035 / 512.0;
-
 /// A solid region of the half-plane and the radius of its shape box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
@@ -68,8 +64,6 @@ pub struct Profile {
     pub outline: Outline,
     /// `R`: the shape box is `[-R, R]^2 x [0, 1]`.
     pub radius: f64,
-    /// Largest distance, object units, by which a surface may leave the outline.
-    pub tolerance: f64,
     /// The pixels of the picture that the outline was traced from, for the map source `binary`. `None` for drawings and polygons,
     /// and for pictures whose axis is the middle of a column of pixels.
     pub raster: Option<Raster>,
@@ -128,7 +122,6 @@ impl Profile {
         Self {
             outline,
             radius,
-            tolerance: TOLERANCE,
             raster: None,
         }
     }

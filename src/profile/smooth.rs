@@ -335,11 +335,11 @@ impl Line {
             && let Some(met) = meeting(pair)
         {
             // The tip of a wedge lies far from the nearest pixel that it covers by one half.
-            let wedge = half_cosine(pair).max(0.25);
-            let reach = if sides.iter().all(Option::is_some) {
-                2.0 / wedge
-            } else {
-                2.0
+            let wedge = 2.0 / half_cosine(pair).max(0.25);
+            let reach = match sides.iter().flatten().count() {
+                2 => wedge,
+                1 if noise.curved => wedge.min(3.0),
+                _ => 2.0,
             };
             if met.distance(own) < reach {
                 return vec![met];

@@ -41,7 +41,7 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
     Ok(Profile {
         radius: nodes.size().x / f64::from(raster.rows),
         raster: (!split).then_some(raster),
-        ..Profile::new(outline, 0.0)
+        outline,
     })
 }
 
