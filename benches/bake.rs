@@ -5,7 +5,7 @@
 use divan::{Bencher, black_box};
 use revmap::maps::transform::{Surroundings, squared_to_other};
 use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis, Raster, Shape};
+use revmap::profile::{Profile, ProfileAxis};
 
 fn main() {
     // Figures that can be compared between machines: one thread.
@@ -49,14 +49,8 @@ fn image(rows: u32) -> Profile {
         })
         .chain([[0.0, 0.98], [0.0, 0.02]])
         .collect();
-    let Shape::Outline(outline) = Profile::polygon(&points, 1.0).unwrap().shape else {
-        unreachable!("a polygon is an outline")
-    };
-    let raster = outline.rasterize(rows, rows);
-    Profile {
-        shape: Shape::Raster(raster),
-        radius: 1.0,
-    }
+    let polygon = Profile::polygon(&points, 1.0).unwrap();
+    Profile::traced(polygon.outline.rasterize(rows, rows)).unwrap()
 }
 
 #[divan::bench(args = [1024, 4096], sample_count = 10)]
@@ -108,10 +102,8 @@ fn encode(bencher: Bencher, format: &MapFormat) {
 }
 
 fn form(rows: u32) -> Vec<bool> {
-    match image(rows).shape {
-        Shape::Raster(Raster { coverage, .. }) => coverage.iter().map(|&c| c > 0.5).collect(),
-        Shape::Outline(_) => Vec::new(),
-    }
+    let raster = image(rows).raster.unwrap();
+    raster.coverage.iter().map(|&c| c > 0.5).collect()
 }
 
 #[divan::bench(args = [1024, 4096], sample_count = 10)]

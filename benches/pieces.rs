@@ -8,9 +8,9 @@ mod shapes;
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
 use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, ROWS, Tables, cut, outline_of, trace_pieces,
+    ContourSource, CutOptions, Hull, HullOptions, ROWS, Tables, cut, trace_pieces,
 };
-use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
+use revmap::profile::{Outline, Profile, ProfileAxis};
 use revmap::scene::Offset;
 
 fn main() {
@@ -29,10 +29,7 @@ fn outline(name: &str) -> Outline {
             Profile::load(file, ProfileAxis::Center).unwrap()
         }
     };
-    match profile.shape {
-        Shape::Outline(outline) => outline,
-        Shape::Raster(_) => panic!("an outline is wanted"),
-    }
+    profile.outline
 }
 
 const OFFSETS: [(&str, Offset); 3] = [
@@ -128,7 +125,7 @@ fn hull(bencher: Bencher, name: &str) {
 #[divan::bench]
 fn picture(bencher: Bencher) {
     let raster = outline("king").rasterize(128, 512);
-    bencher.bench(|| outline_of(black_box(&raster)));
+    bencher.bench(|| Profile::traced(black_box(&raster).clone()));
 }
 
 /// One ray.

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 map.bounds
             );
             draw(&map, &to)?;
-            if source == MapSource::best_for(&profile) {
+            if source == MapSource::Exact {
                 map.save(
                     Projection::Cylindrical.mark_file(out.join(&*name).with_extension("png")),
                 )?;

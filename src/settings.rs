@@ -161,7 +161,7 @@ pub struct Settings {
     pub max_steps: Option<u32>,
     /// Rows of every shape map; `None` takes each object's own.
     pub map_rows: Option<u32>,
-    /// Source of distances; `None`: exact where the profile is an outline, else coverage.
+    /// Source of distances; `None`: exact.
     pub map_source: Option<MapSource>,
     /// Storage of distances.
     pub map_format: MapFormat,

@@ -5,7 +5,7 @@ mod common;
 
 use common::{draw, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::profile::{Profile, ProfileAxis, Shape};
+use revmap::profile::{Profile, ProfileAxis};
 use revmap::settings::{Settings, Solver};
 use revmap_lab::compare::{CompareOptions, compare};
 
@@ -18,27 +18,18 @@ fn drawing(name: &str) -> Profile {
 
 /// The drawing's pixels: solid where more than half of one is covered.
 fn binary(profile: &Profile) -> Profile {
-    let Shape::Outline(outline) = &profile.shape else {
-        panic!("a drawing has an outline")
-    };
     let columns = (profile.radius * f64::from(ROWS)).round() as u32;
-    let mut raster = outline.rasterize(columns, ROWS);
-    for c in &mut raster.coverage {
-        *c = if *c > 0.5 { 1.0 } else { 0.0 };
-    }
+    let raster = profile.outline.rasterize(columns, ROWS).with_levels(2);
     Profile {
-        shape: Shape::Raster(raster),
         radius: profile.radius,
+        ..Profile::traced(raster).unwrap()
     }
 }
 
 /// The drawing as it would be known at best from those pixels: exact, but for level and upright faces, which binary pixels place
 /// no better than on their own edges.
 fn known_at_best(profile: &Profile) -> Profile {
-    let Shape::Outline(outline) = &profile.shape else {
-        panic!("a drawing has an outline")
-    };
-    let mut outline = outline.clone();
+    let mut outline = profile.outline.clone();
     let snap = |v: f64| (v * f64::from(ROWS)).round() / f64::from(ROWS);
     for points in &mut outline.loops {
         let before = points.clone();
@@ -58,10 +49,7 @@ fn known_at_best(profile: &Profile) -> Profile {
             }
         }
     }
-    Profile {
-        shape: Shape::Outline(outline),
-        radius: profile.radius,
-    }
+    Profile::new(outline, profile.radius)
 }
 
 /// Every view has at most half the wrong pixels. Errors of depth are another matter: where a level or an upright face lies within its

@@ -6,7 +6,7 @@ mod common;
 use common::{device, draw, eye, scene_of, shapes};
 use glam::DVec2;
 use revmap::gpu::{self, Offscreen};
-use revmap::profile::{Outline, Profile, Shape};
+use revmap::profile::{Outline, Profile};
 use revmap::scene::{Object, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 use std::sync::Arc;
@@ -18,12 +18,8 @@ fn crossing() -> Profile {
             .map(DVec2::from)
             .to_vec()
     };
-    Profile {
-        shape: Shape::Outline(Outline {
-            loops: vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)],
-        }),
-        radius: 0.5,
-    }
+    let loops = vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)];
+    Profile::new(Outline { loops }, 0.5)
 }
 
 #[test]
@@ -91,10 +87,7 @@ fn what_has_no_contour_is_drawn_from_the_map() {
 #[test]
 fn what_has_no_surface_is_drawn_from_the_map() {
     let line = [0.1, 0.5, 0.9].map(|z| DVec2::new(0.0, z)).to_vec();
-    let line = Profile {
-        shape: Shape::Outline(Outline { loops: vec![line] }),
-        radius: 0.5,
-    };
+    let line = Profile::new(Outline { loops: vec![line] }, 0.5);
     let mut scene = scene_of(shapes::sphere(), eye(20.0, 2.2));
     let mut alone = Object::new("line", Arc::new(line));
     alone.placement.position.x = 0.3;

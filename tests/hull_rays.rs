@@ -5,7 +5,7 @@
 mod rays;
 
 use glam::{DVec2, DVec3};
-use rays::{Random, count, outline, profiles, shapes};
+use rays::{Random, count, profiles, shapes};
 use revmap::pieces::{
     ContourSource, CutOptions, Hull, HullOptions, ROWS, Record, Tables, cut, trace_pieces,
 };
@@ -24,7 +24,7 @@ fn hulls_lose_no_ray() {
             chamfer,
         };
         for (name, profile) in profiles() {
-            let source = ContourSource::new(outline(&profile)).unwrap();
+            let source = ContourSource::new(&profile.outline).unwrap();
             let pieces = cut(&source.contour(&offset).unwrap(), &CutOptions::default());
             let tables = Tables::new(&pieces, ROWS);
             let records: Vec<Record> = pieces
@@ -162,7 +162,7 @@ fn what_a_hull_leaves_out_no_ray_meets() {
     profiles.push(("torus", shapes::torus(), true));
     profiles.push(("glass", shapes::glass(), true));
     for (name, profile, hollow) in profiles {
-        let source = ContourSource::new(outline(&profile)).unwrap();
+        let source = ContourSource::new(&profile.outline).unwrap();
         let contour = source.contour(&Offset::default()).unwrap();
         let pieces = cut(&contour, &CutOptions::default());
         let tables = Tables::new(&pieces, 64);

@@ -6,10 +6,10 @@
 mod rays;
 
 use glam::{DVec2, DVec3};
-use rays::{Random, count, outline, profiles};
+use rays::{Random, count, profiles};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, outline_of, trace_pieces};
-use revmap::profile::{Outline, Profile, Shape};
+use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, trace_pieces};
+use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
@@ -25,7 +25,7 @@ struct Tally {
 /// Rays from cameras all round, above and below.
 fn shoot(profile: &Profile, offset: Offset, count: usize) -> (Tally, String) {
     let options = CutOptions::default();
-    shoot_at(profile, outline(profile), &options, offset, count)
+    shoot_at(profile, &profile.outline, &options, offset, count)
 }
 
 /// The same, with pieces made from `own`.
@@ -229,20 +229,13 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
     let mut failures = Vec::new();
     for (name, profile) in profiles() {
         let columns = (profile.radius * 512.0).round() as u32;
-        let grey = outline(&profile).rasterize(columns, 512);
-        let mut binary = grey.clone();
-        for c in &mut binary.coverage {
-            *c = if *c > 0.5 { 1.0 } else { 0.0 };
-        }
-        let mut bytes = grey;
-        for c in &mut bytes.coverage {
-            *c = (*c * 255.0).round() / 255.0;
-        }
-        let picture = Profile {
-            shape: Shape::Raster(binary.clone()),
+        let grey = profile.outline.rasterize(columns, 512);
+        let picture = |levels| Profile {
             radius: profile.radius,
+            ..Profile::traced(grey.clone().with_levels(levels)).unwrap()
         };
-        let theirs = papers(&profile, &picture, count);
+        let (binary, bytes) = (picture(2), picture(256));
+        let theirs = papers(&profile, &binary, count);
         let limits = (
             0.5 * theirs.wrong as f64 / theirs.hits as f64,
             0.5 * quantile(&theirs.depth, 0.99),
@@ -252,11 +245,8 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
             200.0 * limits.0,
             2.0 * limits.1
         );
-        for (kind, raster) in [("binary", binary), ("grey", bytes)] {
-            let traced = outline_of(&raster);
-            let options = CutOptions {
-                tolerance: traced.tolerance,
-            };
+        for (kind, traced) in [("binary", binary), ("grey", bytes)] {
+            let options = CutOptions::default();
             let offset = Offset::default();
             let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, count);
             let (wrong, p99) = (
@@ -294,7 +284,7 @@ fn eyes_inside_and_boxes_that_cut() {
     for (name, mut profile) in profiles() {
         for (radius, axis) in [(profile.radius, 0.5), (0.2, 0.5), (0.3, 0.8)] {
             profile.radius = radius;
-            let source = ContourSource::new(outline(&profile)).unwrap();
+            let source = ContourSource::new(&profile.outline).unwrap();
             let contour = source.contour(&Offset::default()).unwrap();
             let tables = Tables::new(&cut(&contour, &CutOptions::default()), ROWS);
             let mut object = Object::new("test", Arc::new(profile.clone()));

@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis, Shape};
+use revmap::profile::{Profile, ProfileAxis};
 use std::path::Path;
 
 fn asset(name: &str) -> Profile {
@@ -57,52 +57,40 @@ fn real_profiles_are_plausible() {
     ] {
         let profile = asset(name);
         assert!((profile.radius - radius).abs() < 1e-12, "{name}");
-        let bounds = profile.bounds().unwrap();
+        let bounds = profile.outline.bounds().unwrap();
         assert_eq!(bounds.r_min, 0.0, "{name}");
         assert!(
             bounds.r_max < radius && bounds.z_min > 0.0 && bounds.z_max < 1.0,
             "{name}: {bounds:?}"
         );
-        let solid = match &profile.shape {
-            Shape::Outline(o) => o.area(),
-            Shape::Raster(r) => {
-                r.coverage.iter().map(|&c| f64::from(c)).sum::<f64>() / f64::from(r.rows).powi(2)
-            }
-        };
+        let solid = profile.outline.area();
         assert!((solid - area).abs() < 0.01 * area, "{name}: {solid}");
     }
 }
 
-/// The same drawing as an image: its coverage map must agree with its exact map, at the image's resolution and at others.
+/// The same drawing as an image: its map must agree with the drawing's, at the image's resolution and at others.
 #[test]
 fn an_image_of_a_drawing_gives_its_distances() {
     for name in ["pawn.svg", "bishop.svg", "king.svg", "rook.svg"] {
         let drawing = asset(name);
-        let Shape::Outline(outline) = &drawing.shape else {
-            panic!("{name} is a drawing")
-        };
         let rows = 600;
         let columns = (drawing.radius * f64::from(rows)).ceil() as u32;
-        let mut raster = outline.rasterize(columns, rows);
-        for c in &mut raster.coverage {
-            *c = (*c * 255.0).round() / 255.0;
-        }
+        let raster = drawing.outline.rasterize(columns, rows).with_levels(256);
         let image = Profile {
-            shape: Shape::Raster(raster),
             radius: drawing.radius,
+            ..Profile::traced(raster).unwrap()
         };
         for rows in [300, 512, 600] {
             let exact =
                 ShapeMap::bake(&drawing, &BakeOptions::new(MapSource::Exact, rows)).unwrap();
-            let coverage =
-                ShapeMap::bake(&image, &BakeOptions::new(MapSource::Coverage, rows)).unwrap();
-            let errors = exact.distance.iter().zip(&coverage.distance);
+            let traced = ShapeMap::bake(&image, &BakeOptions::new(MapSource::Exact, rows)).unwrap();
+            let errors = exact.distance.iter().zip(&traced.distance);
             let errors: Vec<f64> = errors
                 .map(|(a, b)| f64::from(a - b).abs() * 600.0)
                 .collect();
             let max = errors.iter().copied().fold(0.0, f64::max);
-            // A pixel holds a corner only as the line that cuts off as much; inside the solid, whole wedges look to such a corner.
-            assert!(max < 1.1, "{name} at {rows}: {max} pixels");
+            // The bottom of a sharp notch lies beyond the last pixel that is half covered; inside the solid, whole wedges look to it.
+            assert!(max < 1.7, "{name} at {rows}: {max} pixels");
             let outside: Vec<f64> = errors
                 .iter()
                 .zip(&exact.form)
@@ -110,7 +98,7 @@ fn an_image_of_a_drawing_gives_its_distances() {
                 .map(|(e, _)| *e)
                 .collect();
             let rms = (outside.iter().map(|e| e * e).sum::<f64>() / outside.len() as f64).sqrt();
-            assert!(rms < 0.03, "{name} at {rows}: rms {rms} pixels");
+            assert!(rms < 0.045, "{name} at {rows}: rms {rms} pixels");
         }
     }
 }
@@ -137,7 +125,7 @@ fn odd_widths_stay_where_they_are() {
         picture.save(&file).unwrap();
         let profile = Profile::load(&file, ProfileAxis::Center).unwrap();
         assert_eq!(profile.radius, f64::from(width) / 160.0);
-        maps.push(ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Coverage, 160)).unwrap());
+        maps.push(ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 160)).unwrap());
     }
     for map in maps {
         let mut worst = 0.0f64;

@@ -8,7 +8,7 @@ use common::{draw, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::MapFormat;
-use revmap::profile::{Outline, Profile, Shape};
+use revmap::profile::{Outline, Profile};
 use revmap::scene::{Object, Placement, Scene};
 use revmap::settings::{Settings, Solver};
 use std::sync::Arc;
@@ -29,9 +29,6 @@ fn settings(solver: Solver) -> Settings {
 
 /// Turned upside down within its box.
 fn flipped(profile: &Profile) -> Profile {
-    let Shape::Outline(outline) = &profile.shape else {
-        unreachable!("tests turn polygons")
-    };
     let turn = |points: &Vec<glam::DVec2>| {
         // The other way round again, so that loops keep their sense.
         let turned = points
@@ -40,11 +37,8 @@ fn flipped(profile: &Profile) -> Profile {
             .map(|p| glam::DVec2::new(p.x, 1.0 - p.y));
         turned.collect()
     };
-    let loops = outline.loops.iter().map(turn).collect();
-    Profile {
-        shape: Shape::Outline(Outline { loops }),
-        radius: profile.radius,
-    }
+    let loops = profile.outline.loops.iter().map(turn).collect();
+    Profile::new(Outline { loops }, profile.radius)
 }
 
 /// The box's cells as objects of their own, one for each way of being reflected, an instance for each cell.

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use glam::{DVec2, DVec3};
-use revmap::profile::{Profile, Shape};
 use revmap::scene::{CameraFrame, Scene, file};
 use std::path::{Path, PathBuf};
 
@@ -24,25 +23,11 @@ fn scenes() -> Vec<(String, Scene)> {
     files.into_iter().map(load).collect()
 }
 
-/// The circles on which the outline's points turn; of a picture, those of the rectangle that holds it.
-fn circles(profile: &Profile) -> Vec<DVec2> {
-    match &profile.shape {
-        Shape::Outline(outline) => outline.loops.concat(),
-        Shape::Raster(raster) => {
-            let bounds = raster.bounds().unwrap();
-            vec![
-                DVec2::new(bounds.r_max, bounds.z_min),
-                DVec2::new(bounds.r_max, bounds.z_max),
-            ]
-        }
-    }
-}
-
 /// Points all around each solid.
 fn rims(scene: &Scene) -> Vec<DVec3> {
     let mut points = Vec::new();
     for object in &scene.objects {
-        for circle in circles(&object.profile) {
+        for circle in object.profile.outline.loops.concat() {
             for placement in object.placements() {
                 for k in 0..64 {
                     let turn = DVec2::from_angle(f64::from(k) / 64.0 * std::f64::consts::TAU);
@@ -94,7 +79,7 @@ fn pieces_stand_on_their_board() {
     let scene = file::load(folder().join("chess.toml"), &[]).unwrap();
     let mut pieces = 0;
     for object in scene.objects.iter().filter(|o| o.file.is_some()) {
-        let foot = object.profile.bounds().unwrap().z_min;
+        let foot = object.profile.outline.bounds().unwrap().z_min;
         for placement in object.placements() {
             let z = placement.position.z + placement.scale.z * foot;
             assert!(z.abs() < 0.005, "{}: its foot is at {z:.4}", object.name);

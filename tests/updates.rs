@@ -4,9 +4,12 @@
 mod common;
 
 use common::{device, draw, eye, placement, scene_of, shapes};
+use revmap::error::Stage;
 use revmap::frame::Frame;
 use revmap::gpu::{DrawPath, Offscreen};
-use revmap::scene::{Object, Scene};
+use revmap::maps::MapSource;
+use revmap::profile::Profile;
+use revmap::scene::{Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
@@ -70,6 +73,35 @@ fn what_is_refused_changes_nothing() {
             let after = drawn(&mut renderer);
             assert_eq!(before.first_difference(&after), None, "{word}");
         }
+    }
+    device().check().unwrap();
+}
+
+/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows only when it is baked: the frame
+/// before is drawn on.
+#[test]
+fn a_map_that_cannot_be_baked_changes_nothing() {
+    let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
+    for stage in STAGES {
+        let settings = Settings {
+            map_source: Some(MapSource::Binary),
+            ..settings(stage)
+        };
+        let mut scene = scene_of(thin.clone(), eye(25.0, 2.2));
+        let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
+        let before = drawn(&mut renderer);
+        scene.shadow = Shadow::Soft;
+        let error = renderer.update(&scene).unwrap_err();
+        assert_eq!(error.stage, Stage::Map, "{error}");
+        let after = drawn(&mut renderer);
+        assert_eq!(before.first_difference(&after), None);
+        scene.shadow = Shadow::Off;
+        scene.objects[0].offset.extend = 0.02;
+        renderer.update(&scene).unwrap();
+        let mended = drawn(&mut renderer);
+        let fresh = draw(&scene, &settings);
+        assert_eq!(fresh.first_difference(&mended), None);
+        assert!((0..fresh.pixels()).any(|i| fresh.hits(i)));
     }
     device().check().unwrap();
 }

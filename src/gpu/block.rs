@@ -6,7 +6,6 @@ use super::solid::MapFacts;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::maps::MapFormat;
-use crate::profile::Shape;
 use crate::scene::{Lighting, Object, Offset, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
@@ -21,14 +20,7 @@ pub(crate) fn largest_width(offset: &Offset) -> f64 {
 /// cylinder about a centred axis, else to what of the solid the box can hold.
 pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
-    let widest = match &object.profile.shape {
-        Shape::Outline(outline) => outline
-            .loops
-            .iter()
-            .flatten()
-            .fold(0.0, |most: f64, p| most.max(p.x)),
-        Shape::Raster(_) => radius,
-    };
+    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
     let solid = widest + largest_width(&object.offset);
     if solid <= radius && axis_offset(object) == [0.0; 2] {
         return radius;

@@ -9,8 +9,8 @@ use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::Envelope;
 use crate::maps::{ArcLength, BakeOptions, Bounds, MapFormat, MapSource, ShapeMap};
-use crate::pieces::{Contour, ContourSource, CutOptions, outline_of};
-use crate::profile::{Profile, Shape};
+use crate::pieces::{Contour, ContourSource};
+use crate::profile::Profile;
 use crate::scene::{Object, Offset};
 use crate::settings::SearchSettings;
 use ash::vk;
@@ -36,7 +36,7 @@ pub(crate) struct Solid {
 /// What of a profile does not depend on the offset.
 pub(crate) struct Outlined {
     pub profile: Arc<Profile>,
-    source: OnceLock<Result<(ContourSource, CutOptions)>>,
+    source: OnceLock<Result<ContourSource>>,
 }
 
 /// A table of weak references that forgets the dead.
@@ -210,22 +210,16 @@ fn bits(offset: &Offset) -> [u64; 3] {
 }
 
 impl Outlined {
-    /// The contour under `offset`, and how closely it is to be followed.
+    /// The contour under `offset`.
     ///
     /// # Errors
     /// Where the profile has none, or it does not close.
-    pub fn contour(&self, offset: &Offset) -> Result<(Contour, &CutOptions)> {
-        let source = self.source.get_or_init(|| match &self.profile.shape {
-            Shape::Outline(outline) => Ok((ContourSource::new(outline)?, CutOptions::default())),
-            Shape::Raster(raster) => {
-                let traced = outline_of(raster);
-                let tolerance = traced.tolerance;
-                let source = ContourSource::new(&traced.outline)?;
-                Ok((source, CutOptions { tolerance }))
-            }
-        });
+    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
+        let source = self
+            .source
+            .get_or_init(|| ContourSource::new(&self.profile.outline));
         match source {
-            Ok((source, options)) => Ok((source.contour(offset)?, options)),
+            Ok(source) => source.contour(offset),
             Err(error) => Err(error.clone()),
         }
     }
@@ -234,12 +228,7 @@ impl Outlined {
 impl MapKey {
     /// The map that `object` wants; `columns` as many as its solid needs under its offset.
     pub fn new(object: &Object, settings: &SearchSettings) -> Self {
-        let outline = matches!(object.profile.shape, Shape::Outline(_));
-        let source = settings.map_source.unwrap_or(if outline {
-            MapSource::Exact
-        } else {
-            MapSource::Coverage
-        });
+        let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
         let reach = super::block::reach(object, 2.0 / f64::from(rows.max(1)));
         Self {
@@ -267,7 +256,7 @@ impl MapKey {
             rows: self.rows,
             scale: 1.0,
             // Of a solid that is not there nothing is clipped; nothing is met either.
-            bounds: profile.bounds().unwrap_or(Bounds {
+            bounds: profile.outline.bounds().unwrap_or(Bounds {
                 r_min: 0.0,
                 r_max: profile.radius,
                 z_min: 0.0,

@@ -6,7 +6,7 @@ use super::solid::Outlined;
 use super::tables::GpuTables;
 use crate::error::Result;
 use crate::maps::envelope::Envelope;
-use crate::pieces::{Cones, Piece, cut};
+use crate::pieces::{Cones, CutOptions, Piece, cut};
 use crate::scene::Offset;
 use std::sync::{Arc, OnceLock};
 
@@ -129,8 +129,8 @@ impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
             Self::Pieces(outlined, offset) => {
-                let (contour, options) = outlined.contour(offset)?;
-                let pieces = cut(&contour, options);
+                let contour = outlined.contour(offset)?;
+                let pieces = cut(&contour, &CutOptions::default());
                 let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
                 let extent = pieces.iter().fold(none, |m, p| {
                     [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
@@ -138,7 +138,7 @@ impl Recipe {
                 Ok(Made::Pieces(pieces, extent))
             }
             Self::Cones(outlined, offset, rows, relaxed) => {
-                let (contour, _) = outlined.contour(offset)?;
+                let contour = outlined.contour(offset)?;
                 let make = if *relaxed { Cones::relaxed } else { Cones::new };
                 Ok(Made::Cones(make(&contour, *rows)?))
             }

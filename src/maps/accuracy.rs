@@ -2,7 +2,7 @@
 
 use super::{BakeOptions, MapFormat, MapSource, ShapeMap};
 use crate::error::Result;
-use crate::profile::{Profile, Raster, Shape};
+use crate::profile::Profile;
 use glam::DVec2;
 
 /// Errors of a shape map against exact distances.
@@ -57,37 +57,18 @@ impl Disc {
         Profile::polygon(&points, 1.0)
     }
 
-    /// The disc as an anti-aliased image of `rows` x `rows` pixels with 8 bits each.
-    ///
-    /// # Errors
-    /// None for discs within the half-plane.
-    pub fn image(&self, rows: u32) -> Result<Profile> {
-        let mut profile = self.polygon(1 << 16)?;
-        if let Shape::Outline(outline) = &profile.shape {
-            let exact = outline.rasterize(rows, rows);
-            let byte = |c: f32| (c * 255.0).round() / 255.0;
-            let coverage = exact.coverage.iter().map(|&c| byte(c)).collect();
-            profile.shape = Shape::Raster(Raster { coverage, ..exact });
-        }
-        Ok(profile)
-    }
-
     /// Signed distance of a point, object units.
     #[must_use]
     pub fn distance(&self, p: DVec2) -> f64 {
         p.distance(self.center) - self.radius
     }
 
-    /// Bakes the disc from a source and measures it: from the image for `binary` and `coverage`, from the polygon for `exact`.
+    /// Bakes the disc from a source and measures it.
     ///
     /// # Errors
     /// Those of [`ShapeMap::bake`].
     pub fn errors(&self, source: MapSource, rows: u32) -> Result<MapErrors> {
-        let profile = match source {
-            MapSource::Exact => self.polygon(1 << 16)?,
-            MapSource::Binary | MapSource::Coverage => self.image(rows)?,
-        };
-        let map = ShapeMap::bake(&profile, &BakeOptions::new(source, rows))?;
+        let map = ShapeMap::bake(&self.polygon(1 << 16)?, &BakeOptions::new(source, rows))?;
         Ok(self.measure(&map))
     }
 

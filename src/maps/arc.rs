@@ -2,7 +2,7 @@
 
 use super::nearest::for_each_texel;
 use crate::error::{Error, Result, Stage};
-use crate::profile::{Outline, Profile, Segment, Shape};
+use crate::profile::{Outline, Profile, Segment};
 use glam::DVec2;
 
 /// `eta`, the length along the solid's contour as a fraction of the whole, at every point of its surface.
@@ -35,24 +35,16 @@ pub struct ArcTable {
 }
 
 impl ArcLength {
-    /// Measures a profile's contour; of a raster, the line along which its coverage is one half.
+    /// Measures a profile's contour.
     ///
     /// # Errors
     /// [`Stage::Map`]: the profile has no surface.
     pub fn new(profile: &Profile) -> Result<Self> {
-        let traced;
-        let outline = match &profile.shape {
-            Shape::Outline(outline) => outline,
-            Shape::Raster(raster) => {
-                traced = raster.outline();
-                &traced
-            }
-        };
         let mut this = Self {
             segments: Vec::new(),
             eta: Vec::new(),
         };
-        for chain in chains(outline) {
+        for chain in chains(&profile.outline) {
             this.add(&chain);
         }
         if this.segments.is_empty() {
@@ -208,7 +200,6 @@ fn upwards(mut chain: Vec<DVec2>) -> Vec<DVec2> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::profile::Raster;
 
     fn arc(points: &[[f64; 2]]) -> ArcLength {
         ArcLength::new(&Profile::polygon(points, 0.5).unwrap()).unwrap()
@@ -288,15 +279,8 @@ mod tests {
     #[test]
     fn a_raster_has_the_same_lengths() {
         let cone = Profile::polygon(&[[0.0, 0.1], [0.4, 0.1], [0.0, 0.9]], 0.5).unwrap();
-        let Shape::Outline(outline) = &cone.shape else {
-            unreachable!("a polygon is an outline")
-        };
-        let raster: Raster = outline.rasterize(128, 256);
-        let by_pixels = ArcLength::new(&Profile {
-            shape: Shape::Raster(raster),
-            radius: 0.5,
-        })
-        .unwrap();
+        let picture = Profile::traced(cone.outline.rasterize(128, 256)).unwrap();
+        let by_pixels = ArcLength::new(&picture).unwrap();
         let exact = ArcLength::new(&cone).unwrap();
         for k in 1..20 {
             let t = f64::from(k) / 20.0;

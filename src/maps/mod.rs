@@ -4,7 +4,6 @@ pub mod accuracy;
 mod arc;
 mod binary;
 mod color;
-mod coverage;
 mod displacement;
 pub(crate) mod envelope;
 mod exact;
@@ -25,13 +24,15 @@ pub use files::Projection;
 pub use store::EncodedMap;
 
 /// Where distances come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MapSource {
     /// The papers': exact Euclidean distance to the nearest solid pixel's centre of a binary image.
     Binary,
-    /// Sub-texel distances from the coverage of anti-aliased edge pixels.
+    /// What an anti-aliased picture of the map's own size can tell: the outline is rasterised to 8 bits of coverage and traced
+    /// again, and distances are measured to that.
     Coverage,
     /// Exact distance to the outline's segments.
+    #[default]
     Exact,
 }
 

@@ -1,22 +1,11 @@
 //! Baking a shape map, and reading it as the shaders do.
 
-use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, coverage, exact};
+use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, exact};
 use crate::error::{Error, Result, Stage};
 use crate::pictures::MAX_SIDE;
-use crate::profile::{Profile, Shape};
+use crate::profile::{Outline, Profile};
 use glam::DVec2;
 use std::borrow::Cow;
-
-impl MapSource {
-    /// The most accurate source for a profile: exact for an outline, coverage for a raster.
-    #[must_use]
-    pub fn best_for(profile: &Profile) -> Self {
-        match profile.shape {
-            Shape::Outline(_) => Self::Exact,
-            Shape::Raster(_) => Self::Coverage,
-        }
-    }
-}
 
 impl BakeOptions {
     /// Baking with `rows` rows over the profile's own box.
@@ -33,18 +22,16 @@ impl BakeOptions {
 impl ShapeMap {
     /// Measures the signed distances to a profile's boundary on a grid of `options.rows` rows.
     ///
-    /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The axis is no boundary; a raster
-    /// ends at its right, top and bottom borders.
+    /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The axis is no boundary.
     ///
-    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers); a raster or outline is first turned into solid and
-    ///   empty texels, solid what is covered by more than one half.
-    /// * [`MapSource::Coverage`]: to the edge found again from anti-aliased pixels; a raster's own pixels are used, whatever
-    ///   `rows` is.
+    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid where more than half of it is covered:
+    ///   by the picture's pixels, if the profile has them, else by the outline.
+    /// * [`MapSource::Coverage`]: to the outline as an 8-bit picture of the map's size tells it.
     /// * [`MapSource::Exact`]: to the outline's segments.
     ///
     /// # Errors
-    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than 16384 columns, a raster with
-    /// the source `exact`, a shape that leaves no texel solid.
+    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than 16384 columns, a shape
+    /// that leaves no texel solid.
     pub fn bake(profile: &Profile, options: &BakeOptions) -> Result<Self> {
         let BakeOptions {
             source,
@@ -72,29 +59,17 @@ impl ShapeMap {
         }
         let columns = wanted as u32;
         let (width, height) = (columns as usize, rows as usize);
-        let raster = || match &profile.shape {
-            Shape::Outline(outline) => Cow::Owned(outline.rasterize(columns, rows)),
-            Shape::Raster(r) if source == MapSource::Coverage => Cow::Borrowed(r),
-            Shape::Raster(r) if (r.columns, r.rows) == (columns, rows) => Cow::Borrowed(r),
-            Shape::Raster(r) => Cow::Owned(r.resample(columns, rows)),
-        };
-        let (distance, bounds) = match (source, &profile.shape) {
-            (MapSource::Exact, Shape::Outline(outline)) => {
-                (exact::distances(outline, width, height), outline.bounds())
-            }
-            (MapSource::Exact, Shape::Raster(_)) => {
-                return Err(fault(
-                    "an image has no exact outline; take the map source `coverage` or `binary`, or give a drawing or \
-                     polygon"
-                        .into(),
-                ));
-            }
-            (MapSource::Coverage, _) => {
-                let raster = raster();
-                (coverage::distances(&raster, width, height), raster.bounds())
-            }
-            (MapSource::Binary, _) => {
-                let raster = raster();
+        let outline = &profile.outline;
+        let to = |outline: &Outline| (exact::distances(outline, width, height), outline.bounds());
+        let (distance, bounds) = match source {
+            MapSource::Exact => to(outline),
+            MapSource::Coverage => to(&outline.rasterize(columns, rows).with_levels(256).outline()),
+            MapSource::Binary => {
+                let raster = match &profile.raster {
+                    Some(r) if (r.columns, r.rows) == (columns, rows) => Cow::Borrowed(r),
+                    Some(r) => Cow::Owned(r.resample(columns, rows)),
+                    None => Cow::Owned(outline.rasterize(columns, rows)),
+                };
                 (binary::distances(&raster), raster.bounds())
             }
         };

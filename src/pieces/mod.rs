@@ -13,12 +13,11 @@
 //!
 //! For solids that are single-valued in z a row of empty cones does as well ([`Cones`]).
 //!
-//! For the rasteriser the pieces are wrapped in shells ([`hull`]); pictures become outlines first ([`outline_of`]).
+//! For the rasteriser the pieces are wrapped in shells ([`hull`]).
 //!
 //! Data flows one way: outline → contour → pieces → rows and hull. All of it is cheap enough to be made anew whenever the
 //! offset moves; what depends on the outline alone is prepared once, in the [`ContourSource`].
 
-mod bitmap;
 mod chain;
 pub mod cones;
 mod contour;
@@ -28,11 +27,9 @@ mod offset;
 pub mod rows;
 mod shell;
 mod sight;
-mod smooth;
 mod tree;
 pub mod walk;
 
-pub use bitmap::{Traced, outline_of};
 pub use chain::Chain;
 pub use cones::Cones;
 pub use contour::{Contour, ContourSource};

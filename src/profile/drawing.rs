@@ -12,7 +12,7 @@ use super::svg::{
     affine, curve, fault, gradient, has_translucency, magnification, parse, rule, stroke_style,
     unsupported,
 };
-use super::{Outline, Profile, ProfileAxis, Shape};
+use super::{Outline, Profile, ProfileAxis};
 use crate::error::Result;
 use crate::pictures::luminance;
 use glam::DVec2;
@@ -69,10 +69,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
     }
-    Ok(Profile {
-        shape: Shape::Outline(outline),
-        radius,
-    })
+    Ok(Profile::new(outline, radius))
 }
 
 /// Leaves out loops thinner than the flattening can tell: where shapes abut, rounding leaves cracks and specks between them, and each

@@ -1,7 +1,6 @@
 //! Profiles from pictures: what is dark is solid.
 
-use super::interface::Interface;
-use super::{Profile, ProfileAxis, Raster, Shape};
+use super::{Profile, ProfileAxis, Raster, trace};
 use crate::error::{Error, Result, Stage};
 use crate::maps::header::Header;
 use crate::pictures::{Pixels, Samples, decode, luminance};
@@ -18,18 +17,12 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
         return baked(bytes, &header);
     }
     let dark = read_darkness(bytes)?;
+    let split = axis == ProfileAxis::Center && !dark.columns.is_multiple_of(2);
     let raster = half_plane(dark, axis);
-    let solid = raster.coverage.par_iter().filter(|&&c| c > 0.5).count();
-    if solid == 0 {
-        return Err(empty_fault("image"));
-    }
-    if solid == raster.coverage.len() {
+    if raster.coverage.par_iter().all(|&c| c > 0.5) {
         return Err(full_fault("image"));
     }
-    Ok(Profile {
-        radius: f64::from(raster.columns) / f64::from(raster.rows),
-        shape: Shape::Raster(raster),
-    })
+    trace::profile(raster, split)
 }
 
 /// The form of a shape map in its file.
@@ -46,7 +39,7 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
     };
     Ok(Profile {
         radius: header.number("radius")?,
-        shape: Shape::Raster(raster),
+        ..Profile::traced(raster)?
     })
 }
 
@@ -123,27 +116,22 @@ fn color<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -
         .collect()
 }
 
-/// The part of the picture right of the axis.
-///
-/// With the axis in the middle of an odd width, half a pixel stands on it. Each pixel is then split into 2 x 2, anti-aliased
-/// ones along the edge that runs through them, so that texels stay square and nothing moves.
+/// The part of the picture right of the axis. With the axis in the middle of an odd width, the first column is the one that the
+/// axis splits.
 fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
-    match axis {
-        ProfileAxis::Left => dark,
-        ProfileAxis::Center if dark.columns.is_multiple_of(2) => {
-            let columns = dark.columns / 2;
-            let coverage = dark
-                .coverage
-                .par_chunks_exact(dark.columns as usize)
-                .flat_map_iter(|row| row[columns as usize..].iter().copied())
-                .collect();
-            Raster {
-                columns,
-                rows: dark.rows,
-                coverage,
-            }
-        }
-        ProfileAxis::Center => Interface::of_picture(&dark).split_right_half(&dark),
+    if axis == ProfileAxis::Left {
+        return dark;
+    }
+    let first = dark.columns as usize / 2;
+    let coverage = dark
+        .coverage
+        .par_chunks_exact(dark.columns as usize)
+        .flat_map_iter(|row| row[first..].iter().copied())
+        .collect();
+    Raster {
+        columns: dark.columns.div_ceil(2),
+        rows: dark.rows,
+        coverage,
     }
 }
 
@@ -161,10 +149,7 @@ mod tests {
     }
 
     fn raster(bytes: &[u8], axis: ProfileAxis) -> Raster {
-        match profile(bytes, axis).unwrap().shape {
-            Shape::Raster(r) => r,
-            Shape::Outline(_) => panic!("an image is a raster"),
-        }
+        profile(bytes, axis).unwrap().raster.unwrap()
     }
 
     /// A picture with a known darkness per pixel, in every kind of pixel that PNG knows.
@@ -251,11 +236,12 @@ mod tests {
         });
         let p = profile(&png(odd), ProfileAxis::Center).unwrap();
         assert!((p.radius - 5.0 / 6.0).abs() < 1e-15);
-        let Shape::Raster(r) = p.shape else { panic!() };
-        assert_eq!((r.columns, r.rows), (5, 6));
-        for (k, &c) in r.coverage.iter().enumerate() {
-            let solid = k / 5 >= 2 && k % 5 < 3;
-            assert_eq!(c, if solid { 1.0 } else { 0.0 }, "pixel {k}");
+        // One column and a half, two rows from the floor.
+        assert_eq!(p.raster, None);
+        let b = p.outline.bounds().unwrap();
+        let found = [b.r_min, b.r_max, b.z_min, b.z_max];
+        for (found, wanted) in found.into_iter().zip([0.0, 0.5, 0.0, 2.0 / 3.0]) {
+            assert!((found - wanted).abs() < 0.12 / 3.0, "{b:?}");
         }
     }
 

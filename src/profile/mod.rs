@@ -1,28 +1,27 @@
 //! A **profile**: the solid region of the meridian half-plane that is turned about the axis.
 //!
 //! Coordinates are `(r, z)` in object units: the axis is `r = 0`, the shape box reaches from `z = 0` to `z = 1`
-//! and to the radius `R`. A profile comes from an image, a drawing or a polygon, and is kept in one of two forms:
-//! an exact [`Outline`], or a [`Raster`] of coverages.
+//! and to the radius `R`. A profile comes from a picture, a drawing or a polygon. It becomes one [`Outline`], and all that follows
+//! (maps, arc lengths, surfaces, meshes, the reference) reads this outline.
 
 mod area;
-mod contour;
 #[cfg(feature = "drawing")]
 mod drawing;
 pub(crate) mod image;
-pub(crate) mod interface;
 mod outline;
 #[cfg(feature = "drawing")]
 mod paint;
 mod polygon;
 mod raster;
 mod region;
+mod smooth;
 #[cfg(feature = "drawing")]
 mod svg;
+mod trace;
 
 pub use outline::Segment;
 
 use crate::error::{Error, Result, Stage};
-use crate::maps::Bounds;
 use glam::DVec2;
 use std::path::Path;
 
@@ -58,30 +57,24 @@ pub struct Raster {
     pub coverage: Vec<f32>,
 }
 
-/// The form in which a profile is known.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// Exactly, from a polygon or a drawing with its curves flattened.
-    Outline(Outline),
-    /// By pixels, from an image.
-    Raster(Raster),
-}
-
 /// A solid region of the half-plane and the radius of its shape box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// The region.
-    pub shape: Shape,
+    /// The region's boundary.
+    pub outline: Outline,
     /// `R`: the shape box is `[-R, R]^2 x [0, 1]`.
     pub radius: f64,
+    /// The pixels of the picture that the outline was traced from, for the map source `binary`. `None` for drawings and polygons,
+    /// and for pictures whose axis is the middle of a column of pixels.
+    pub raster: Option<Raster>,
 }
 
 impl Profile {
     /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (feature `drawing`; also gzip-compressed).
     ///
-    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over white. Pictures become a
-    /// [`Raster`] of how dark each pixel is, drawings an [`Outline`] whose curves are flattened within 1e-5 of the
-    /// height. `R` is width / height with the axis at the left, half of that with it in the middle.
+    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over white. Pictures are traced as
+    /// by [`Profile::traced`]. The curves of drawings are flattened within 1e-5 of the height. `R` is width / height with the
+    /// axis at the left, half of that with it in the middle.
     ///
     /// # Errors
     /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor
@@ -123,13 +116,25 @@ impl Profile {
         polygon::profile(points, radius)
     }
 
-    /// The rectangle that the solid occupies; of a raster, its edge pixels included.
+    /// A profile with a known outline. The loops are taken as they are: see [`Outline`] for what they must be.
     #[must_use]
-    pub fn bounds(&self) -> Option<Bounds> {
-        match &self.shape {
-            Shape::Outline(outline) => outline.bounds(),
-            Shape::Raster(raster) => raster.bounds(),
+    pub fn new(outline: Outline, radius: f64) -> Self {
+        Self {
+            outline,
+            radius,
+            raster: None,
         }
+    }
+
+    /// A profile from the right half of a picture, `R` = columns / rows.
+    ///
+    /// The outline is the curve that the pixels tell: where coverage passes one half, freed from the noise of the pixels, corners
+    /// found again. It stays within the picture. Beyond the picture's upper, lower and right border all is empty.
+    ///
+    /// # Errors
+    /// [`Stage::Profile`]: no pixel is more than half covered, or the list of coverages has not `columns * rows` values.
+    pub fn traced(raster: Raster) -> Result<Self> {
+        trace::profile(raster, false)
     }
 }
 

@@ -1,11 +1,9 @@
 //! Profiles from a list of `[r, z]` points.
 
-use super::region::{Grid, Region, Rule};
-use super::{Outline, Profile, Shape};
+use super::Profile;
+use super::region::{Rule, enclosed};
 use crate::error::{Error, Result, Stage};
 use glam::DVec2;
-use i_overlay::i_float::int::point::IntPoint;
-use std::collections::HashMap;
 
 /// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite 0, and a sliver along
 /// the axis would count as surface.
@@ -56,35 +54,21 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
         }
         clean.push(DVec2::new(if r < AXIS_SLACK { 0.0 } else { r }, z));
     }
-    let extent = clean
-        .iter()
-        .fold(0.0f64, |m, p| m.max(p.abs().max_element()));
-    let grid = Grid::for_extent(extent);
-    let contour: Vec<_> = clean.iter().map(|&p| grid.snap(p)).collect();
-    // Corners that were given come back exactly; only crossings stand on the grid.
-    let given: HashMap<IntPoint<i32>, DVec2> =
-        contour.iter().copied().zip(clean.iter().copied()).collect();
-    let outline: Outline = Region::enclosed(&[contour], Rule::NonZero)
-        .outline(|p| given.get(&p).copied().unwrap_or_else(|| grid.place(p)));
+    let outline = enclosed(&[clean], Rule::NonZero);
     if outline.area() < 1e-12 {
         return fault("the polygon has no area; give corners that enclose some".into());
     }
-    Ok(Profile {
-        shape: Shape::Outline(outline),
-        radius,
-    })
+    Ok(Profile::new(outline, radius))
 }
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic)]
+    #![allow(clippy::unwrap_used)]
+    use super::super::Outline;
     use super::*;
 
     fn outline(points: &[[f64; 2]]) -> Outline {
-        match profile(points, 0.5).unwrap().shape {
-            Shape::Outline(o) => o,
-            Shape::Raster(_) => panic!("a polygon is an outline"),
-        }
+        profile(points, 0.5).unwrap().outline
     }
 
     fn message(points: &[[f64; 2]]) -> String {

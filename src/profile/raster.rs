@@ -47,6 +47,16 @@ impl Raster {
         }
     }
 
+    /// Coverage in `levels` even steps, as a picture keeps it: 256 of 8 bits, 2 of a binary picture (solid where over one half).
+    #[must_use]
+    pub fn with_levels(mut self, levels: u16) -> Self {
+        let most = f32::from(levels.max(2) - 1);
+        for c in &mut self.coverage {
+            *c = (*c * most - 0.5).ceil().max(0.0) / most;
+        }
+        self
+    }
+
     /// The rectangle of pixels more than half solid, one pixel wider all round (as far as there is picture), which
     /// contains every edge that such a picture can mean; `None` of an empty raster.
     #[must_use]

@@ -9,6 +9,7 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay::Overlay;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::i_float::int::point::IntPoint;
+use std::collections::HashMap;
 
 /// A closed contour on the integer grid.
 pub(super) type Contour = Vec<IntPoint<i32>>;
@@ -18,6 +19,8 @@ pub(super) type Contour = Vec<IntPoint<i32>>;
 pub(super) enum Rule {
     /// Winding number other than 0.
     NonZero,
+    /// Winding number above 0: loops that are to have the solid on their left.
+    Positive,
     /// Odd winding number.
     #[cfg(feature = "drawing")]
     EvenOdd,
@@ -27,6 +30,7 @@ impl Rule {
     fn fill(self) -> FillRule {
         match self {
             Self::NonZero => FillRule::NonZero,
+            Self::Positive => FillRule::Positive,
             #[cfg(feature = "drawing")]
             Self::EvenOdd => FillRule::EvenOdd,
         }
@@ -130,4 +134,18 @@ impl Region {
                 .collect(),
         }
     }
+}
+
+/// The outline of what closed loops enclose, self-crossing ones too. Corners that were given come back exactly; only crossings are
+/// rounded to the grid.
+pub(super) fn enclosed(loops: &[Vec<DVec2>], rule: Rule) -> Outline {
+    let points = || loops.iter().flatten();
+    let grid = Grid::for_extent(points().fold(0.0, |m: f64, p| m.max(p.abs().max_element())));
+    let given: HashMap<_, _> = points().map(|&p| (grid.snap(p), p)).collect();
+    let contours: Vec<Contour> = loops
+        .iter()
+        .map(|points| points.iter().map(|&p| grid.snap(p)).collect())
+        .collect();
+    Region::enclosed(&contours, rule)
+        .outline(|p| given.get(&p).copied().unwrap_or_else(|| grid.place(p)))
 }

@@ -4,7 +4,7 @@
 #[allow(dead_code)]
 pub mod shapes;
 
-use revmap::profile::{Outline, Profile, ProfileAxis, Shape};
+use revmap::profile::{Profile, ProfileAxis};
 
 /// Numbers by SplitMix64.
 pub struct Random(pub u64);
@@ -42,12 +42,4 @@ pub fn profiles() -> Vec<(String, Profile)> {
 /// How many rays are sent at each solid: by the environment variable `RAYS`, or so many.
 pub fn count(usual: usize) -> usize {
     std::env::var("RAYS").map_or(usual, |n| n.parse().unwrap())
-}
-
-/// The outline of a profile that has one.
-pub fn outline(profile: &Profile) -> &Outline {
-    match &profile.shape {
-        Shape::Outline(outline) => outline,
-        Shape::Raster(_) => panic!("an outline is wanted"),
-    }
 }

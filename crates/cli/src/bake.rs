@@ -31,7 +31,7 @@ pub struct Bake {
     /// Rows of the shape map
     #[arg(long, value_name = "N", default_value_t = Object::MAP_ROWS, value_parser = clap::value_parser!(u32).range(2..=16384))]
     map_rows: u32,
-    /// Where distances come from [default: exact for drawings, coverage for pictures]
+    /// Where distances come from [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&options::SOURCES))]
     map_source: Option<MapSource>,
     /// Where the axis is: the left edge of half a profile, or the middle of a silhouette
@@ -70,7 +70,7 @@ impl Bake {
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
         let profile = Profile::load(&self.profile, self.profile_axis)?;
-        let source = self.map_source.unwrap_or(MapSource::best_for(&profile));
+        let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
         let slopes = self

@@ -44,7 +44,7 @@ pub struct Lists {
     /// Rows of every shape map [default: each object's map_rows]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub map_rows: Vec<u32>,
-    /// Where distances come from [default: exact for drawings and polygons, coverage for images]
+    /// Where distances come from [default: exact]
     #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&SOURCES))]
     pub map_source: Vec<MapSource>,
     /// How distances are stored on the device [default: r32]

@@ -67,7 +67,7 @@ pub struct Drawing {
     /// Rows of every shape map [default: each object's map_rows]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16384))]
     pub map_rows: Option<u32>,
-    /// Where distances come from [default: exact for drawings and polygons, coverage for images]
+    /// Where distances come from [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&SOURCES))]
     pub map_source: Option<MapSource>,
     /// How distances are stored on the device

@@ -4,7 +4,7 @@
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
 use revmap::frame::Frame;
-use revmap::profile::{Outline, Profile, Raster, Shape};
+use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::Settings;
 use revmap_lab::compare::{CompareOptions, compare, flip_map, silhouette_hausdorff};
@@ -28,10 +28,7 @@ fn scene(n: usize, offset: Offset) -> Scene {
     let outline = Outline {
         loops: vec![points.collect()],
     };
-    let profile = Arc::new(Profile {
-        shape: Shape::Outline(outline),
-        radius: 0.45,
-    });
+    let profile = Arc::new(Profile::new(outline, 0.45));
     let object = Object {
         offset,
         ..Object::new("vase", profile)
@@ -99,24 +96,6 @@ fn ray_analytic(bencher: Bencher, segments: usize) {
         k += 1;
         analytic.trace(ray(k))
     });
-}
-
-/// The outline of an image of 512 x 1024 pixels.
-#[divan::bench]
-fn contour_of_an_image(bencher: Bencher) {
-    let solid = |k: u32| {
-        let (r, z) = (
-            f64::from(k % 512) / 1024.0,
-            f64::from(k / 512) / 1024.0 - 0.5,
-        );
-        ((0.3 + 0.1 * (20.0 * z).sin() - r - 0.2 * z * z) * 1024.0).clamp(0.0, 1.0) as f32
-    };
-    let image = Raster {
-        columns: 512,
-        rows: 1024,
-        coverage: (0..512 * 1024).map(solid).collect(),
-    };
-    bencher.bench(|| contour(black_box(&image)));
 }
 
 /// All figures of two frames of 800 x 600, and the two dear ones alone.

@@ -2,7 +2,6 @@
 //!
 //! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is the exact distance to the
 //! profile's outline; along a ray `F` changes at most by a known factor, so steps can be proven not to pass a surface.
-//! A profile that is an image stands for the [`fn@contour`] of its coverage at one half.
 //!
 //! | | [`Reference`] | [`Analytic`] |
 //! |---|---|---|
@@ -15,13 +14,13 @@
 //!
 //! ```
 //! use glam::{DVec2, DVec3};
-//! use revmap::profile::{Outline, Profile, Shape};
+//! use revmap::profile::{Outline, Profile};
 //! use revmap_reference::{Ray, trace};
 //! use revmap::scene::{Camera, Object, Scene};
 //! use std::sync::Arc;
 //! // A cylinder of radius 1/4, from the floor of its box to the ceiling.
 //! let points = [(0.0, 0.0), (0.25, 0.0), (0.25, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
-//! let profile = Profile { shape: Shape::Outline(Outline { loops: vec![points] }), radius: 0.5 };
+//! let profile = Profile::new(Outline { loops: vec![points] }, 0.5);
 //! let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
 //! scene.objects.push(Object::new("cylinder", Arc::new(profile)));
 //! let hit = trace(&scene, Ray { origin: DVec3::new(2.0, 0.0, 0.5), direction: DVec3::NEG_X })?.hit;
@@ -31,7 +30,6 @@
 
 mod analytic;
 mod bracket;
-mod contour;
 mod draw;
 mod field;
 mod parts;
@@ -43,7 +41,6 @@ mod solid;
 mod texture;
 
 pub use analytic::Analytic;
-pub use contour::contour;
 pub use draw::draw;
 pub use solid::Surface;
 
@@ -51,7 +48,7 @@ use field::Field;
 use glam::DVec3;
 use parts::{Part, Parts};
 use revmap::error::{Error, Result, Stage};
-use revmap::profile::{Profile, Shape};
+use revmap::profile::Profile;
 use revmap::scene::{Placement, Scene};
 use solid::{LocalHit, Solid};
 use std::sync::Arc;
@@ -237,11 +234,7 @@ pub fn trace(scene: &Scene, ray: Ray) -> Result<Trace> {
 }
 
 fn prepare(profile: &Profile) -> Result<Field> {
-    let field = match &profile.shape {
-        Shape::Outline(outline) => Field::new(outline),
-        Shape::Raster(raster) => Field::new(&contour(raster)),
-    };
-    field.ok_or_else(|| {
+    Field::new(&profile.outline).ok_or_else(|| {
         Error::new(
             Stage::Profile,
             "the profile has no surface; give one with a solid part off the axis",

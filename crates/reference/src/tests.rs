@@ -10,10 +10,7 @@ use revmap::settings::Settings;
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) fn object(outline: Outline, radius: f64) -> Object {
-    let profile = Arc::new(Profile {
-        shape: Shape::Outline(outline),
-        radius,
-    });
+    let profile = Arc::new(Profile::new(outline, radius));
     Object {
         color: [0.8, 0.6, 0.4],
         specular: Specular {

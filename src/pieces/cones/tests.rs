@@ -1,20 +1,17 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::pieces::ContourSource;
-use crate::profile::{Outline, Profile, Shape};
+use crate::profile::{Outline, Profile};
 use crate::scene::Offset;
 use proptest::prelude::*;
 
 fn contour(points: &[[f64; 2]], extend: f64) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
-    let Shape::Outline(outline) = &profile.shape else {
-        unreachable!("polygons are outlines")
-    };
     let offset = Offset {
         extend,
         ..Offset::default()
     };
-    ContourSource::new(outline)
+    ContourSource::new(&profile.outline)
         .unwrap()
         .contour(&offset)
         .unwrap()

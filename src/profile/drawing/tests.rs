@@ -7,10 +7,7 @@ fn drawn(body: &str) -> Result<Outline> {
     let text = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="100" height="100">{body}</svg>"##
     );
-    profile(text.as_bytes(), ProfileAxis::Left).map(|p| match p.shape {
-        Shape::Outline(o) => o,
-        Shape::Raster(_) => panic!("a drawing is an outline"),
-    })
+    profile(text.as_bytes(), ProfileAxis::Left).map(|p| p.outline)
 }
 
 /// Its area in square user units.
@@ -182,10 +179,10 @@ fn the_right_half_of_a_silhouette() {
     let text = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="-10 0 20 40"><circle cx="0" cy="20" r="8"/></svg>"#;
     let p = profile(text.as_bytes(), ProfileAxis::Center).unwrap();
     assert_eq!(p.radius, 0.25);
-    let b = p.bounds().unwrap();
+    let b = p.outline.bounds().unwrap();
     assert!((b.r_max - 0.2).abs() < 1e-5 && b.r_min == 0.0);
     assert!((b.z_min - 0.3).abs() < 1e-5 && (b.z_max - 0.7).abs() < 1e-5);
-    let Shape::Outline(o) = p.shape else { panic!() };
+    let o = p.outline;
     assert_eq!(o.segments().count() - o.surface_segments().count(), 1);
 }
 

@@ -147,10 +147,7 @@ impl Row {
                 .map_rows
                 .or_else(|| one(objects.iter().map(|o| o.map_rows)))
                 .filter(|_| searched),
-            source: settings
-                .map_source
-                .or_else(|| one(objects.iter().map(|o| MapSource::best_for(&o.profile))))
-                .filter(|_| searched),
+            source: searched.then(|| settings.map_source.unwrap_or_default()),
             solids: view.solids(),
             errors,
             steps,

@@ -3,7 +3,6 @@
 use super::plan::{Axes, Plan, papers_loop, plain};
 use super::view::View;
 use revmap::maps::{MapFormat, MapSource};
-use revmap::profile::Shape;
 use revmap::settings::{DrawStage, Settings, Solver};
 
 /// The values that are swept, one axis at a time, the others staying at what drawing takes.
@@ -71,7 +70,6 @@ impl Sweep {
             mixed: false,
         };
         for view in 0..plan.views.len() {
-            let sources = sources(&plan.views[view]);
             for (number, &stage) in self.stages.iter().enumerate() {
                 let base = Settings {
                     stage,
@@ -108,7 +106,7 @@ impl Sweep {
                     }
                     let ample = ample(solver, &self.steps);
                     for &rows in &self.rows {
-                        for &source in &sources {
+                        for source in [MapSource::Binary, MapSource::Coverage, MapSource::Exact] {
                             let settings = Settings {
                                 solver,
                                 max_steps: ample,
@@ -198,21 +196,6 @@ fn ample(solver: Solver, steps: &[u32]) -> Option<u32> {
     }
 }
 
-/// The sources that every object of a scene can have.
-#[must_use]
-pub fn sources(view: &View) -> Vec<MapSource> {
-    let outlines = view
-        .scene
-        .objects
-        .iter()
-        .all(|o| matches!(o.profile.shape, Shape::Outline(_)));
-    let mut all = vec![MapSource::Binary, MapSource::Coverage];
-    if outlines {
-        all.push(MapSource::Exact);
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::plan::is_papers_loop;
@@ -267,20 +250,5 @@ mod tests {
                 .iter()
                 .all(|s| s.map_source.is_none() && s.max_steps.is_none())
         );
-    }
-
-    #[test]
-    fn an_image_has_no_exact_source() {
-        let mut view = spindle();
-        let raster = revmap::profile::Raster {
-            columns: 2,
-            rows: 2,
-            coverage: vec![1.0; 4],
-        };
-        view.scene.objects[0].profile = std::sync::Arc::new(revmap::profile::Profile {
-            shape: Shape::Raster(raster),
-            radius: 1.0,
-        });
-        assert_eq!(sources(&view), [MapSource::Binary, MapSource::Coverage]);
     }
 }

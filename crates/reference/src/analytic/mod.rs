@@ -16,7 +16,7 @@ use super::{Hit, Ray, Surface, Trace, is_ray};
 use glam::{DAffine3, DVec2, DVec3};
 use path::{Curve, Path};
 use revmap::error::{Error, Result, Stage};
-use revmap::profile::{Outline, Shape};
+use revmap::profile::Outline;
 use revmap::scene::{Object, Offset, Scene};
 
 /// Pieces of a ray shorter than this, in object units, mark it as grazing.
@@ -103,9 +103,6 @@ impl Analytic {
 impl Solid {
     fn new(object: &Object) -> Result<Self> {
         let refuse = |what: &str| Err(Error::new(Stage::Scene, what));
-        let Shape::Outline(outline) = &object.profile.shape else {
-            return refuse("the analytic reference takes outlines only; use the bracketing one");
-        };
         if object.repeat != [1; 3] {
             return refuse("the analytic reference knows no replicas; use the bracketing one");
         }
@@ -122,7 +119,7 @@ impl Solid {
         let axis =
             DVec2::new(object.axis[0], object.axis[1]) * (2.0 * radius) - DVec2::splat(radius);
         Ok(Self {
-            outline: outline.clone(),
+            outline: object.profile.outline.clone(),
             radius,
             axis,
             pieces,

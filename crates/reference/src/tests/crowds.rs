@@ -130,10 +130,7 @@ fn replicas_that_touch_are_one_solid() {
     let found = shoot(o.clone(), [0.1, 0.0, 0.1], [0.0, 0.0, 1.0]);
     assert!((found.hit.unwrap().t - 0.9).abs() < 1e-9);
     // A cone's base against the next cone's tip: the joint is surface where only one side is solid.
-    o.profile = Arc::new(Profile {
-        shape: Shape::Outline(samples::cone(0.4, 0.0, 1.0)),
-        radius: 0.5,
-    });
+    o.profile = Arc::new(Profile::new(samples::cone(0.4, 0.0, 1.0), 0.5));
     let found = shoot(o.clone(), [0.2, 0.1, 0.2], [0.0, 0.0, 1.0])
         .hit
         .unwrap();
@@ -188,7 +185,7 @@ fn copies_are_as_many_objects_whatever_the_tree() {
 }
 
 #[test]
-fn an_image_is_its_contour() {
+fn a_picture_is_its_outline() {
     // A cylinder of radius 12 pixels and 40 pixels high in an image of 64 rows, one column of it half covered.
     let coverage = |i: u32, j: u32| {
         if (12..52).contains(&j) {
@@ -202,13 +199,9 @@ fn an_image_is_its_contour() {
         rows: 64,
         coverage: (0..32 * 64).map(|k| coverage(k % 32, k / 32)).collect(),
     };
-    let mut o = object(Outline::default(), 0.5);
-    o.profile = Arc::new(Profile {
-        shape: Shape::Raster(image),
-        radius: 0.5,
-    });
-    // 0.75 at 11.5, 0 at 12.5: one half at 11.5 + 1/3.
-    let r = (11.5 + 1.0 / 3.0) / 64.0;
+    let o = object(Profile::traced(image).unwrap().outline, 0.5);
+    // Eleven columns and three quarters of one.
+    let r = 11.75 / 64.0;
     assert_hit(
         shoot(o.clone(), [2.0, 0.0, 0.5], [-1.0, 0.0, 0.0]),
         2.0 - r,

@@ -71,15 +71,45 @@ const GRADED: Noise = Noise {
 };
 /// A run is not straight if a parabola leaves less than this part of the line's residuals.
 const BENT: f64 = 0.75;
+/// Least `|dr|` of the unit direction of a straight run that crosses the axis.
+const SLANT: f64 = 0.2;
 /// Points nearer to a corner than this are touched by its rounding.
 const NEAR: f64 = 1.5;
 
-/// The smoothed curve's points.
-pub(super) fn smooth(trail: &Trail, graded: bool) -> Vec<DVec2> {
+/// The smoothed curve's points. A curve of a few pixels that would lose half of its area stays as it is.
+pub(super) fn smooth(mut trail: Trail, graded: bool) -> Vec<DVec2> {
+    if trail.points.len() < 3 {
+        return trail.points;
+    }
     let noise = if graded { GRADED } else { BINARY };
-    let line = Line::new(trail);
-    let corners = line.corners(&noise);
-    line.runs(&corners, &noise)
+    let mut line = Line::new(&trail);
+    let mut corners = line.corners(&noise);
+    if let Some(first) = corners.first().map(|c| c.index - line.first)
+        && trail.closed
+    {
+        // A closed trail begins with a corner, so that no run passes its ends.
+        trail.points.rotate_left(first);
+        line = Line::new(&trail);
+        for corner in &mut corners {
+            corner.index -= first;
+        }
+    }
+    let runs = line.runs(&corners, &noise);
+    if area(&runs) / area(&trail.points) > 0.5 {
+        runs
+    } else {
+        trail.points
+    }
+}
+
+/// Area within closed points, negative clockwise.
+fn area(points: &[DVec2]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    0.5 * points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a.perp_dot(*b))
+        .sum::<f64>()
 }
 
 /// The trail continued past its ends: round again if it is closed, mirrored if it ends on the axis.
@@ -91,6 +121,14 @@ struct Line {
     first: usize,
     count: usize,
     closed: bool,
+}
+
+/// A line: a point and a unit direction.
+type Side = (DVec2, DVec2);
+
+/// Cosine of half of the turn between two directions: near 0 at the tip of a wedge.
+fn half_cosine([(_, u), (_, v)]: [Side; 2]) -> f64 {
+    (0.5 * (1.0 + u.dot(v))).max(0.0).sqrt()
 }
 
 /// A corner, or an end: place in the list, and where it stands.
@@ -131,12 +169,17 @@ impl Line {
 
     fn corners(&self, noise: &Noise) -> Vec<Corner> {
         let range = self.first..self.first + self.count;
-        // Cosine of the turn at each point.
+        // Cosine of the turn at each point; of equal ones, that where the sides meet is taken.
         let turns: Vec<f64> = (0..self.points.len())
-            .map(|k| match self.sides(k, noise) {
-                Some([(_, u), (_, v)]) if range.contains(&k) => u.dot(v),
-                _ => 1.0,
-            })
+            .map(
+                |k| match self.sides(k, noise).filter(|_| range.contains(&k)) {
+                    Some(sides) => {
+                        let away = meeting(sides).map_or(0.0, |m| m.distance(self.points[k]));
+                        sides[0].1.dot(sides[1].1) + 1e-3 * away
+                    }
+                    None => 1.0,
+                },
+            )
             .collect();
         let mut corners: Vec<Corner> = Vec::new();
         for k in range.clone() {
@@ -144,12 +187,17 @@ impl Line {
             if own >= noise.turn {
                 continue;
             }
-            let near = |j: usize| (self.place[j] - self.place[k]).abs() < 2.5;
-            let sharpest = (range.start..k)
-                .rev()
-                .take_while(|&j| near(j))
-                .chain((k + 1..range.end).take_while(|&j| near(j)))
-                .all(|j| turns[j] > own || (turns[j] == own && j > k));
+            let near = |j: &usize| (self.place[*j] - self.place[k]).abs() < 2.5;
+            let before = (0..k).rev().take_while(near);
+            let after = (k + 1..self.points.len()).take_while(near);
+            let sharpest = before.chain(after).all(|j| {
+                // Past its ends a closed trail goes round again.
+                let turn = match self.closed {
+                    true => turns[self.first + (j + self.count - self.first) % self.count],
+                    false => turns[j],
+                };
+                turn > own || (turn == own && j > k)
+            });
             if sharpest {
                 let point = self.sides(k, noise).and_then(meeting);
                 corners.push(Corner {
@@ -163,7 +211,7 @@ impl Line {
 
     /// The two sides of a corner at point `k`, as they arrive there, each by a point and a direction: tangents of parabolas through the
     /// points before and after, where these are good and many enough, else lines, if they do not merely touch something round.
-    fn sides(&self, k: usize, noise: &Noise) -> Option<[(DVec2, DVec2); 2]> {
+    fn sides(&self, k: usize, noise: &Noise) -> Option<[Side; 2]> {
         let part = |from: f64, to: f64| {
             let low = self.place.partition_point(|&s| s < self.place[k] + from);
             let high = self.place.partition_point(|&s| s <= self.place[k] + to);
@@ -182,10 +230,9 @@ impl Line {
         let ((p, u, x), (q, v, y)) = (a?, b?);
         let sides = [(p, u), (q, v)];
         // At a sharp corner the pixels' curve stays farther away.
-        let half = (0.5 * (1.0 + u.dot(v))).max(0.0).sqrt();
+        let wedge = half_cosine(sides).max(0.25);
         let met = meeting(sides)?;
-        (x.max(y) <= noise.line && self.away(met, k) * half.max(0.25) < noise.round)
-            .then_some(sides)
+        (x.max(y) <= noise.line && self.away(met, k) * wedge < noise.round).then_some(sides)
     }
 
     /// Distance of a place from the trail near point `k`.
@@ -221,9 +268,16 @@ impl Line {
                 .map(|k| self.rounded(k, 0, self.points.len() - 1, noise))
                 .collect();
         }
-        let straight: Vec<Option<(DVec2, DVec2)>> = ends
+        let straight: Vec<Option<Side>> = ends
             .windows(2)
-            .map(|pair| self.straight(pair[0].index, pair[1].index, noise))
+            .map(|pair| {
+                // A straight run that ends on the axis has to cross it: one from axis to axis encloses nothing.
+                let on_axis =
+                    |c: &&Corner| !self.closed && (c.index == self.first || c.index == last);
+                let ends = pair.iter().filter(on_axis).count();
+                self.straight(pair[0].index, pair[1].index, noise)
+                    .filter(|(_, way)| ends == 0 || (ends == 1 && way.x.abs() > SLANT))
+            })
             .collect();
         let mut out: Vec<DVec2> = Vec::new();
         for (k, pair) in ends.windows(2).enumerate() {
@@ -234,8 +288,11 @@ impl Line {
             } else {
                 None
             };
-            let on_axis = !self.closed && k == 0;
-            out.push(self.corner(&pair[0], before, straight[k], on_axis, noise));
+            if !self.closed && k == 0 {
+                out.push(self.end(&pair[0], straight[0], noise));
+            } else {
+                out.extend(self.corner(&pair[0], [before, straight[k]], noise));
+            }
             if straight[k].is_none() {
                 let cut = |c: &Corner| self.closed || (c.index != self.first && c.index != last);
                 let low = if cut(&pair[0]) || pair[0].point.is_some() {
@@ -263,47 +320,54 @@ impl Line {
             && let Some(corner) = ends.last()
         {
             let before = straight.last().copied().flatten();
-            out.push(self.corner(corner, before, None, true, noise));
+            out.push(self.end(corner, before, noise));
         }
         out
     }
 
-    /// Where a corner stands: at the meeting of its straight sides if it has them.
-    fn corner(
-        &self,
-        corner: &Corner,
-        before: Option<(DVec2, DVec2)>,
-        after: Option<(DVec2, DVec2)>,
-        on_axis: bool,
-        noise: &Noise,
-    ) -> DVec2 {
+    /// Where a corner stands: at the meeting of its straight sides if it has them. Where they do not meet near by, each straight side
+    /// has an end of its own.
+    fn corner(&self, corner: &Corner, sides: [Option<Side>; 2], noise: &Noise) -> Vec<DVec2> {
         let own = self.points[corner.index];
-        if on_axis {
-            // The mirror image is the other side.
-            let z = match before.or(after) {
-                Some((p, u)) if u.x.abs() > 0.2 => (p - u * (p.x / u.x)).y,
-                _ => corner.point.map_or_else(
-                    || {
-                        self.rounded(corner.index, 0, self.points.len() - 1, noise)
-                            .y
-                    },
-                    |p| p.y,
-                ),
+        let tangents = self.sides(corner.index, noise);
+        let [before, after] = [0, 1].map(|k| sides[k].or(tangents.map(|t| t[k])));
+        if let Some(pair) = before.zip(after).map(|(a, b)| [a, b])
+            && let Some(met) = meeting(pair)
+        {
+            // The tip of a wedge lies far from the nearest pixel that it covers by one half.
+            let wedge = 2.0 / half_cosine(pair).max(0.25);
+            let reach = match sides.iter().flatten().count() {
+                2 => wedge,
+                1 if noise.curved => wedge.min(3.0),
+                _ => 2.0,
             };
-            return DVec2::new(0.0, z);
+            if met.distance(own) < reach {
+                return vec![met];
+            }
         }
-        let sides = self.sides(corner.index, noise);
-        let first = before.or_else(|| sides.map(|s| s[0]));
-        let second = after.or_else(|| sides.map(|s| s[1]));
-        let met = first.zip(second).and_then(|(a, b)| meeting([a, b]));
-        if let Some(met) = met.filter(|m| m.distance(own) < 2.0) {
-            return met;
+        let foot = |(p, u): Side| p + u * u.dot(own - p);
+        let feet: Vec<DVec2> = sides.into_iter().flatten().map(foot).collect();
+        if feet.is_empty() {
+            return vec![corner.point.unwrap_or(own)];
         }
-        corner.point.unwrap_or(own)
+        feet
+    }
+
+    /// Where a trail ends on the axis. Its mirror image is the other side.
+    fn end(&self, corner: &Corner, side: Option<Side>, noise: &Noise) -> DVec2 {
+        let z = match (side, corner.point) {
+            (Some((p, u)), _) => (p - u * (p.x / u.x)).y,
+            (_, Some(p)) => p.y,
+            _ => {
+                self.rounded(corner.index, 0, self.points.len() - 1, noise)
+                    .y
+            }
+        };
+        DVec2::new(0.0, z)
     }
 
     /// The line of a straight run between two corners.
-    fn straight(&self, from: usize, to: usize, noise: &Noise) -> Option<(DVec2, DVec2)> {
+    fn straight(&self, from: usize, to: usize, noise: &Noise) -> Option<Side> {
         let low = self.place.partition_point(|&s| s < self.place[from] + 1.0);
         let high = self
             .place
@@ -340,8 +404,12 @@ impl Line {
     /// Point `k` moved to the parabola of its neighbours between two corners.
     fn rounded(&self, k: usize, low: usize, high: usize, noise: &Noise) -> DVec2 {
         let mut best = self.points[k];
+        // A window over much of a small loop would shrink it.
+        let most = noise
+            .window
+            .min(self.count / if self.closed { 6 } else { 3 });
         let mut m = 2;
-        while m <= noise.window {
+        while m <= most {
             // As many on each side as there are, that the fit leans to neither; near a corner a few more on the other.
             let (left, right) = (k - low, high.min(self.points.len() - 1) - k);
             let (left, right) = (left.min(m), right.min(m));

@@ -1,0 +1,308 @@
+//! The curve that a picture was drawn from: where its coverage passes one half, as chains of points on the links between pixels.
+//!
+//! Samples stand at the pixels' centres. Beyond the picture lies 0, so a solid that touches the top, bottom or right border ends
+//! exactly there. Left of the axis stands the mirror image. A **link** joins the centres of two neighbours. Each link with one end
+//! more than half covered and the other not holds one point:
+//!
+//! * In a binary picture it is the link's middle, known to half a texel.
+//! * In an anti-aliased picture the coverages along the link's line, added up from a full pixel to an empty one, give the edge's mean
+//!   position over the pixel's width. That is its position in the middle where the edge is straight (the height function of
+//!   two-phase flow). Where the edge runs too much along the link, the points of the links across are enough.
+//! * Where there are no full pixels, as in grey or blurred solids, it is where linear interpolation passes one half.
+//!
+//! What [`smooth`](super::smooth) makes of the chains is an [`Outline`]. Chains that cross afterwards are cut at their crossings.
+
+use super::image::empty_fault;
+use super::region::{Rule, enclosed};
+use super::smooth::{Trail, smooth};
+use super::{Outline, Profile, Raster};
+use crate::error::{Error, Result, Stage};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// The profile of a picture's right half. `split`: the axis is the middle of column 0, else its left edge.
+pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
+    let (columns, rows) = (raster.columns as usize, raster.rows as usize);
+    if raster.coverage.len() != columns * rows {
+        return Err(Error::new(
+            Stage::Profile,
+            format!(
+                "{} coverages are no {columns} x {rows} pixels; give one for each",
+                raster.coverage.len()
+            ),
+        ));
+    }
+    let nodes = Nodes::new(&raster, split);
+    let outline = nodes.outline();
+    if outline.loops.is_empty() {
+        return Err(empty_fault("image"));
+    }
+    Ok(Profile {
+        radius: nodes.size().x / f64::from(raster.rows),
+        raster: (!split).then_some(raster),
+        outline,
+    })
+}
+
+impl Raster {
+    /// The outline that the pixels tell (see [`Profile::traced`]); empty when none is more than half covered.
+    pub(crate) fn outline(&self) -> Outline {
+        Nodes::new(self, false).outline()
+    }
+}
+
+/// The picture with a rim of one empty pixel above, below and at the right. Where the axis is the left edge of the picture, column 0
+/// is the mirror image of column 1.
+struct Nodes<'a> {
+    raster: &'a Raster,
+    columns: usize,
+    rows: usize,
+    /// 1 where column 0 is a mirror image, 0 where it stands on the axis.
+    mirrored: usize,
+}
+
+impl<'a> Nodes<'a> {
+    fn new(raster: &'a Raster, split: bool) -> Self {
+        let mirrored = usize::from(!split);
+        Self {
+            raster,
+            columns: raster.columns as usize + 1 + mirrored,
+            rows: raster.rows as usize + 2,
+            mirrored,
+        }
+    }
+
+    /// The box of the picture, texels.
+    fn size(&self) -> DVec2 {
+        self.place((self.columns - 1, self.rows - 1)) - DVec2::splat(0.5)
+    }
+
+    fn outline(&self) -> Outline {
+        let trails = self.trails();
+        let graded = self.graded(&trails);
+        let rows = f64::from(self.raster.rows);
+        let size = self.size();
+        let place = |p: DVec2| {
+            let p = p.clamp(DVec2::ZERO, size);
+            DVec2::new(p.x / rows, 1.0 - p.y / rows)
+        };
+        let loops: Vec<Vec<DVec2>> = trails
+            .iter()
+            .map(|links| smooth(self.trail(links, graded), graded))
+            .map(|points| points.into_iter().map(place).collect())
+            .collect();
+        let mut outline = enclosed(&loops, Rule::Positive);
+        // A crossing may have been rounded out of the box.
+        for p in outline.loops.iter_mut().flatten() {
+            p.x = p.x.min(size.x / rows);
+        }
+        outline
+    }
+
+    /// The centre of a node, texels, y downwards from the picture's upper edge.
+    fn place(&self, (i, j): (usize, usize)) -> DVec2 {
+        DVec2::new(i as f64 - 0.5 * self.mirrored as f64, j as f64 - 0.5)
+    }
+
+    fn value(&self, i: usize, j: usize) -> f64 {
+        if j == 0 || i + 1 == self.columns || j + 1 == self.rows {
+            return 0.0;
+        }
+        let index = (j - 1) * self.raster.columns as usize + i.saturating_sub(self.mirrored);
+        f64::from(self.raster.coverage[index])
+    }
+
+    /// The two nodes of a link: even ones go right, odd ones down.
+    fn link(&self, link: u32) -> [(usize, usize); 2] {
+        let node = link as usize / 2;
+        let (i, j) = (node % self.columns, node / self.columns);
+        [
+            (i, j),
+            if link.is_multiple_of(2) {
+                (i + 1, j)
+            } else {
+                (i, j + 1)
+            },
+        ]
+    }
+
+    /// The middle of a link.
+    fn middle(&self, link: u32) -> DVec2 {
+        let [a, b] = self.link(link);
+        self.place(a).midpoint(self.place(b))
+    }
+
+    /// Where the curve passes a link by linear interpolation.
+    fn point(&self, link: u32) -> DVec2 {
+        let [a, b] = self.link(link);
+        let (va, vb) = (self.value(a.0, a.1), self.value(b.0, b.1));
+        self.place(a).lerp(self.place(b), (0.5 - va) / (vb - va))
+    }
+
+    /// The same from the sum of coverages along the link's line; none where the edge runs too much along it.
+    fn summed(&self, link: u32) -> Option<DVec2> {
+        const FULL: f64 = 0.995;
+        const LONGEST: isize = 2;
+        let [mut a, mut b] = self.link(link);
+        if self.value(a.0, a.1) < self.value(b.0, b.1) {
+            std::mem::swap(&mut a, &mut b);
+        }
+        let step = (b.0 as isize - a.0 as isize, b.1 as isize - a.1 as isize);
+        let value = |k: isize| {
+            let (i, j) = (a.0 as isize + k * step.0, a.1 as isize + k * step.1);
+            let within = j >= 0 && (j as usize) < self.rows && i < self.columns as isize;
+            // Left of the axis stands the mirror image.
+            let i = if i < 0 { self.mirrored as isize - i } else { i };
+            if within {
+                self.value(i as usize, j as usize)
+            } else {
+                0.0
+            }
+        };
+        let (mut k, mut sum) = (0, value(0));
+        let mut last = sum;
+        while last < FULL {
+            k -= 1;
+            let next = value(k);
+            if k < -LONGEST || next < last {
+                return None;
+            }
+            (last, sum) = (next, sum + next);
+        }
+        let first = k;
+        (k, last) = (0, value(0));
+        while last > 1.0 - FULL {
+            k += 1;
+            let next = value(k);
+            if k > LONGEST + 1 || next > last {
+                return None;
+            }
+            (last, sum) = (next, sum + next);
+        }
+        let way = DVec2::new(step.0 as f64, step.1 as f64);
+        Some(self.place(a) + way * (first as f64 - 0.5 + sum))
+    }
+
+    /// All curves, solid on the left as one sees them.
+    fn trails(&self) -> Vec<Links> {
+        let pairs: Vec<[u32; 2]> = (0..self.rows - 1)
+            .into_par_iter()
+            .flat_map_iter(|j| (0..self.columns - 1).flat_map(move |i| self.cell(i, j)))
+            .collect();
+        let mut next: HashMap<u32, u32> = pairs.iter().map(|&[from, to]| (from, to)).collect();
+        let mut firsts: Vec<u32> = pairs.iter().map(|p| p[0]).collect();
+        // Those that come from the axis first: from there on every walk ends where it began, or on the axis.
+        let axis = |link: u32| link % 2 == 1 && (link as usize / 2).is_multiple_of(self.columns);
+        firsts.sort_by_key(|&l| !axis(l));
+        let mut trails = Vec::new();
+        for first in firsts {
+            let mut trail = Links {
+                links: Vec::new(),
+                closed: !axis(first),
+            };
+            let mut link = first;
+            loop {
+                trail.links.push(link);
+                match next.remove(&link) {
+                    Some(following) if following == first => break,
+                    Some(following) => link = following,
+                    None => {
+                        if !axis(link) {
+                            // This one was walked before.
+                            trail.links.clear();
+                        }
+                        break;
+                    }
+                }
+            }
+            if trail.links.len() > 1 {
+                trails.push(trail);
+            }
+        }
+        trails
+    }
+
+    /// The curve's pieces within the cell whose upper left node is `(i, j)`, each from link to link.
+    fn cell(&self, i: usize, j: usize) -> Vec<[u32; 2]> {
+        let values = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|c| self.value(c.0, c.1));
+        let solid = values.map(|v| v > 0.5);
+        if solid.iter().all(|&s| s == solid[0]) {
+            return Vec::new();
+        }
+        let node = (j * self.columns + i) as u32;
+        let below = node + self.columns as u32;
+        // Top, right, bottom, left: sides between corners 01, 12, 23, 30.
+        let links = [2 * node, 2 * (node + 1) + 1, 2 * below, 2 * node + 1];
+        // Walked round the cell (clockwise, as seen), a side that goes from empty to solid is where a curve comes in: solid is on its left.
+        let comes_in = |&k: &usize| !solid[k] && solid[(k + 1) % 4];
+        let goes_out = |&k: &usize| solid[k] && !solid[(k + 1) % 4];
+        // The way out is the next one round the solid corner, or at a saddle that is solid round the empty one before.
+        let joined = values.iter().sum::<f64>() > 2.0;
+        let turn = |k: usize| if joined { 4 - k } else { k };
+        (0..4)
+            .filter(comes_in)
+            .filter_map(|from| {
+                let to = (1..4).map(|k| (from + turn(k)) % 4).find(goes_out)?;
+                Some([links[from], links[to]])
+            })
+            .collect()
+    }
+
+    /// Whether the picture is anti-aliased: a quarter of the curve's links have an end that is neither as light nor as dark as the
+    /// nodes around it.
+    fn graded(&self, trails: &[Links]) -> bool {
+        let grey = |&(i, j): &(usize, usize)| {
+            let (mut low, mut high) = (1.0f64, 0.0f64);
+            for j in j.saturating_sub(1)..(j + 2).min(self.rows) {
+                for i in i.saturating_sub(1)..(i + 2).min(self.columns) {
+                    let v = self.value(i, j);
+                    (low, high) = (low.min(v), high.max(v));
+                }
+            }
+            let above = (self.value(i, j) - low) / (high - low).max(0.1);
+            (0.1..0.9).contains(&above)
+        };
+        let links = || trails.iter().flat_map(|t| &t.links);
+        let partial = links().filter(|l| self.link(**l).iter().any(grey)).count();
+        4 * partial > links().count()
+    }
+
+    /// The points of a curve.
+    fn trail(&self, Links { links, closed }: &Links, graded: bool) -> Trail {
+        let known = |&link: &u32| {
+            if graded {
+                self.summed(link)
+            } else {
+                Some(self.middle(link))
+            }
+        };
+        let found: Vec<Option<DVec2>> = links.iter().map(known).collect();
+        // Sums that few links have leave too much of a curve out.
+        let few = links.len() < 12 || 4 * found.iter().flatten().count() < links.len();
+        let mut points: Vec<DVec2> = Vec::with_capacity(links.len());
+        for (k, (&link, found)) in links.iter().zip(found).enumerate() {
+            let own = found.unwrap_or_else(|| self.point(link));
+            if !closed && (k == 0 || k + 1 == links.len()) {
+                points.push(DVec2::new(0.0, own.y));
+            } else if few || found.is_some() || points.last().is_some_and(|q| q.distance(own) > 1.5)
+            {
+                points.push(own);
+            }
+        }
+        Trail {
+            points,
+            closed: *closed,
+        }
+    }
+}
+
+/// A curve by the links it passes.
+#[derive(Debug)]
+struct Links {
+    links: Vec<u32>,
+    closed: bool,
+}
+
+#[cfg(test)]
+mod tests;
