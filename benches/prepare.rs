@@ -1,0 +1,165 @@
+//! What preparing a frame costs the CPU: 1,000 objects that stand still, that move, whose offsets change, under one camera that
+//! stands or moves. `cargo bench --bench prepare`.
+#![allow(unsafe_code, clippy::unwrap_used)]
+
+use ash::vk;
+use divan::Bencher;
+use glam::DVec3;
+use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Object, Offset, Placement};
+use revmap::settings::{Planes, SearchSettings};
+use std::sync::Arc;
+
+const COUNT: usize = 1000;
+
+fn main() {
+    divan::main();
+}
+
+/// A crowd of spindles and vases on a device, and commands that are recorded and never submitted.
+struct Crowd {
+    renderer: Renderer,
+    ids: Vec<ObjectId>,
+    camera: Camera,
+    frame: usize,
+    cmd: vk::CommandBuffer,
+    pool: vk::CommandPool,
+    device: Device,
+}
+
+fn place(n: usize, frame: usize) -> Placement {
+    let (x, y) = ((n % 40) as f64, (n / 40) as f64);
+    let z = 0.1 * (0.1 * frame as f64 + n as f64).sin();
+    Placement {
+        position: DVec3::new(1.2 * x - 24.0, 1.2 * y - 15.0, z),
+        ..Placement::default()
+    }
+}
+
+impl Crowd {
+    fn new() -> Self {
+        let device = Device::open(None).unwrap();
+        let output = Output::Pass(PassFormats {
+            begun: PassKind::Dynamic {
+                color: vec![vk::Format::R8G8B8A8_SRGB],
+                depth: vk::Format::D32_SFLOAT,
+                stencil: vk::Format::UNDEFINED,
+            },
+            samples: 1,
+            depth: DepthOrder::Normal,
+            planes: Planes::Color,
+        });
+        let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2).unwrap();
+        let profiles = [
+            &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],
+            &[
+                [0.0, 0.0],
+                [0.3, 0.0],
+                [0.4, 0.3],
+                [0.15, 0.7],
+                [0.25, 1.0],
+                [0.0, 1.0],
+            ][..],
+        ]
+        .map(|points| Arc::new(Profile::polygon(points, 0.5).unwrap()));
+        let ids = (0..COUNT)
+            .map(|n| {
+                let mut object = Object::new("crowd", profiles[n % 2].clone());
+                object.placement = place(n, 0);
+                renderer.add(object).unwrap()
+            })
+            .collect();
+        let raw = device.raw();
+        // SAFETY: plain creations, destroyed in Drop.
+        let (pool, cmd) = unsafe {
+            let flags = vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER;
+            let info = vk::CommandPoolCreateInfo::default().flags(flags);
+            let pool = raw.create_command_pool(&info, None).unwrap();
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(pool)
+                .command_buffer_count(1);
+            (pool, raw.allocate_command_buffers(&info).unwrap()[0])
+        };
+        let mut crowd = Self {
+            renderer,
+            ids,
+            camera: Camera::new(DVec3::new(30.0, 5.0, 20.0), DVec3::ZERO),
+            frame: 0,
+            cmd,
+            pool,
+            device,
+        };
+        for _ in 0..4 {
+            crowd.begin();
+            crowd.prepare();
+        }
+        crowd
+    }
+
+    /// Begins another frame's commands.
+    fn begin(&mut self) {
+        self.frame += 1;
+        let info = vk::CommandBufferBeginInfo::default();
+        // SAFETY: the commands are never submitted.
+        unsafe { self.device.raw().begin_command_buffer(self.cmd, &info) }.unwrap();
+    }
+
+    fn prepare(&mut self) {
+        let view = View::from_camera(&self.camera, (1280, 720), [0.1, 200.0]).unwrap();
+        // SAFETY: `cmd` is recording; no frame was ever submitted.
+        unsafe { self.renderer.prepare(self.cmd, self.frame % 2, &view) }.unwrap();
+    }
+}
+
+impl Drop for Crowd {
+    fn drop(&mut self) {
+        // SAFETY: the commands were never submitted.
+        unsafe { self.device.raw().destroy_command_pool(self.pool, None) };
+    }
+}
+
+fn frames(bencher: Bencher, mut change: impl FnMut(&mut Crowd)) {
+    let mut crowd = Crowd::new();
+    bencher.bench_local(|| {
+        crowd.begin();
+        change(&mut crowd);
+        crowd.prepare();
+    });
+}
+
+#[divan::bench]
+fn still(bencher: Bencher) {
+    frames(bencher, |_| {});
+}
+
+#[divan::bench]
+fn all_move(bencher: Bencher) {
+    frames(bencher, |crowd| {
+        for (n, id) in crowd.ids.iter().enumerate() {
+            crowd
+                .renderer
+                .set_placement(*id, place(n, crowd.frame))
+                .unwrap();
+        }
+    });
+}
+
+#[divan::bench]
+fn the_camera_moves(bencher: Bencher) {
+    frames(bencher, |crowd| crowd.camera.eye.x += 1e-3);
+}
+
+#[divan::bench(sample_count = 20)]
+fn all_offsets_change(bencher: Bencher) {
+    frames(bencher, |crowd| {
+        for (n, id) in crowd.ids.iter().enumerate() {
+            let extend = 0.02 + 0.02 * (0.05 * crowd.frame as f64 + n as f64).sin();
+            let offset = Offset {
+                extend,
+                ..Offset::default()
+            };
+            crowd.renderer.set_offset(*id, offset).unwrap();
+        }
+    });
+}
