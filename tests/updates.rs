@@ -81,7 +81,8 @@ fn what_is_refused_changes_nothing() {
     device().check().unwrap();
 }
 
-/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows only when it is baked.
+/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows
+/// only when it is baked.
 #[test]
 fn what_fails_half_way_is_not_drawn() {
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();

@@ -12,10 +12,12 @@ pub(crate) const MAX_SIDE: u32 = 16_384;
 
 /// A profile from the bytes of a PNG or JPEG.
 ///
-/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then is, and what is darker
-/// than one half is solid. Width and height are read and checked before anything is decoded.
+/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then
+/// is, and what is darker than one half is solid. Width and height are read and checked before
+/// anything is decoded.
 ///
-/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the form, its axis the left edge.
+/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the
+/// form, its axis the left edge.
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
         return baked(bytes, &header);
@@ -87,7 +89,8 @@ fn read_darkness(bytes: &[u8]) -> Result<Raster> {
     })
 }
 
-/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks for.
+/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks
+/// for.
 pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<DynamicImage> {
     let fault = |message: String| Error::new(stage, message);
     let open = || -> Result<_> {
@@ -110,7 +113,8 @@ pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<DynamicI
         )));
     }
     let mut reader = open()?;
-    // The size is checked already; the decoder's own guess at a limit would refuse large pictures of 16 bits.
+    // The size is checked already; the decoder's own guess at a limit would refuse large pictures
+    // of 16 bits.
     reader.limits(Limits::no_limits());
     reader.decode().map_err(broken)
 }
@@ -158,8 +162,8 @@ pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
     g + 0.2126 * (r - g) + 0.0722 * (b - g)
 }
 
-/// The part of the picture right of the axis. With the axis in the middle of an odd width, the first column is the one that the
-/// axis splits.
+/// The part of the picture right of the axis. With the axis in the middle of an odd width, the
+/// first column is the one that the axis splits.
 fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
     if axis == ProfileAxis::Left {
         return dark;
