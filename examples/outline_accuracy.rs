@@ -68,7 +68,8 @@ fn profiles() -> Result<Vec<(&'static str, Profile)>, revmap::Error> {
     Ok(all)
 }
 
-/// Mean, 99th percentile and maximum of the distance between two outlines, object units, over points of both that are `step` apart.
+/// Mean, 99th percentile and maximum of the distance between two outlines, object units, over
+/// points of both that are `step` apart.
 fn errors(a: &Outline, b: &Outline, step: f64) -> [f64; 3] {
     let mut distances: Vec<f64> = [(a, b), (b, a)]
         .into_iter()

@@ -68,7 +68,8 @@ fn real_profiles_are_plausible() {
     }
 }
 
-/// The same drawing as an image: its map must agree with the drawing's, at the image's resolution and at others.
+/// The same drawing as an image: its map must agree with the drawing's, at the image's resolution
+/// and at others.
 #[test]
 fn an_image_of_a_drawing_gives_its_distances() {
     for name in ["pawn.svg", "bishop.svg", "king.svg", "rook.svg"] {
@@ -89,7 +90,8 @@ fn an_image_of_a_drawing_gives_its_distances() {
                 .map(|(a, b)| f64::from(a - b).abs() * 600.0)
                 .collect();
             let max = errors.iter().copied().fold(0.0, f64::max);
-            // The bottom of a sharp notch lies beyond the last pixel that is half covered; inside the solid, whole wedges look to it.
+            // The bottom of a sharp notch lies beyond the last pixel that is half covered; inside
+            // the solid, whole wedges look to it.
             assert!(max < 1.7, "{name} at {rows}: {max} pixels");
             let outside: Vec<f64> = errors
                 .iter()
@@ -132,7 +134,8 @@ fn odd_widths_stay_where_they_are() {
         for k in 0..400 {
             let p = DVec2::new(f64::from(k % 20) / 42.0, (f64::from(k / 20) + 0.5) / 20.0);
             let exact = p.distance(DVec2::new(0.0, 0.5)) - radius / 80.0;
-            // Near the middle of the ball the distance has a point, which no bilinear grid can follow.
+            // Near the middle of the ball the distance has a point, which no bilinear grid can
+            // follow.
             if exact > -0.3 {
                 worst = worst.max((map.distance_at(p.x, p.y) - exact).abs() * 80.0);
             }

@@ -28,8 +28,8 @@ pub use store::EncodedMap;
 pub enum MapSource {
     /// The papers': exact Euclidean distance to the nearest solid pixel's centre of a binary image.
     Binary,
-    /// What an anti-aliased picture of the map's own size can tell: the outline is rasterised to 8 bits of coverage and traced
-    /// again, and distances are measured to that.
+    /// What an anti-aliased picture of the map's own size can tell: the outline is rasterised to 8
+    /// bits of coverage and traced again, and distances are measured to that.
     Coverage,
     /// Exact distance to the outline's segments.
     #[default]
@@ -54,14 +54,16 @@ pub struct BakeOptions {
     pub source: MapSource,
     /// Rows of the map: one object unit is this many texels.
     pub rows: u32,
-    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. More than that is wanted where the
-    /// solid reaches past its cylinder: polygons wider than their box, offsets, an axis off the middle.
+    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. More than
+    /// that is wanted where the solid reaches past its cylinder: polygons wider than their box,
+    /// offsets, an axis off the middle.
     pub reach: f64,
 }
 
 /// Signed distances to the profile's boundary on a grid of square texels.
 ///
-/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, `h = 1 / rows`: row 0 is the top.
+/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, `h = 1 / rows`: row 0 is
+/// the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeMap {
     /// Texels along `r`.

@@ -22,16 +22,18 @@ impl BakeOptions {
 impl ShapeMap {
     /// Measures the signed distances to a profile's boundary on a grid of `options.rows` rows.
     ///
-    /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The axis is no boundary.
+    /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The
+    /// axis is no boundary.
     ///
-    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid where more than half of it is covered:
-    ///   by the picture's pixels, if the profile has them, else by the outline.
+    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid
+    ///   where more than half of it is covered: by the picture's pixels, if the profile has them,
+    ///   else by the outline.
     /// * [`MapSource::Coverage`]: to the outline as an 8-bit picture of the map's size tells it.
     /// * [`MapSource::Exact`]: to the outline's segments.
     ///
     /// # Errors
-    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than 16384 columns, a shape
-    /// that leaves no texel solid.
+    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than
+    /// 16384 columns, a shape that leaves no texel solid.
     pub fn bake(profile: &Profile, options: &BakeOptions) -> Result<Self> {
         let BakeOptions {
             source,
@@ -104,11 +106,12 @@ impl ShapeMap {
         f64::from(self.columns) / f64::from(self.rows)
     }
 
-    /// The signed distance at `(r, z)`, object units: bilinear between texels, as the shaders read it.
+    /// The signed distance at `(r, z)`, object units: bilinear between texels, as the shaders read
+    /// it.
     ///
-    /// Outside the map, with `c` the nearest point of its rectangle and `l` the distance there: `sqrt(d(c)^2 + l^2)`, which never
-    /// exceeds the distance to a solid that stays within the rectangle; where `d(c)` is negative, `d(c) + l`. Negative `r` is
-    /// the mirrored half.
+    /// Outside the map, with `c` the nearest point of its rectangle and `l` the distance there:
+    /// `sqrt(d(c)^2 + l^2)`, which never exceeds the distance to a solid that stays within the
+    /// rectangle; where `d(c)` is negative, `d(c) + l`. Negative `r` is the mirrored half.
     #[must_use]
     pub fn distance_at(&self, r: f64, z: f64) -> f64 {
         let p = DVec2::new(r.abs(), z);
@@ -118,8 +121,9 @@ impl ShapeMap {
         if d > 0.0 { d.hypot(beyond) } else { d + beyond }
     }
 
-    /// The derivative `(dD/dr, dD/dz)` of the bilinear cell that `(r, z)` lies in: not normalised; of length 1 where the
-    /// distances around are exact and the nearest point of the surface is the same.
+    /// The derivative `(dD/dr, dD/dz)` of the bilinear cell that `(r, z)` lies in: not normalised;
+    /// of length 1 where the distances around are exact and the nearest point of the surface is the
+    /// same.
     #[must_use]
     pub fn gradient_at(&self, r: f64, z: f64) -> [f64; 2] {
         let (cell, x, y) = self.cell(r, z);
@@ -136,7 +140,8 @@ impl ShapeMap {
         mix(mix(a, b, x), mix(c, d, x), y)
     }
 
-    /// The four texels around a point (`[row][column]`) and its place between them; texels beyond the border repeat.
+    /// The four texels around a point (`[row][column]`) and its place between them; texels beyond
+    /// the border repeat.
     fn cell(&self, r: f64, z: f64) -> ([[f64; 2]; 2], f64, f64) {
         let side = f64::from(self.rows);
         let (u, v) = (r * side - 0.5, (1.0 - z) * side - 0.5);

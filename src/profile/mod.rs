@@ -1,8 +1,9 @@
 //! A **profile**: the solid region of the meridian half-plane that is turned about the axis.
 //!
-//! Coordinates are `(r, z)` in object units: the axis is `r = 0`, the shape box reaches from `z = 0` to `z = 1`
-//! and to the radius `R`. A profile comes from a picture, a drawing or a polygon. It becomes one [`Outline`], and all that follows
-//! (maps, arc lengths, surfaces, meshes, the reference) reads this outline.
+//! Coordinates are `(r, z)` in object units: the axis is `r = 0`, the shape box reaches from `z =
+//! 0` to `z = 1` and to the radius `R`. A profile comes from a picture, a drawing or a polygon. It
+//! becomes one [`Outline`], and all that follows (maps, arc lengths, surfaces, meshes, the
+//! reference) reads this outline.
 
 mod area;
 #[cfg(feature = "drawing")]
@@ -37,9 +38,10 @@ pub enum ProfileAxis {
 
 /// The solid's boundary as closed chains of straight segments.
 ///
-/// The loops do not cross; the solid lies to the **left** of every segment (outer loops run counter-clockwise in
-/// `(r, z)`, holes clockwise). All points have `r >= 0`. Segments along `r = 0` close a loop on the axis; they lie
-/// inside the turned solid and are no part of its surface (see [`Outline::surface_segments`]).
+/// The loops do not cross; the solid lies to the **left** of every segment (outer loops run
+/// counter-clockwise in `(r, z)`, holes clockwise). All points have `r >= 0`. Segments along `r =
+/// 0` close a loop on the axis; they lie inside the turned solid and are no part of its surface
+/// (see [`Outline::surface_segments`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// Closed loops; the last point joins the first.
@@ -64,22 +66,25 @@ pub struct Profile {
     pub outline: Outline,
     /// `R`: the shape box is `[-R, R]^2 x [0, 1]`.
     pub radius: f64,
-    /// The pixels of the picture that the outline was traced from, for the map source `binary`. `None` for drawings and polygons,
-    /// and for pictures whose axis is the middle of a column of pixels.
+    /// The pixels of the picture that the outline was traced from, for the map source `binary`.
+    /// `None` for drawings and polygons, and for pictures whose axis is the middle of a column of
+    /// pixels.
     pub raster: Option<Raster>,
 }
 
 impl Profile {
-    /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (feature `drawing`; also gzip-compressed).
+    /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (feature `drawing`; also
+    /// gzip-compressed).
     ///
-    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over white. Pictures are traced as
-    /// by [`Profile::traced`]. The curves of drawings are flattened within 1e-5 of the height. `R` is width / height with the
-    /// axis at the left, half of that with it in the middle.
+    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over
+    /// white. Pictures are traced as by [`Profile::traced`]. The curves of drawings are flattened
+    /// within 1e-5 of the height. `R` is width / height with the axis at the left, half of that
+    /// with it in the middle.
     ///
     /// # Errors
-    /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor
-    /// drawing, more than 16384 or less than 2 pixels on a side, all light or all dark, or a drawing with what has no
-    /// outline (text, pictures, patterns, masks, filters).
+    /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor drawing,
+    /// more than 16384 or less than 2 pixels on a side, all light or all dark, or a drawing with
+    /// what has no outline (text, pictures, patterns, masks, filters).
     pub fn load(path: impl AsRef<Path>, axis: ProfileAxis) -> Result<Self> {
         let path = path.as_ref();
         let read = || Self::from_bytes(&read_file(path)?, axis);
@@ -98,10 +103,12 @@ impl Profile {
         }
     }
 
-    /// A profile from a closed polygon of `[r, z]` points, object units, `radius` being the `R` of its box.
+    /// A profile from a closed polygon of `[r, z]` points, object units, `radius` being the `R` of
+    /// its box.
     ///
-    /// The last point joins the first; either way round will do. Where the polygon crosses or covers itself, the solid is all
-    /// that it winds round (non-zero rule). It may reach past its box; drawing cuts it there.
+    /// The last point joins the first; either way round will do. Where the polygon crosses or
+    /// covers itself, the solid is all that it winds round (non-zero rule). It may reach past its
+    /// box; drawing cuts it there.
     ///
     /// ```
     /// let cone = revmap::profile::Profile::polygon(&[[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]], 0.5)?;
@@ -110,13 +117,15 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`Stage::Profile`], with the key `polygon` or `radius`: fewer than 3 points, a
-    /// coordinate that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that is not positive.
+    /// [`Stage::Profile`], with the key `polygon` or `radius`: fewer than 3 points, a coordinate
+    /// that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that is not
+    /// positive.
     pub fn polygon(points: &[[f64; 2]], radius: f64) -> Result<Self> {
         polygon::profile(points, radius)
     }
 
-    /// A profile with a known outline. The loops are taken as they are: see [`Outline`] for what they must be.
+    /// A profile with a known outline. The loops are taken as they are: see [`Outline`] for what
+    /// they must be.
     #[must_use]
     pub fn new(outline: Outline, radius: f64) -> Self {
         Self {
@@ -128,11 +137,13 @@ impl Profile {
 
     /// A profile from the right half of a picture, `R` = columns / rows.
     ///
-    /// The outline is the curve that the pixels tell: where coverage passes one half, freed from the noise of the pixels, corners
-    /// found again. It stays within the picture. Beyond the picture's upper, lower and right border all is empty.
+    /// The outline is the curve that the pixels tell: where coverage passes one half, freed from
+    /// the noise of the pixels, corners found again. It stays within the picture. Beyond the
+    /// picture's upper, lower and right border all is empty.
     ///
     /// # Errors
-    /// [`Stage::Profile`]: no pixel is more than half covered, or the list of coverages has not `columns * rows` values.
+    /// [`Stage::Profile`]: no pixel is more than half covered, or the list of coverages has not
+    /// `columns * rows` values.
     pub fn traced(raster: Raster) -> Result<Self> {
         trace::profile(raster, false)
     }

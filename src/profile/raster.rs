@@ -5,8 +5,8 @@ use crate::maps::Bounds;
 use rayon::prelude::*;
 
 impl Raster {
-    /// Coverage on another grid of square pixels, `rows` to the object unit, by area: each new pixel is the mean of what it
-    /// covers of the old ones. Beyond the picture all is empty.
+    /// Coverage on another grid of square pixels, `rows` to the object unit, by area: each new
+    /// pixel is the mean of what it covers of the old ones. Beyond the picture all is empty.
     #[must_use]
     pub fn resample(&self, columns: u32, rows: u32) -> Self {
         let mut coverage = vec![0.0; columns as usize * rows as usize];
@@ -47,7 +47,8 @@ impl Raster {
         }
     }
 
-    /// Coverage in `levels` even steps, as a picture keeps it: 256 of 8 bits, 2 of a binary picture (solid where over one half).
+    /// Coverage in `levels` even steps, as a picture keeps it: 256 of 8 bits, 2 of a binary picture
+    /// (solid where over one half).
     #[must_use]
     pub fn with_levels(mut self, levels: u16) -> Self {
         let most = f32::from(levels.max(2) - 1);
@@ -57,8 +58,8 @@ impl Raster {
         self
     }
 
-    /// The rectangle of pixels more than half solid, one pixel wider all round (as far as there is picture), which
-    /// contains every edge that such a picture can mean; `None` of an empty raster.
+    /// The rectangle of pixels more than half solid, one pixel wider all round (as far as there is
+    /// picture), which contains every edge that such a picture can mean; `None` of an empty raster.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         let (width, side) = (self.columns as usize, f64::from(self.rows));

@@ -1,7 +1,8 @@
 //! Regions of the plane on an integer grid, and the set operations between them.
 //!
-//! Coordinates are scaled by a power of two before they are rounded, so that 0, 1 and every short binary fraction survive
-//! exactly, and a region that is combined again and again is rounded once only.
+//! Coordinates are scaled by a power of two before they are rounded, so that 0, 1 and every short
+//! binary fraction survive exactly, and a region that is combined again and again is rounded once
+//! only.
 
 use super::Outline;
 use glam::DVec2;
@@ -43,8 +44,8 @@ pub(super) struct Grid {
     scale: f64,
 }
 
-/// Integers stay below this in magnitude: half of what the overlay's arithmetic allows, so that clipping and
-/// intersections have room.
+/// Integers stay below this in magnitude: half of what the overlay's arithmetic allows, so that
+/// clipping and intersections have room.
 const LIMIT: f64 = (1u32 << 29) as f64;
 
 impl Grid {
@@ -136,8 +137,8 @@ impl Region {
     }
 }
 
-/// The outline of what closed loops enclose, self-crossing ones too. Corners that were given come back exactly; only crossings are
-/// rounded to the grid.
+/// The outline of what closed loops enclose, self-crossing ones too. Corners that were given come
+/// back exactly; only crossings are rounded to the grid.
 pub(super) fn enclosed(loops: &[Vec<DVec2>], rule: Rule) -> Outline {
     let points = || loops.iter().flatten();
     let grid = Grid::for_extent(points().fold(0.0, |m: f64, p| m.max(p.abs().max_element())));

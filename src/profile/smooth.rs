@@ -1,11 +1,14 @@
-//! A curve from points that are known to within a fraction of a texel: corners first, then straight runs, then what is round.
+//! A curve from points that are known to within a fraction of a texel: corners first, then straight
+//! runs, then what is round.
 //!
-//! * A **corner** is where the lines through the points 1.5 to 4.5 texels before and after (to 7 in binary pictures) turn most, and
-//!   by enough that the noise of the points cannot be the reason; it stands where the lines of its two sides meet.
-//! * A stretch between corners that one line fits as well as the noise allows is **straight**, and level or upright if its whole drift is
-//!   less than that noise.
-//! * Elsewhere each point is moved to the parabola (in the arc length) through its neighbours, over the widest window whose residuals are
-//!   no more than noise: uniform within a texel in binary pictures (rms 0.29), a few hundredths in anti-aliased ones.
+//! * A **corner** is where the lines through the points 1.5 to 4.5 texels before and after (to 7 in
+//!   binary pictures) turn most, and by enough that the noise of the points cannot be the reason;
+//!   it stands where the lines of its two sides meet.
+//! * A stretch between corners that one line fits as well as the noise allows is **straight**, and
+//!   level or upright if its whole drift is less than that noise.
+//! * Elsewhere each point is moved to the parabola (in the arc length) through its neighbours, over
+//!   the widest window whose residuals are no more than noise: uniform within a texel in binary
+//!   pictures (rms 0.29), a few hundredths in anti-aliased ones.
 //!
 //! All in texels.
 
@@ -76,7 +79,8 @@ const SLANT: f64 = 0.2;
 /// Points nearer to a corner than this are touched by its rounding.
 const NEAR: f64 = 1.5;
 
-/// The smoothed curve's points. A curve of a few pixels that would lose half of its area stays as it is.
+/// The smoothed curve's points. A curve of a few pixels that would lose half of its area stays as
+/// it is.
 pub(super) fn smooth(mut trail: Trail, graded: bool) -> Vec<DVec2> {
     if trail.points.len() < 3 {
         return trail.points;
@@ -209,8 +213,9 @@ impl Line {
         corners
     }
 
-    /// The two sides of a corner at point `k`, as they arrive there, each by a point and a direction: tangents of parabolas through the
-    /// points before and after, where these are good and many enough, else lines, if they do not merely touch something round.
+    /// The two sides of a corner at point `k`, as they arrive there, each by a point and a
+    /// direction: tangents of parabolas through the points before and after, where these are good
+    /// and many enough, else lines, if they do not merely touch something round.
     fn sides(&self, k: usize, noise: &Noise) -> Option<[Side; 2]> {
         let part = |from: f64, to: f64| {
             let low = self.place.partition_point(|&s| s < self.place[k] + from);
@@ -271,7 +276,8 @@ impl Line {
         let straight: Vec<Option<Side>> = ends
             .windows(2)
             .map(|pair| {
-                // A straight run that ends on the axis has to cross it: one from axis to axis encloses nothing.
+                // A straight run that ends on the axis has to cross it: one from axis to axis
+                // encloses nothing.
                 let on_axis =
                     |c: &&Corner| !self.closed && (c.index == self.first || c.index == last);
                 let ends = pair.iter().filter(on_axis).count();
@@ -325,8 +331,8 @@ impl Line {
         out
     }
 
-    /// Where a corner stands: at the meeting of its straight sides if it has them. Where they do not meet near by, each straight side
-    /// has an end of its own.
+    /// Where a corner stands: at the meeting of its straight sides if it has them. Where they do
+    /// not meet near by, each straight side has an end of its own.
     fn corner(&self, corner: &Corner, sides: [Option<Side>; 2], noise: &Noise) -> Vec<DVec2> {
         let own = self.points[corner.index];
         let tangents = self.sides(corner.index, noise);
@@ -377,7 +383,8 @@ impl Line {
         if most > noise.most {
             return None;
         }
-        // A long bow and a short one alike look straight within the noise: unless a parabola explains much more of it.
+        // A long bow and a short one alike look straight within the noise: unless a parabola
+        // explains much more of it.
         if points.len() > 5 {
             let sum: f64 = points.iter().map(|q| u.perp_dot(*q - p).powi(2)).sum();
             let rms = (sum / points.len() as f64).sqrt();
@@ -410,7 +417,8 @@ impl Line {
             .min(self.count / if self.closed { 6 } else { 3 });
         let mut m = 2;
         while m <= most {
-            // As many on each side as there are, that the fit leans to neither; near a corner a few more on the other.
+            // As many on each side as there are, that the fit leans to neither; near a corner a few
+            // more on the other.
             let (left, right) = (k - low, high.min(self.points.len() - 1) - k);
             let (left, right) = (left.min(m), right.min(m));
             if left + right < m.min(4) {

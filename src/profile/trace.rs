@@ -1,16 +1,21 @@
-//! The curve that a picture was drawn from: where its coverage passes one half, as chains of points on the links between pixels.
+//! The curve that a picture was drawn from: where its coverage passes one half, as chains of points
+//! on the links between pixels.
 //!
-//! Samples stand at the pixels' centres. Beyond the picture lies 0, so a solid that touches the top, bottom or right border ends
-//! exactly there. Left of the axis stands the mirror image. A **link** joins the centres of two neighbours. Each link with one end
-//! more than half covered and the other not holds one point:
+//! Samples stand at the pixels' centres. Beyond the picture lies 0, so a solid that touches the
+//! top, bottom or right border ends exactly there. Left of the axis stands the mirror image. A
+//! **link** joins the centres of two neighbours. Each link with one end more than half covered and
+//! the other not holds one point:
 //!
 //! * In a binary picture it is the link's middle, known to half a texel.
-//! * In an anti-aliased picture the coverages along the link's line, added up from a full pixel to an empty one, give the edge's mean
-//!   position over the pixel's width. That is its position in the middle where the edge is straight (the height function of
-//!   two-phase flow). Where the edge runs too much along the link, the points of the links across are enough.
-//! * Where there are no full pixels, as in grey or blurred solids, it is where linear interpolation passes one half.
+//! * In an anti-aliased picture the coverages along the link's line, added up from a full pixel to
+//!   an empty one, give the edge's mean position over the pixel's width. That is its position in
+//!   the middle where the edge is straight (the height function of two-phase flow). Where the edge
+//!   runs too much along the link, the points of the links across are enough.
+//! * Where there are no full pixels, as in grey or blurred solids, it is where linear interpolation
+//!   passes one half.
 //!
-//! What [`smooth`](super::smooth) makes of the chains is an [`Outline`]. Chains that cross afterwards are cut at their crossings.
+//! What [`smooth`](super::smooth) makes of the chains is an [`Outline`]. Chains that cross
+//! afterwards are cut at their crossings.
 
 use super::image::empty_fault;
 use super::region::{Rule, enclosed};
@@ -21,7 +26,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// The profile of a picture's right half. `split`: the axis is the middle of column 0, else its left edge.
+/// The profile of a picture's right half. `split`: the axis is the middle of column 0, else its
+/// left edge.
 pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
     let (columns, rows) = (raster.columns as usize, raster.rows as usize);
     if raster.coverage.len() != columns * rows {
@@ -46,14 +52,15 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
 }
 
 impl Raster {
-    /// The outline that the pixels tell (see [`Profile::traced`]); empty when none is more than half covered.
+    /// The outline that the pixels tell (see [`Profile::traced`]); empty when none is more than
+    /// half covered.
     pub(crate) fn outline(&self) -> Outline {
         Nodes::new(self, false).outline()
     }
 }
 
-/// The picture with a rim of one empty pixel above, below and at the right. Where the axis is the left edge of the picture, column 0
-/// is the mirror image of column 1.
+/// The picture with a rim of one empty pixel above, below and at the right. Where the axis is the
+/// left edge of the picture, column 0 is the mirror image of column 1.
 struct Nodes<'a> {
     raster: &'a Raster,
     columns: usize,
@@ -140,7 +147,8 @@ impl<'a> Nodes<'a> {
         self.place(a).lerp(self.place(b), (0.5 - va) / (vb - va))
     }
 
-    /// The same from the sum of coverages along the link's line; none where the edge runs too much along it.
+    /// The same from the sum of coverages along the link's line; none where the edge runs too much
+    /// along it.
     fn summed(&self, link: u32) -> Option<DVec2> {
         const FULL: f64 = 0.995;
         const LONGEST: isize = 2;
@@ -192,7 +200,8 @@ impl<'a> Nodes<'a> {
             .collect();
         let mut next: HashMap<u32, u32> = pairs.iter().map(|&[from, to]| (from, to)).collect();
         let mut firsts: Vec<u32> = pairs.iter().map(|p| p[0]).collect();
-        // Those that come from the axis first: from there on every walk ends where it began, or on the axis.
+        // Those that come from the axis first: from there on every walk ends where it began, or on
+        // the axis.
         let axis = |link: u32| link % 2 == 1 && (link as usize / 2).is_multiple_of(self.columns);
         firsts.sort_by_key(|&l| !axis(l));
         let mut trails = Vec::new();
@@ -223,7 +232,8 @@ impl<'a> Nodes<'a> {
         trails
     }
 
-    /// The curve's pieces within the cell whose upper left node is `(i, j)`, each from link to link.
+    /// The curve's pieces within the cell whose upper left node is `(i, j)`, each from link to
+    /// link.
     fn cell(&self, i: usize, j: usize) -> Vec<[u32; 2]> {
         let values = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|c| self.value(c.0, c.1));
         let solid = values.map(|v| v > 0.5);
@@ -234,10 +244,12 @@ impl<'a> Nodes<'a> {
         let below = node + self.columns as u32;
         // Top, right, bottom, left: sides between corners 01, 12, 23, 30.
         let links = [2 * node, 2 * (node + 1) + 1, 2 * below, 2 * node + 1];
-        // Walked round the cell (clockwise, as seen), a side that goes from empty to solid is where a curve comes in: solid is on its left.
+        // Walked round the cell (clockwise, as seen), a side that goes from empty to solid is where
+        // a curve comes in: solid is on its left.
         let comes_in = |&k: &usize| !solid[k] && solid[(k + 1) % 4];
         let goes_out = |&k: &usize| solid[k] && !solid[(k + 1) % 4];
-        // The way out is the next one round the solid corner, or at a saddle that is solid round the empty one before.
+        // The way out is the next one round the solid corner, or at a saddle that is solid round
+        // the empty one before.
         let joined = values.iter().sum::<f64>() > 2.0;
         let turn = |k: usize| if joined { 4 - k } else { k };
         (0..4)
@@ -249,8 +261,8 @@ impl<'a> Nodes<'a> {
             .collect()
     }
 
-    /// Whether the picture is anti-aliased: a quarter of the curve's links have an end that is neither as light nor as dark as the
-    /// nodes around it.
+    /// Whether the picture is anti-aliased: a quarter of the curve's links have an end that is
+    /// neither as light nor as dark as the nodes around it.
     fn graded(&self, trails: &[Links]) -> bool {
         let grey = |&(i, j): &(usize, usize)| {
             let (mut low, mut high) = (1.0f64, 0.0f64);

@@ -13,7 +13,8 @@ pub(super) struct Parabola {
     pub(super) most: f64,
 }
 
-/// The parabola in the arc length (up to each of the points: `place`) through points `from..=to`: its point at `k`, residuals' rms and largest.
+/// The parabola in the arc length (up to each of the points: `place`) through points `from..=to`:
+/// its point at `k`, residuals' rms and largest.
 pub(super) fn parabola(
     points: &[DVec2],
     place: &[f64],
@@ -81,7 +82,8 @@ pub(super) fn meeting([(p, u), (q, v)]: [(DVec2, DVec2); 2]) -> Option<DVec2> {
     (cross.abs() > 0.1).then(|| p + u * ((q - p).perp_dot(v) / cross))
 }
 
-/// The line with the least squares of distances: a point, the direction from first to last, the largest distance.
+/// The line with the least squares of distances: a point, the direction from first to last, the
+/// largest distance.
 pub(super) fn line_through(points: &[DVec2]) -> Option<(DVec2, DVec2, f64)> {
     if points.len() < 3 {
         return None;

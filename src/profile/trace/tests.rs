@@ -26,7 +26,8 @@ fn ramp(distance: f64) -> f64 {
     (0.5 - distance).clamp(0.0, 1.0)
 }
 
-/// Traces a picture, and checks what holds of every outline: it is within the box, has an area, and surfaces can be made of it.
+/// Traces a picture, and checks what holds of every outline: it is within the box, has an area, and
+/// surfaces can be made of it.
 #[track_caller]
 fn traced(raster: &Raster) -> Outline {
     let profile = Profile::traced(raster.clone()).unwrap();
@@ -44,7 +45,8 @@ fn check(profile: &Profile) {
     source.contour(&Offset::default()).unwrap();
 }
 
-/// Root mean square and largest error, texels, of the distances to a disc of 128 rows, after its picture went through `change`.
+/// Root mean square and largest error, texels, of the distances to a disc of 128 rows, after its
+/// picture went through `change`.
 fn disc_errors(change: impl Fn(&mut Raster)) -> (f64, f64) {
     let disc = Disc::default();
     let polygon = disc.polygon(1 << 14).unwrap();
@@ -164,7 +166,8 @@ fn the_border_of_the_picture_is_a_boundary() {
     assert!((full.area() - 0.5).abs() < 0.02, "{}", full.area());
 }
 
-/// An axis through the middle of a column and one at the left edge of a finer picture are the same axis.
+/// An axis through the middle of a column and one at the left edge of a finer picture are the same
+/// axis.
 #[test]
 fn a_column_on_the_axis_counts_half() {
     let ball = |shift: f64| {
