@@ -1,10 +1,7 @@
 //! The mesh, the rival of the searches: that it is the same solid, as exact as its tessellation lets it be, and that what it cannot draw is
 //! refused.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
+use crate::common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::error::Stage;
 use revmap::frame::Frame;
