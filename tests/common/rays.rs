@@ -1,9 +1,6 @@
 //! What tests that send rays one by one share: numbers by chance, and the solids that the rays are sent at.
 
-#[path = "shapes.rs"]
-#[allow(dead_code)]
-pub mod shapes;
-
+use super::shapes;
 use revmap::profile::{Profile, ProfileAxis};
 
 /// Numbers by SplitMix64.

@@ -1,5 +1,7 @@
 //! Outlines for tests: plain shapes, and random ones that never cross themselves.
 
+#![allow(dead_code)] // the reference takes all, the library some
+
 use glam::DVec2;
 use revmap::profile::Outline;
 

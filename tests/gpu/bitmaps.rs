@@ -1,9 +1,6 @@
 //! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside the papers' loop on the same pixels.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::{draw, eye, reference, scene_of};
+use crate::common::{draw, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::profile::{Profile, ProfileAxis};
 use revmap::settings::{Settings, Solver};

@@ -1,10 +1,7 @@
 //! Cone maps: what the reference hits is never missed by more than a texel, in either stage; what has no cone map is told.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::passing::{Count, count};
-use common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
+use crate::common::passing::{Count, count};
+use crate::common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu;
 use revmap::profile::{Profile, ProfileAxis};

@@ -1,9 +1,6 @@
 //! Texture coordinates against their formulas, the seam, the colours of the reference.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{draw, eye, placement, reference, scene_of, shapes};
+use crate::common::{draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::{ArcLength, ColorMap, MapFormat, Projection};

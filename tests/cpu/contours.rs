@@ -1,10 +1,6 @@
 //! The contour against its definition: it parts the points with `F < 0` from the others.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-#[path = "common/samples.rs"]
-#[allow(dead_code)]
-mod samples;
-
+use crate::common::samples;
 use glam::DVec2;
 use proptest::prelude::*;
 use revmap::pieces::{Contour, ContourSource, CutOptions, ROWS, Tables, cut};

@@ -1,9 +1,6 @@
 //! Bump mapping against the normal of the surface that is really displaced, by every projection.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{draw, eye, placement, scene_of};
+use crate::common::{draw, eye, placement, scene_of};
 use glam::{DVec2, DVec3};
 use revmap::frame::Frame;
 use revmap::maps::{ArcLength, DisplacementMap, MapFormat, Projection};

@@ -1,9 +1,6 @@
 //! The gallery's scenes: each has its picture and its place in the documentation, and maps no larger than the papers claim.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::device;
+use crate::common::device;
 use revmap::gpu::Offscreen;
 use revmap::scene::{Scene, file};
 use revmap::settings::{Planes, Settings, Solver};

@@ -1,9 +1,6 @@
 //! Rays that run out of steps are counted, in both stages alike.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{draw, eye, placement, scene_of, shapes};
+use crate::common::{draw, eye, placement, scene_of, shapes};
 use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use std::sync::Arc;

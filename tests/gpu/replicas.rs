@@ -1,10 +1,7 @@
 //! Replicas in a box are as many single solids.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::passing::count;
-use common::{draw, reference, scene_of, shapes};
+use crate::common::passing::count;
+use crate::common::{draw, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::MapFormat;
@@ -151,7 +148,8 @@ fn cases() -> Vec<(&'static str, Scene)> {
             "beveled, turned and stretched",
             case(shapes::jewel(), DVec3::new(1.4, -1.4, 1.5), &|o| {
                 o.offset.bevel = 0.2;
-                o.placement = common::placement([0.1, 0.0, 0.0], [0.2, -0.1, 0.4], [1.1, 0.8, 1.2]);
+                o.placement =
+                    crate::common::placement([0.1, 0.0, 0.0], [0.2, -0.1, 0.4], [1.1, 0.8, 1.2]);
             }),
         ),
         (

@@ -1,7 +1,5 @@
 //! The three sources of distance, measured on a disc at 512 rows: no worse than what `docs/maps.md` says of them.
 
-#![allow(clippy::unwrap_used)]
-
 use revmap::maps::accuracy::{Disc, MapErrors};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 

@@ -1,9 +1,6 @@
 //! A profile that has no contour is drawn by the search on the map, and the renderer says so.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{device, draw, eye, scene_of, shapes};
+use crate::common::{device, draw, eye, scene_of, shapes};
 use glam::DVec2;
 use revmap::gpu::{self, Offscreen};
 use revmap::profile::{Outline, Profile};

@@ -1,9 +1,6 @@
 //! Fragment and compute pictures of one scene are the same bit for bit, in every channel.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{draw, eye, placement, scene_of, shapes};
+use crate::common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::maps::MapFormat;
 use revmap::scene::{Camera, Object, Scene};

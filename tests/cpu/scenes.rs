@@ -1,7 +1,5 @@
 //! The scenes that come with the program: each reads, is drawn inside its frame, and its pieces stand on their board.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use glam::{DVec2, DVec3};
 use revmap::scene::{CameraFrame, Scene, file};
 use std::path::{Path, PathBuf};

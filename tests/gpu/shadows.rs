@@ -1,9 +1,6 @@
 //! Shadows that solids throw on one another: each as its own offset and its own replicas make it, whatever receives it.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{assert_sound, draw, placement, reference, shapes};
+use crate::common::{assert_sound, draw, placement, reference, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::profile::Profile;

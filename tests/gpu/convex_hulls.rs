@@ -1,11 +1,8 @@
 //! The search for live parameters where something tells its rays where to begin: convex hulls in the fragment stage, beams in compute. They
 //! draw what the same search draws from the box's sides.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
-use common::{draw, eye, placement, scene_of, shapes};
+use crate::common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
+use crate::common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::gpu::DrawPath;

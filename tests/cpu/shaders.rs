@@ -1,6 +1,5 @@
 //! What Rust and GLSL say of the same bytes agrees: block layouts, specialisation constants, and the SPIR-V that is kept for
 //! builds without shaderc.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use glam::DVec3;
 use revmap::gpu::blocks::{FrameBlock, InstanceBlock, LightBlock, ShadowBlock, SolidBlock};

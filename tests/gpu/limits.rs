@@ -1,10 +1,7 @@
 //! Offsets as large as they may be, and larger than a renderer's maps: cut by the box or by the map, never with a hole.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::passing::count;
-use common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
+use crate::common::passing::count;
+use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
 use revmap::error::Stage;
 use revmap::gpu::{self, Offscreen};
 use revmap::maps::MapFormat;

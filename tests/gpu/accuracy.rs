@@ -1,9 +1,6 @@
 //! Pictures against the reference in double precision, and from where cameras seldom stand.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{assert_sound, draw, eye, placement, reference, scene_of, shapes};
+use crate::common::{assert_sound, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};

@@ -1,11 +1,8 @@
 //! The default: hulls in the fragment stage, beams in compute. What they draw is what box and tree draw, in every case that they take and in
 //! every case that they have to leave to the box.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
-use common::{device, draw, eye, placement, scene_of, shapes};
+use crate::common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
+use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu::{DrawPath, Offscreen};
 use revmap::profile::Profile;
@@ -236,7 +233,7 @@ fn the_reference_is_met() {
         let scene = scene_of(profile, eye(25.0, 2.2));
         for stage in STAGES {
             let wanted = settings(Solver::Hull, stage);
-            let truth = common::reference(&scene, &wanted);
+            let truth = crate::common::reference(&scene, &wanted);
             let options = CompareOptions {
                 texel: 1.0 / 512.0,
                 ..CompareOptions::default()
@@ -285,7 +282,8 @@ fn faces_of_the_box_itself() {
         scene.camera.fov_y = 2.0 * (0.6f64 / distance).atan().to_degrees();
         scene.camera.target = DVec3::new(0.0, 0.0, 0.5 * flat);
         scene.objects[0].placement.scale = DVec3::new(1.0, 1.0, flat);
-        let truth = common::reference(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
+        let truth =
+            crate::common::reference(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
         for (solver, stage) in [
             (Solver::Quadric, DrawStage::Fragment),
             (Solver::Hull, DrawStage::Fragment),

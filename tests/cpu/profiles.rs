@@ -1,7 +1,5 @@
 //! Profiles from files: what is read, and what is refused with which words.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use glam::DVec2;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::{Profile, ProfileAxis};

@@ -1,12 +1,7 @@
 //! Quadric pieces and their tables against the reference in double precision, ray by ray.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "common/rays.rs"]
-#[allow(dead_code)]
-mod rays;
-
+use crate::common::rays::{Random, count, profiles};
 use glam::{DVec2, DVec3};
-use rays::{Random, count, profiles};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, trace_pieces};
 use revmap::profile::{Outline, Profile};

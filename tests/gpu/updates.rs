@@ -1,9 +1,6 @@
 //! A renderer from update to update: what fails leaves nothing half done, and nothing is made again that has not changed.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{device, draw, eye, placement, scene_of, shapes};
+use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::Stage;
 use revmap::frame::Frame;
 use revmap::gpu::{DrawPath, Offscreen};

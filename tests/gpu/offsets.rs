@@ -1,10 +1,7 @@
 //! Extended, beveled and chamfered solids: what the searches miss and make up, and whether normals are right.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::passing::{Count, counts};
-use common::{device, eye, scene_of, shapes};
+use crate::common::passing::{Count, counts};
+use crate::common::{device, eye, scene_of, shapes};
 use glam::DVec3;
 use rayon::prelude::*;
 use revmap::frame::Frame;

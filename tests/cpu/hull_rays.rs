@@ -1,11 +1,8 @@
 //! Hulls as a CPU walks them, ray by ray: none is lost between their layers, and nothing that they leave out can be seen.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-#[path = "common/rays.rs"]
-mod rays;
-
+use crate::common::rays::{Random, count, profiles};
+use crate::common::shapes;
 use glam::{DVec2, DVec3};
-use rays::{Random, count, profiles, shapes};
 use revmap::pieces::{
     ContourSource, CutOptions, Hull, HullOptions, ROWS, Record, Tables, cut, trace_pieces,
 };

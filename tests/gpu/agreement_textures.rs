@@ -1,9 +1,6 @@
 //! Fragment and compute pictures are the same bit for bit with all that covers and changes a solid.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{assert_sound, draw, eye, placement, scene_of, shapes};
+use crate::common::{assert_sound, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
 use revmap::scene::{BumpForm, Object, Offset, Scene, Shadow, Texturing};

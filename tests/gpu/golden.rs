@@ -1,10 +1,7 @@
 //! A picture of each real profile, looked at and kept. `REVMAP_BLESS=1 cargo test --test golden` keeps new ones: look at them
 //! before they are committed. A picture that is missing fails.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::draw;
+use crate::common::draw;
 use revmap::scene::file;
 use revmap::settings::Settings;
 use std::path::PathBuf;

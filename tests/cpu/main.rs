@@ -1,0 +1,17 @@
+//! The library's public parts that need no device.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/cpu.rs"]
+mod common;
+
+mod contours;
+#[cfg(feature = "drawing")]
+mod hull_rays;
+mod map_accuracy;
+#[cfg(feature = "drawing")]
+mod pieces;
+#[cfg(feature = "drawing")]
+mod profiles;
+#[cfg(all(feature = "drawing", feature = "scene-file"))]
+mod scenes;
+mod shaders;

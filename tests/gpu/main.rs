@@ -1,0 +1,27 @@
+//! What is drawn on a device, with the validation layers' every message a failure.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod agreement;
+mod agreement_textures;
+#[cfg(feature = "drawing")]
+mod bitmaps;
+mod bumps;
+mod cones;
+mod convex_hulls;
+mod exhausted;
+mod fallback;
+#[cfg(all(feature = "drawing", feature = "scene-file"))]
+mod gallery;
+#[cfg(all(feature = "drawing", feature = "scene-file"))]
+mod golden;
+mod hull;
+mod limits;
+mod offsets;
+mod replicas;
+mod shadows;
+mod texturing;
+mod updates;
