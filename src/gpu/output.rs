@@ -30,7 +30,7 @@ pub struct PassFormats {
 pub enum PassKind {
     /// As a subpass of a render pass. Passes that are compatible with it may be begun instead.
     RenderPass {
-        /// The pass. It must live until the renderer's device is dropped.
+        /// The pass. It must live as long as the renderer.
         pass: vk::RenderPass,
         /// The subpass, which has the colour attachments of the planes and a depth attachment.
         subpass: u32,

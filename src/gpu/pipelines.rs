@@ -37,6 +37,7 @@ pub(crate) struct Pipelines {
     owns_cache: bool,
     made: Mutex<HashMap<Key, vk::Pipeline>>,
     compiled: AtomicU64,
+    owners: AtomicU64,
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
     passes: Mutex<HashMap<Planes, vk::RenderPass>>,
     raw: ash::Device,
@@ -48,6 +49,8 @@ struct Key {
     variant: Option<Variant>,
     kind: Kind,
     output: Output,
+    /// The renderer whose host's pass it is for; 0 where all may share it.
+    owner: u64,
 }
 
 impl Pipelines {
@@ -60,6 +63,7 @@ impl Pipelines {
             owns_cache: cache.is_none(),
             made: Mutex::default(),
             compiled: AtomicU64::new(0),
+            owners: AtomicU64::new(0),
             passes: Mutex::default(),
             raw,
         };
@@ -127,12 +131,19 @@ impl Pipelines {
         Ok(all)
     }
 
-    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new.
-    pub fn get(&self, variant: Variant, kind: Kind, output: &Output) -> Result<vk::Pipeline> {
+    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of [`Pipelines::owner`].
+    pub fn get(
+        &self,
+        variant: Variant,
+        kind: Kind,
+        output: &Output,
+        owner: u64,
+    ) -> Result<vk::Pipeline> {
         let key = Key {
             variant: (kind != Kind::Beams).then_some(variant),
             kind,
             output: output.clone(),
+            owner,
         };
         if let Some(made) = self.made()?.get(&key) {
             return Ok(*made);
@@ -148,6 +159,39 @@ impl Pipelines {
         all.insert(key, made);
         self.compiled.fetch_add(1, Ordering::Relaxed);
         Ok(made)
+    }
+
+    /// Who owns pipelines for an output: nobody, or a new owner. A host may destroy its render pass once its renderer is gone, and
+    /// make another of the same handle.
+    pub fn owner(&self, output: &Output) -> u64 {
+        match output {
+            Output::Pass(PassFormats {
+                begun: PassKind::RenderPass { pass, .. },
+                ..
+            }) if !self.is_own(*pass) => self.owners.fetch_add(1, Ordering::Relaxed) + 1,
+            _ => 0,
+        }
+    }
+
+    /// Destroys what is owned by `owner`, whose frames are done.
+    pub fn forget(&self, owner: u64) {
+        if owner == 0 {
+            return;
+        }
+        if let Ok(mut made) = self.made.lock() {
+            made.retain(|key, pipeline| {
+                if key.owner == owner {
+                    // SAFETY: the frames that used it are done.
+                    unsafe { self.raw.destroy_pipeline(*pipeline, None) };
+                }
+                key.owner != owner
+            });
+        }
+    }
+
+    fn is_own(&self, pass: vk::RenderPass) -> bool {
+        let passes = self.passes.lock();
+        passes.is_ok_and(|passes| passes.values().any(|own| *own == pass))
     }
 
     /// The render pass of off-screen frames.

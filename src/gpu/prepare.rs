@@ -217,12 +217,12 @@ impl Renderer {
         let most = bands.map_or(0, |s| s.hull().hull.bands.len());
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
-            entry.draw.pipeline = pipelines.get(variant, kind, &self.output)?;
+            entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
             entry.draw.key = Some((variant, kind));
         }
         if matches!(work, Work::Beams(_)) && entry.draw.list == vk::Pipeline::null() {
             let pipelines = self.device.pipelines()?;
-            entry.draw.list = pipelines.get(variant, Kind::Beams, &self.output)?;
+            entry.draw.list = pipelines.get(variant, Kind::Beams, &self.output, self.owner)?;
         }
         entry.draw.bands = bands_at.unwrap_or(0);
         entry.draw.tables = tables_at.unwrap_or(0);

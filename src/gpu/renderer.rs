@@ -36,7 +36,8 @@ use std::sync::Arc;
 /// begin_rendering(cmd); renderer.record(cmd, slot); ..   // inside
 /// ```
 ///
-/// Neither submits, waits or compiles a pipeline that was prewarmed; memory is allocated while buffers still grow.
+/// Neither submits, waits or compiles a pipeline that was prewarmed; memory is allocated while buffers still grow. A renderer must
+/// live until the frames that it recorded are done.
 pub struct Renderer {
     pub(super) frames: Vec<FrameSlot>,
     pub(super) entries: Vec<Option<Entry>>,
@@ -76,6 +77,8 @@ pub struct Renderer {
     pub(super) notes: Vec<String>,
     pub(super) settings: SearchSettings,
     pub(super) output: Output,
+    /// Of its pipelines, where they are not shared.
+    pub(super) owner: u64,
     pub(super) device: Arc<Shared>,
 }
 
@@ -191,6 +194,7 @@ impl Renderer {
             rebuilds: 0,
             notes: Vec::new(),
             settings: *settings,
+            owner: device.pipelines()?.owner(&output),
             output,
             device,
         })
@@ -474,6 +478,14 @@ impl Renderer {
         let new = self.allocate_instances(count)?;
         self.instances.free_range(old);
         Ok(new)
+    }
+}
+
+impl Drop for Renderer {
+    fn drop(&mut self) {
+        if let Ok(pipelines) = self.device.pipelines() {
+            pipelines.forget(self.owner);
+        }
     }
 }
 

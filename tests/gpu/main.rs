@@ -12,6 +12,7 @@ mod bitmaps;
 mod bumps;
 mod cones;
 mod convex_hulls;
+mod embedding;
 mod exhausted;
 mod fallback;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]

@@ -1,0 +1,465 @@
+//! The renderer in a host that owns device, pass, depth buffer and frames in flight: the one of `examples/engine`, with the
+//! validation layers' synchronization checks.
+#![allow(unsafe_code)]
+
+#[path = "../../examples/engine/host.rs"]
+#[allow(missing_docs)]
+mod host;
+
+use crate::common::{eye, placement, scene_of, shapes};
+use ash::vk;
+use glam::{DMat4, DVec2, DVec3, Vec3};
+use host::{Host, Mesh, Options, Stage};
+use revmap::gpu::{
+    DepthOrder, Device, HostDevice, ObjectId, Offscreen, Output, PassFormats, PassKind, Renderer,
+    Requirements, View, Viewport,
+};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, CameraFrame, Lighting, Object, Offset, Scene};
+use revmap::settings::{Planes, SearchSettings, Settings};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
+
+fn options() -> Options {
+    Options {
+        width: 240,
+        height: 180,
+        dynamic: true,
+        samples: 1,
+        reversed: false,
+    }
+}
+
+fn open() -> Host {
+    Host::open(true, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, needs.features))
+    })
+    .unwrap()
+}
+
+fn borrow(host: &Host) -> Device {
+    // SAFETY: the host's own handles; each test drops the device before the host.
+    unsafe {
+        Device::borrow(&HostDevice {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &host.device,
+            queue_family: host.family,
+            queue: Some(host.queue),
+            features: host.features,
+            allocator: None,
+            pipeline_cache: None,
+        })
+    }
+    .unwrap()
+}
+
+fn renderer(device: &Device, stage: &Stage) -> Renderer {
+    let begun = if stage.options.dynamic {
+        PassKind::Dynamic {
+            color: vec![host::COLOR],
+            depth: host::DEPTH,
+            stencil: vk::Format::UNDEFINED,
+        }
+    } else {
+        PassKind::RenderPass {
+            pass: stage.pass,
+            subpass: 0,
+        }
+    };
+    let output = Output::Pass(PassFormats {
+        begun,
+        samples: stage.options.samples,
+        depth: order(&stage.options),
+        planes: Planes::Color,
+    });
+    Renderer::new(device, output, &SearchSettings::default(), host::FRAMES).unwrap()
+}
+
+fn order(options: &Options) -> DepthOrder {
+    if options.reversed {
+        DepthOrder::Reversed
+    } else {
+        DepthOrder::Normal
+    }
+}
+
+/// One frame of the host's.
+fn frame(stage: &mut Stage, renderer: &mut Renderer, view: &View, clip: DMat4, meshes: &[Mesh]) {
+    let renderer = RefCell::new(renderer);
+    stage
+        .frame(
+            clip,
+            Vec3::Z,
+            meshes,
+            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
+            |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
+            // SAFETY: the slot was prepared, the pass is of the output's formats.
+            |cmd, slot| unsafe { renderer.borrow().record(cmd, slot) },
+        )
+        .unwrap();
+}
+
+fn assert_silent(host: &Host) {
+    let messages = host.take_messages();
+    assert!(messages.is_empty(), "{messages:?}");
+}
+
+fn three() -> Scene {
+    let mut scene = scene_of(shapes::vase(), eye(25.0, 3.0));
+    scene.background = BACKGROUND;
+    let mut ball = Object::new("ball", shapes::sphere().into());
+    ball.placement.position.y = 0.7;
+    ball.color = [0.7, 0.2, 0.1];
+    let mut glass = Object::new("glass", shapes::glass().into());
+    glass.placement.position.y = -0.9;
+    glass.offset.extend = 0.01;
+    scene.objects.extend([ball, glass]);
+    scene
+}
+
+/// What the host draws with this scene alone, seen as off screen.
+fn drawn(host: &Host, device: &Device, options: Options, scene: &Scene, view: &View) -> Vec<u8> {
+    let mut stage = Stage::new(host, options).unwrap();
+    let mut renderer = renderer(device, &stage);
+    renderer.set_lighting(&scene.lighting()).unwrap();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    for _ in 0..3 {
+        frame(&mut stage, &mut renderer, view, DMat4::IDENTITY, &[]);
+    }
+    stage.read().unwrap().0
+}
+
+fn srgb(linear: f32) -> u8 {
+    let c = f64::from(linear);
+    let encoded = if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    };
+    (encoded * 255.0).round() as u8
+}
+
+#[test]
+fn alone_it_draws_the_off_screen_frame() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = three();
+    let settings = Settings {
+        width: options().width,
+        height: options().height,
+        planes: Planes::Color,
+        ..Settings::default()
+    };
+    let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
+    offscreen.draw().unwrap();
+    let wanted: Vec<u8> = offscreen
+        .read()
+        .unwrap()
+        .color
+        .iter()
+        .flat_map(|c| {
+            [
+                srgb(c[0]),
+                srgb(c[1]),
+                srgb(c[2]),
+                (c[3] * 255.0).round() as u8,
+            ]
+        })
+        .collect();
+    let view = *offscreen.view();
+    for dynamic in [true, false] {
+        let options = Options {
+            dynamic,
+            ..options()
+        };
+        let one = drawn(&host, &device, options, &scene, &view);
+        assert!(one == wanted, "dynamic {dynamic}: pixels differ");
+        // Of four samples all go by the ray through the pixel's centre: away from silhouettes nothing differs.
+        let samples = 4;
+        let four = drawn(
+            &host,
+            &device,
+            Options { samples, ..options },
+            &scene,
+            &view,
+        );
+        let differ = (0..wanted.len() / 4)
+            .filter(|n| one[4 * n..4 * n + 4] != four[4 * n..4 * n + 4])
+            .count();
+        println!("dynamic {dynamic}: {differ} pixels of four samples differ");
+        assert!(differ < wanted.len() / 4 / 50, "{differ}");
+    }
+    drop(offscreen);
+    drop(device);
+    assert_silent(&host);
+}
+
+/// Which of both is seen at a pixel: the solid, the host's sphere, or neither.
+fn kind(pixel: &[u8]) -> u8 {
+    match pixel[0] {
+        255 => 1,
+        0 => 2,
+        _ => 0,
+    }
+}
+
+/// The host's sphere stands in a cylinder of ours. Where one passes through the other is known exactly.
+#[test]
+fn meshes_meet_solids_where_they_should() {
+    let host = open();
+    let device = borrow(&host);
+    let (middle, radius, wide) = (DVec3::new(0.35, -0.1, 0.45), 0.3, 0.3);
+    let cylinder = Profile::polygon(&[[0.0, 0.0], [wide, 0.0], [wide, 1.0], [0.0, 1.0]], 0.5);
+    let mut object = Object::new("cylinder", Arc::new(cylinder.unwrap()));
+    object.color = [1.0, 0.0, 0.0];
+    let lighting = Lighting {
+        ambient: [1.0; 3],
+        lights: Vec::new(),
+        ..Lighting::default()
+    };
+    let (from, to) = (DVec3::new(2.6, 0.9, 1.6), DVec3::new(0.0, 0.0, 0.45));
+    for (reversed, dynamic, inside) in [
+        (false, true, false),
+        (false, false, false),
+        (true, true, false),
+        (true, false, false),
+        // An eye within the solid: drawn by the box.
+        (true, true, true),
+    ] {
+        let options = Options {
+            dynamic,
+            reversed,
+            ..options()
+        };
+        let from = if inside {
+            DVec3::new(-0.1, 0.0, 0.5)
+        } else {
+            from
+        };
+        let to = if inside { middle } else { to };
+        let mut stage = Stage::new(&host, options).unwrap();
+        let mut renderer = renderer(&device, &stage);
+        renderer.set_lighting(&lighting).unwrap();
+        renderer.add(object.clone()).unwrap();
+        let sphere = Mesh::sphere(&host, 256, middle.as_vec3(), radius as f32, Vec3::Z).unwrap();
+        let [view, projection] = host::view_and_projection(from, to, &options);
+        let viewport = Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: f64::from(options.width),
+            height: f64::from(options.height),
+        };
+        let seen = View::from_matrices(view, projection, viewport, order(&options)).unwrap();
+        for _ in 0..2 {
+            let meshes = std::slice::from_ref(&sphere);
+            frame(&mut stage, &mut renderer, &seen, projection * view, meshes);
+        }
+        let (pixels, depths) = stage.read().unwrap();
+        let camera = Camera::new(from, to);
+        let rays = CameraFrame::new(&camera, options.width, options.height).unwrap();
+        let (w, h) = (options.width as usize, options.height as usize);
+        let truth: Vec<(u8, f64)> = (0..w * h)
+            .map(|n| {
+                let v = rays.pixel((n % w) as u32, (n / w) as u32);
+                let ball = ball(from - middle, v, radius);
+                let solid = upright(from, v, wide);
+                if ball.min(solid).is_infinite() {
+                    (0, f64::INFINITY)
+                } else if ball < solid {
+                    (2, ball)
+                } else {
+                    (1, solid)
+                }
+            })
+            .collect();
+        let (mut off, mut hits, mut worst) = (0, [0; 3], 0.0f64);
+        for n in 0..w * h {
+            let found = kind(&pixels[4 * n..4 * n + 4]);
+            hits[usize::from(found)] += 1;
+            if found == truth[n].0 {
+                if found == 1 {
+                    let wanted = seen.depth_at(truth[n].1);
+                    worst = worst.max((f64::from(depths[n]) - wanted).abs());
+                }
+                continue;
+            }
+            // A neighbour must be of this kind: the line is within a pixel.
+            let (x, y) = ((n % w) as i64, (n / w) as i64);
+            let near = (-1..=1).any(|dy| {
+                (-1..=1).any(|dx| {
+                    let (x, y) = (x + dx, y + dy);
+                    let within = x >= 0 && y >= 0 && x < w as i64 && y < h as i64;
+                    within && truth[(y as usize) * w + x as usize].0 == found
+                })
+            });
+            off += usize::from(!near);
+        }
+        println!("reversed {reversed}, dynamic {dynamic}: {hits:?}, depth {worst:e}");
+        assert!(hits[1] > 2000 && (hits[2] > 1000 || inside), "{hits:?}");
+        assert_eq!(off, 0, "reversed {reversed}, dynamic {dynamic}");
+        // One part in 2^20, as a host's own rasterised depths.
+        assert!(worst <= 2f64.powi(-20), "{worst:e}");
+    }
+    drop(device);
+    assert_silent(&host);
+}
+
+/// The nearest t >= 0 at which a ray meets a sphere about the origin.
+fn ball(o: DVec3, v: DVec3, radius: f64) -> f64 {
+    let (a, b, c) = (v.dot(v), o.dot(v), o.dot(o) - radius * radius);
+    let under = b * b - a * c;
+    let roots = [(-b - under.sqrt()) / a, (-b + under.sqrt()) / a];
+    // The host culls nothing: from within the back is seen.
+    roots
+        .into_iter()
+        .find(|t| *t >= 0.1)
+        .unwrap_or(f64::INFINITY)
+}
+
+/// The same of the cylinder `x^2 + y^2 <= r^2, 0 <= z <= 1`; from within its back.
+fn upright(o: DVec3, v: DVec3, radius: f64) -> f64 {
+    let (of, vf): (DVec2, DVec2) = (o.truncate(), v.truncate());
+    let (a, b, c) = (vf.dot(vf), of.dot(vf), of.dot(of) - radius * radius);
+    let under = b * b - a * c;
+    if under < 0.0 {
+        return f64::INFINITY;
+    }
+    let mut span = [(-b - under.sqrt()) / a, (-b + under.sqrt()) / a];
+    let mut levels = [-o.z / v.z, (1.0 - o.z) / v.z];
+    levels.sort_by(f64::total_cmp);
+    span = [span[0].max(levels[0]), span[1].min(levels[1])];
+    if span[0] > span[1] {
+        return f64::INFINITY;
+    }
+    span.into_iter()
+        .find(|t| *t >= 0.1)
+        .unwrap_or(f64::INFINITY)
+}
+
+fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
+    let mut object = Object::new("one", profiles[n as usize % profiles.len()].clone());
+    let (x, y) = (f64::from(n % 12), f64::from(n / 12 % 10));
+    object.placement = placement([0.5 * x - 3.0, 0.5 * y - 2.5, 0.0], [0.0; 3], [0.4; 3]);
+    object.color = [0.2 + 0.05 * (n % 10) as f32, 0.5, 0.3];
+    object
+}
+
+/// A thousand objects come and go over 500 frames, two in flight; what is left is drawn as if nothing else had ever been.
+#[test]
+fn objects_come_and_go_between_frames() {
+    let host = open();
+    let device = borrow(&host);
+    let profiles = [shapes::vase(), shapes::sphere(), shapes::glass()].map(Arc::new);
+    let options = Options {
+        width: 160,
+        height: 120,
+        ..options()
+    };
+    let view = View::from_camera(
+        &Camera::new(DVec3::new(6.0, 0.0, 5.0), DVec3::ZERO),
+        (options.width, options.height),
+        [0.5, 50.0],
+    )
+    .unwrap();
+    let mut stage = Stage::new(&host, options).unwrap();
+    let mut crowd = renderer(&device, &stage);
+    let mut there: Vec<(ObjectId, u32)> = Vec::new();
+    let mut added = 0;
+    for n in 0..500u32 {
+        for _ in 0..2 {
+            there.push((crowd.add(crowd_member(added, &profiles)).unwrap(), added));
+            added += 1;
+        }
+        while there.len() > 60 {
+            let (id, _) = there.remove((n as usize * 7) % there.len());
+            crowd.remove(id).unwrap();
+            // It is gone, and stays so.
+            assert!(crowd.remove(id).is_err());
+        }
+        let (id, _) = there[n as usize % there.len()];
+        let extend = 0.01 * f64::from(n % 4);
+        crowd
+            .set_offset(
+                id,
+                Offset {
+                    extend,
+                    ..Offset::default()
+                },
+            )
+            .unwrap();
+        frame(&mut stage, &mut crowd, &view, DMat4::IDENTITY, &[]);
+    }
+    assert_eq!(added, 1000);
+    for (id, _) in &there {
+        crowd.set_offset(*id, Offset::default()).unwrap();
+    }
+    for _ in 0..2 {
+        frame(&mut stage, &mut crowd, &view, DMat4::IDENTITY, &[]);
+    }
+    let kept = stage.read().unwrap().0;
+    let mut fresh = renderer(&device, &stage);
+    for (_, n) in &there {
+        fresh.add(crowd_member(*n, &profiles)).unwrap();
+    }
+    frame(&mut stage, &mut fresh, &view, DMat4::IDENTITY, &[]);
+    let wanted = stage.read().unwrap().0;
+    assert!(kept == wanted, "what is left differs from new objects");
+    assert!(wanted.chunks_exact(4).filter(|p| p[1] > 150).count() > 500);
+    drop((crowd, fresh, stage));
+    drop(device);
+    assert_silent(&host);
+}
+
+/// Device memory after ten thousand frames is what it was after a hundred, although surfaces are made in every one.
+#[test]
+fn memory_stays_flat() {
+    let host = open();
+    let device = borrow(&host);
+    let options = Options {
+        width: 32,
+        height: 24,
+        ..options()
+    };
+    let mut stage = Stage::new(&host, options).unwrap();
+    let mut few = renderer(&device, &stage);
+    let profiles = [shapes::sphere()].map(Arc::new);
+    let ids: Vec<_> = (0..2)
+        .map(|n| few.add(crowd_member(n, &profiles)).unwrap())
+        .collect();
+    let camera = Camera::new(DVec3::new(1.0, 1.0, 3.0), DVec3::new(-3.0, -2.5, 0.0));
+    let size = (options.width, options.height);
+    let view = View::from_camera(&camera, size, [0.1, 50.0]).unwrap();
+    let taken = || {
+        let allocator = device.allocator().unwrap();
+        let report = allocator.lock().unwrap().generate_report();
+        (report.total_allocated_bytes, report.total_capacity_bytes)
+    };
+    let mut early = None;
+    for n in 0..10_000u32 {
+        let extend = 0.01 + 1e-6 * f64::from(n);
+        few.set_offset(
+            ids[n as usize % 2],
+            Offset {
+                extend,
+                ..Offset::default()
+            },
+        )
+        .unwrap();
+        frame(&mut stage, &mut few, &view, DMat4::IDENTITY, &[]);
+        if n == 100 {
+            early = Some(taken());
+        }
+    }
+    assert_eq!(early, Some(taken()));
+    assert_eq!(few.rebuild_count(), 10_001);
+    drop((few, stage));
+    drop(device);
+    assert_silent(&host);
+}
