@@ -55,7 +55,6 @@
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
-//! | [`mesh`] | the rival: the same boundary as triangles, for measurements |
 //! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
 //! | [`gpu`] | device, renderer, timestamps |
 //! | [`frame`] | the planes of a picture, PNG and EXR |

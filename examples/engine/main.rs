@@ -21,7 +21,8 @@ const COUNT: u32 = 120;
 fn main() -> Fallible<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
     std::fs::create_dir_all(&folder)?;
-    let host = Host::open(false, |instance, physical| {
+    let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
+    let host = Host::open(validate, |instance, physical| {
         // SAFETY: both are live.
         let needs = unsafe { Requirements::of(instance, physical) }?;
         Ok((needs.queue_family, needs.features))
@@ -151,7 +152,10 @@ fn main() -> Fallible<()> {
         renderer.rebuild_count()
     );
     stage.wait()?;
-    Ok(())
+    match host.take_messages().first() {
+        Some(message) => Err(message.clone().into()),
+        None => Ok(()),
+    }
 }
 
 /// A row of copies, turned by `phase`.

@@ -10,7 +10,7 @@ use super::target::Target;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
-use crate::scene::{CameraFrame, Scene};
+use crate::scene::{CameraFrame, Object, Scene};
 use crate::settings::{DrawStage, SearchSettings, Settings};
 use ash::vk;
 use glam::DVec3;
@@ -39,6 +39,8 @@ pub struct Offscreen {
     view: View,
     background: [f32; 4],
     settings: Settings,
+    /// Whether a guest draws the scene's objects.
+    guests_only: bool,
     /// From the first thing that an update changes to the last: what one that failed in between has left must not be drawn.
     stale: bool,
     /// Null in compute.
@@ -48,6 +50,12 @@ pub struct Offscreen {
 
 /// Something else that is drawn in an off-screen frame's pass, into the same depth buffer.
 pub trait Guest {
+    /// Records what its draws need beforehand, such as copies into its buffers. It is not timed.
+    ///
+    /// # Safety
+    /// `cmd` is recording, outside of a pass. What is recorded must stay valid until the frame was drawn.
+    unsafe fn prepare(&self, _cmd: vk::CommandBuffer) {}
+
     /// Records its draws.
     ///
     /// # Safety
@@ -62,6 +70,24 @@ impl Offscreen {
     /// # Errors
     /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
+        Self::open(device, scene, settings, false)
+    }
+
+    /// As [`Offscreen::new`], but without the scene's objects, now and in every update: a guest draws them. Camera, background,
+    /// lights and the range of depths are the scene's.
+    ///
+    /// # Errors
+    /// As `new`.
+    pub fn for_guests(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
+        Self::open(device, scene, settings, true)
+    }
+
+    fn open(
+        device: &Device,
+        scene: &Scene,
+        settings: &Settings,
+        guests_only: bool,
+    ) -> Result<Self> {
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
         let size = (settings.width, settings.height);
@@ -93,6 +119,7 @@ impl Offscreen {
             view: view_of(scene, size)?,
             background: scene.background,
             settings: *settings,
+            guests_only,
             stale: true,
             pass: raw,
             device: shared,
@@ -123,7 +150,12 @@ impl Offscreen {
         let lighting = scene.lighting();
         super::block::check_lights(&lighting)?;
         let before = self.renderer.lighting.clone();
-        let (kept, there) = (scene.objects.len().min(self.ids.len()), self.ids.len());
+        let objects: &[Object] = if self.guests_only {
+            &[]
+        } else {
+            &scene.objects
+        };
+        let (kept, there) = (objects.len().min(self.ids.len()), self.ids.len());
         let mut removed = Vec::new();
         for id in self.ids.split_off(kept) {
             removed.push(self.renderer.object(id)?.clone());
@@ -131,10 +163,10 @@ impl Offscreen {
         }
         let mut change = || {
             self.renderer.set_lighting(&lighting)?;
-            for (&id, object) in self.ids.iter().zip(&scene.objects) {
+            for (&id, object) in self.ids.iter().zip(objects) {
                 self.renderer.set(id, object.clone())?;
             }
-            for object in &scene.objects[kept..] {
+            for object in &objects[kept..] {
                 self.ids.push(self.renderer.add(object.clone())?);
             }
             self.renderer.refresh()
@@ -185,6 +217,10 @@ impl Offscreen {
         commands.record(|cmd| {
             // SAFETY: `cmd` is recording, and the frame before was waited for.
             unsafe { renderer.prepare(cmd, 0, view)? };
+            if let (Some(guest), false) = (guest, compute) {
+                // SAFETY: `cmd` is recording outside of a pass, and is waited for before this returns.
+                unsafe { guest.prepare(cmd) };
+            }
             clock.start(cmd);
             target.clear(cmd, *background, renderer.compares_depths());
             // SAFETY: the frame was prepared above; the target was cleared, the pass is of the output's formats and sets viewport and

@@ -161,8 +161,6 @@ fn a_variant_sets_every_specialisation_constant() {
             .collect();
     let mut all = BTreeSet::new();
     for words in [
-        g::MESH_COLOR_FRAG,
-        g::MESH_PLANES_FRAG,
         g::SHAPE_BOX_COLOR_FRAG,
         g::SHAPE_BOX_PLANES_FRAG,
         g::HULL_VERT,
@@ -236,9 +234,6 @@ fn kept_spirv_is_what_the_sources_give() {
         "shaders-glsl/ changed; renew shaders-spirv/ with REVMAP_KEEP_SPIRV=1 cargo build"
     );
     for (name, words) in [
-        ("mesh.vert", g::MESH_VERT),
-        ("mesh_color.frag", g::MESH_COLOR_FRAG),
-        ("mesh_planes.frag", g::MESH_PLANES_FRAG),
         ("shape_box.vert", g::SHAPE_BOX_VERT),
         ("shape_box_color.frag", g::SHAPE_BOX_COLOR_FRAG),
         ("shape_box_planes.frag", g::SHAPE_BOX_PLANES_FRAG),

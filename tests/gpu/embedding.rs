@@ -2,8 +2,8 @@
 //! validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-#[path = "../../examples/engine/host.rs"]
-#[allow(missing_docs)]
+#[path = "../../examples/engine/host/mod.rs"]
+#[allow(dead_code, missing_docs)]
 mod host;
 
 use crate::common::{eye, placement, scene_of, shapes};

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
-use revmap::settings::{Settings, Solver};
+use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Limits, Measured, Seen, Watch, measure};
 use revmap_lab::report::pictures::Album;
@@ -66,15 +66,15 @@ impl Bench {
         } else {
             (Limits::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
         };
-        let (solvers, meshes): (&[Solver], &[(u32, u32)]) = if self.quick {
+        let (methods, meshes): (&[Method], &[(u32, u32)]) = if self.quick {
             (&plan::FEW, &plan::MESHES[..1])
         } else if self.full {
-            (&Solver::ALL, &plan::ALL_MESHES)
+            (&Method::ALL, &plan::ALL_MESHES)
         } else {
             (&plan::USUAL, &plan::MESHES)
         };
         let views = self.lists.views(extent, elevations)?;
-        let axes = self.axes(sizes, solvers);
+        let axes = self.axes(sizes, methods);
         let mut plan = Plan::new(views, &axes.combinations());
         if self.lists.solver.is_empty() {
             plan.add_meshes(meshes);
@@ -89,10 +89,10 @@ impl Bench {
         session.finish(&measured)
     }
 
-    fn axes(&self, sizes: &[(u32, u32)], solvers: &[Solver]) -> Axes {
+    fn axes(&self, sizes: &[(u32, u32)], methods: &[Method]) -> Axes {
         self.lists.axes(&Axes {
             sizes: sizes.to_vec(),
-            solvers: solvers.to_vec(),
+            methods: methods.to_vec(),
             ..Axes::default()
         })
     }
@@ -126,15 +126,15 @@ impl Bench {
     fn scaling(&self) -> Result<()> {
         let mut axes = self.axes(&[], &plan::USUAL);
         if self.lists.solver.is_empty() {
-            let rival = scaling::MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
-            axes.solvers.extend(rival);
+            let mesh = |(segments, rings)| Method::Mesh { segments, rings };
+            axes.methods.extend(scaling::MESHES.map(mesh));
         }
         let (limits, ranges) = if self.quick {
             (Limits::QUICK, Ranges::QUICK)
         } else {
             (Limits::CHART, Ranges::ALL)
         };
-        let plan = scaling::plan(&axes.stages, &axes.solvers, ranges)?;
+        let plan = scaling::plan(&axes.stages, &axes.methods, ranges)?;
         let session = Session::open(&self.lists)?;
         let (measured, _) =
             session.measure(&plan, &self.lists.limits(&limits), |_| false, &mut |_| {})?;
@@ -191,13 +191,13 @@ impl Session {
         &self,
         plan: &Plan,
         limits: &Limits,
-        worth: fn(&Settings) -> bool,
+        worth: fn(&MethodSettings) -> bool,
         also: &mut dyn FnMut(&Seen),
     ) -> Result<(Measured, Album)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.out, labels, worth)?;
         let progress = Progress::start("measuring", self.quiet);
-        let mut bench = DeviceBench::new(self.device.clone());
+        let mut bench = DeviceBench::new(self.device.clone())?;
         let measured = measure(
             plan,
             &mut bench,

@@ -6,7 +6,7 @@ use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::Result;
-use revmap::settings::Settings;
+use revmap_lab::method::MethodSettings;
 use revmap_lab::report::measure::{Limits, Seen};
 use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
 use revmap_lab::report::suite::Extent;
@@ -57,7 +57,7 @@ impl Chart {
             Plan::new(views, &axes.combinations())
         } else {
             sweep.stages = axes.stages;
-            sweep.solvers = axes.solvers;
+            sweep.methods = axes.methods;
             if !lists.solver.is_empty() {
                 sweep.meshes.clear();
             }
@@ -113,9 +113,9 @@ impl Chart {
 }
 
 /// Of a sweep only searches as they are drawn by default, and at one middling budget.
-fn worth_a_picture(settings: &Settings) -> bool {
+fn worth_a_picture(settings: &MethodSettings) -> bool {
     let plain = settings.map_rows.is_none()
         && settings.map_source.is_none()
-        && settings.map_format == Settings::default().map_format;
+        && settings.map_format == MethodSettings::default().map_format;
     is_papers_loop(settings) || (plain && matches!(settings.max_steps, None | Some(64)))
 }

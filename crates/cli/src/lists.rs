@@ -1,11 +1,12 @@
 //! Options that take several values, of which every combination is measured.
 
-use super::options::{FORMATS, SOURCES, STAGES, SolverParser, Tracing, name_of, named, size};
+use super::options::{FORMATS, MethodParser, SOURCES, STAGES, Tracing, name_of, named, size};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::file;
-use revmap::settings::{DrawStage, Solver};
+use revmap::settings::DrawStage;
+use revmap_lab::method::Method;
 use revmap_lab::report::framing::Framing;
 use revmap_lab::report::measure::Limits;
 use revmap_lab::report::plan::Axes;
@@ -36,8 +37,8 @@ pub struct Lists {
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<Tracing>,
     /// The searches, meshes among them [default: those worth choosing between; all with --full]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = SolverParser)]
-    pub solver: Vec<Solver>,
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
+    pub solver: Vec<Method>,
     /// Bounds on the searches' steps [default: each solver's own]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub max_steps: Vec<u32>,
@@ -98,7 +99,7 @@ impl Lists {
             .collect();
         Axes {
             stages: or(&stages, &base.stages),
-            solvers: or(&self.solver, &base.solvers),
+            methods: or(&self.solver, &base.methods),
             max_steps: or(&some(&self.max_steps), &base.max_steps),
             sizes: or(&self.size, &base.sizes),
             map_rows: or(&some(&self.map_rows), &base.map_rows),

@@ -3,7 +3,8 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{DrawStage, Planes};
+use revmap_lab::method::{Method, MethodSettings};
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
@@ -25,11 +26,11 @@ pub const STAGES: [(&str, Tracing); 3] = [
 ];
 
 /// Names of the searches; the first is the one taken when none is named.
-pub const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
-    let mut all = [("default", Solver::DEFAULT); Solver::ALL.len() + 1];
+pub const SOLVERS: [(&str, Method); Method::ALL.len() + 1] = {
+    let mut all = [("default", Method::DEFAULT); Method::ALL.len() + 1];
     let mut i = 0;
-    while i < Solver::ALL.len() {
-        all[i + 1] = (Solver::ALL[i].name(), Solver::ALL[i]);
+    while i < Method::ALL.len() {
+        all[i + 1] = (Method::ALL[i].name(), Method::ALL[i]);
         i += 1;
     }
     all
@@ -59,8 +60,8 @@ pub struct Drawing {
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
     pub stage: Tracing,
     /// How the first hit along a ray is found
-    #[arg(long, value_name = "NAME", default_value = "default", value_parser = SolverParser)]
-    pub solver: Solver,
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = MethodParser)]
+    pub solver: Method,
     /// Bound on the search's steps [default: the solver's own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub max_steps: Option<u32>,
@@ -88,22 +89,21 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The library's settings. Of these the reference reads the size alone.
-    pub fn settings(&self, planes: Planes) -> Settings {
-        Settings {
+    /// The lab's settings. Of these the reference reads the size alone.
+    pub fn settings(&self, planes: Planes) -> MethodSettings {
+        MethodSettings {
             width: self.size.0,
             height: self.size.1,
             stage: match self.stage {
                 Tracing::Device(stage) => stage,
                 Tracing::Reference => DrawStage::Fragment,
             },
-            solver: self.solver,
+            method: self.solver,
             max_steps: self.max_steps,
             map_rows: self.map_rows,
             map_source: self.map_source,
             map_format: self.map_format,
             planes,
-            ..Settings::default()
         }
     }
 }
@@ -120,19 +120,19 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
 
 /// A parser of a search's name, or of a mesh's tessellation.
 #[derive(Clone)]
-pub struct SolverParser;
+pub struct MethodParser;
 
-impl TypedValueParser for SolverParser {
-    type Value = Solver;
+impl TypedValueParser for MethodParser {
+    type Value = Method;
 
     fn parse_ref(
         &self,
         command: &clap::Command,
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
-    ) -> Result<Solver, clap::Error> {
+    ) -> Result<Method, clap::Error> {
         if value.to_str().is_some_and(|text| text.starts_with("mesh")) {
-            let mesh = |text: &str| text.parse::<Solver>();
+            let mesh = |text: &str| text.parse::<Method>();
             return mesh.parse_ref(command, argument, value);
         }
         named(&SOLVERS).parse_ref(command, argument, value)
@@ -193,6 +193,6 @@ mod tests {
 
     #[test]
     fn the_default_solver_is_told_by_its_own_name() {
-        assert_eq!(name_of(&SOLVERS, &SOLVERS[0].1), Solver::DEFAULT.name());
+        assert_eq!(name_of(&SOLVERS, &SOLVERS[0].1), Method::DEFAULT.name());
     }
 }

@@ -8,7 +8,9 @@ use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
 use revmap::gpu;
 use revmap::scene::{Scene, file};
-use revmap::settings::{Planes, Settings, Solver};
+use revmap::settings::Planes;
+use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::renderer::MethodDevice;
 use revmap_reference as reference;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -70,11 +72,13 @@ impl Render {
         Ok(())
     }
 
-    fn on_gpu(&self, scene: &Scene, settings: &Settings) -> Result<Picture> {
+    fn on_gpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
         let device = gpu::Device::open(self.drawing.device.as_deref())?;
         let report = device.report();
         let progress = Progress::start(&format!("drawing on {}", report.name), self.drawing.quiet);
-        let drawn = gpu::draw(&device, scene, settings).map_err(|e| on(&report.name, e))?;
+        let drawn = MethodDevice::new(device.clone())
+            .and_then(|device| device.draw(scene, settings))
+            .map_err(|e| on(&report.name, e))?;
         drop(progress);
         Ok(Picture {
             device: format!(
@@ -103,10 +107,12 @@ impl Render {
         })
     }
 
-    fn on_cpu(&self, scene: &Scene, settings: &Settings) -> Result<Picture> {
+    fn on_cpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
         let begin = Instant::now();
         let progress = Progress::start("drawing the reference", self.drawing.quiet);
-        let frame = reference::draw(scene, settings, &|done, total| progress.report(done, total))?;
+        let frame = reference::draw(scene, &settings.into(), &|done, total| {
+            progress.report(done, total)
+        })?;
         Ok(Picture {
             frame,
             device: "none, the reference is drawn on the CPU".to_owned(),
@@ -116,7 +122,7 @@ impl Render {
     }
 
     /// What was drawn, on which device, how fast. Said when it is done, so that a failure stays one line.
-    fn tell(&self, scene: &Scene, settings: &Settings, picture: &Picture) {
+    fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture) {
         if self.drawing.quiet {
             return;
         }
@@ -138,14 +144,14 @@ impl Render {
             }
         }
         let drawn = self.drawing.stage != Tracing::Reference;
-        let bounded = drawn && settings.solver.may_run_out();
+        let bounded = drawn && settings.method.may_run_out();
         if let Some(line) = exhausted(&picture.frame, bounded && self.drawing.verbose) {
             output::note(&line);
         }
         let stage = options::name_of(&options::STAGES, &self.drawing.stage);
         let how = match self.drawing.stage {
             Tracing::Reference => stage.to_owned(),
-            Tracing::Device(_) => format!("{stage}, {}", settings.solver),
+            Tracing::Device(_) => format!("{stage}, {}", settings.method),
         };
         for file in &self.output {
             let (name, width, height) = (file.display(), settings.width, settings.height);
@@ -198,7 +204,7 @@ fn exhausted(frame: &Frame, always: bool) -> Option<String> {
         0 => None,
         count => Some(format!(
             "warning: {count} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",
-            Solver::DEFAULT.name()
+            Method::DEFAULT.name()
         )),
     }
 }

@@ -8,7 +8,7 @@ use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Object, Offset, Scene};
 use revmap::settings::Settings;
 use revmap_lab::compare::{CompareOptions, compare, flip_map, silhouette_hausdorff};
-use revmap_reference::{Analytic, Ray, Reference, contour, draw};
+use revmap_reference::{Analytic, Ray, Reference, draw};
 use std::sync::Arc;
 
 fn main() {

@@ -1,11 +1,13 @@
-//! CPU time of frames, summed over all of a software driver's threads: `cargo run --release --example cpu_time -- [--close] [--stage fragment|compute] [--view NAME ...] [SOLVER ...]`
+//! CPU time of frames, summed over all of a software driver's threads: `cargo run --release --example cpu_time -- [--close] [--stage fragment|compute] [--view NAME ...] [METHOD ...]`
 //!
 //! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
 //! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
 //! the papers' loop. Linux alone: it reads `/proc/self/task`.
 
-use revmap::gpu::{Device, Renderer};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::gpu::Device;
+use revmap::settings::{DrawStage, Planes, Solver};
+use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::plan::{papers_loop, plain};
 use revmap_lab::report::suite::{Extent, views};
 use std::time::Instant;
@@ -16,7 +18,7 @@ const LEAST_MS: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut stage, mut close) = (DrawStage::Fragment, false);
-    let (mut only, mut solvers) = (Vec::new(), Vec::new());
+    let (mut only, mut methods) = (Vec::new(), Vec::new());
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         match arg.as_str() {
@@ -24,15 +26,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--view" => only.extend(args.next()),
             "--stage" if args.next().as_deref() == Some("compute") => stage = DrawStage::Compute,
             "--stage" => {}
-            name => solvers.push(name.parse::<Solver>()?),
+            name => methods.push(name.parse::<Method>()?),
         }
     }
-    if solvers.is_empty() {
-        solvers = vec![Solver::Hull, Solver::Quadric, Solver::Live];
+    if methods.is_empty() {
+        methods = [Solver::Hull, Solver::Quadric, Solver::Live]
+            .map(Method::from)
+            .to_vec();
     }
     let device = Device::open(None)?;
     println!("{}, {stage:?} stage", device.report().name);
-    let mut sums = vec![0.0; solvers.len()];
+    let device = MethodDevice::new(device)?;
+    let mut sums = vec![0.0; methods.len()];
     let mut views = views(Extent::All, &[25.0])?;
     views.retain(|view| only.is_empty() || only.contains(&view.name));
     let count = views.len() as f64;
@@ -41,16 +46,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if close {
             view.scene.camera.fov_y *= 0.45;
         }
-        let settings = Settings {
+        let settings = MethodSettings {
             stage,
             planes: Planes::Color,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         let mut ways = vec![papers_loop(&view, &settings)];
-        ways.extend(solvers.iter().map(|&solver| plain(&settings, solver)));
+        ways.extend(methods.iter().map(|&method| plain(&settings, method)));
         let mut drawn = Vec::new();
         for way in &ways {
-            let mut renderer = Renderer::new(&device, &view.scene, way)?;
+            let mut renderer = device.renderer(&view.scene, way)?;
             for _ in 0..3 {
                 renderer.draw()?;
             }
@@ -80,16 +85,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let (ms, clock) = (median(cpu), median(wall));
             print!(
                 "   {} {ms:6.2} ms ({clock:5.2} by the clock) {:.2}",
-                solvers[k],
+                methods[k],
                 ms / papers
             );
             sums[k] += (ms / papers).ln() / count;
         }
         println!();
     }
-    for (solver, sum) in solvers.iter().zip(&sums) {
+    for (method, sum) in methods.iter().zip(&sums) {
         println!(
-            "{solver}: {:.3} of the papers' loop (geometric mean)",
+            "{method}: {:.3} of the papers' loop (geometric mean)",
             sum.exp()
         );
     }

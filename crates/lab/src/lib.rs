@@ -3,8 +3,16 @@
 //! | module | what it makes of what comes before |
 //! |---|---|
 //! | [`mod@compare`] | two frames: errors in numbers, FLIP, silhouettes, heat maps |
+//! | [`method`] | what is measured: a search, or a mesh |
+//! | `mesh` | the mesh baseline: the same solids as triangles (feature `mesh`) |
+//! | `renderer` | one renderer for every method (feature `mesh`) |
 //! | `report` | views and ways to draw them: times beside errors, as tables, charts and one page (feature `report`) |
 
 pub mod compare;
+#[cfg(feature = "mesh")]
+pub mod mesh;
+pub mod method;
+#[cfg(feature = "mesh")]
+pub mod renderer;
 #[cfg(feature = "report")]
 pub mod report;

@@ -98,7 +98,7 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
     };
     let times = |r: &Row| {
         let time = r.time();
-        let steps = Some(r.steps).filter(|_| !r.settings.solver.is_mesh());
+        let steps = Some(r.steps).filter(|_| !r.settings.method.is_mesh());
         let mut record = named(r);
         record.extend([
             time.map_or("clocks disagree".into(), |t| number(t.value, 3)),
@@ -107,7 +107,7 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
             num(steps.map(|s| s.mean)),
             num(steps.map(|s| s.p99)),
             num(steps.map(|s| s.max)),
-            if r.settings.solver.may_run_out() {
+            if r.settings.method.may_run_out() {
                 r.steps.exhausted.to_string()
             } else {
                 "–".into()

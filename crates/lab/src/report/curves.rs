@@ -18,37 +18,37 @@ use super::plan::{PAPERS_LOOP, is_papers_loop};
 use super::ratios::Ratio;
 use super::row::Row;
 use super::sweep::{has_budget, has_rows};
-use revmap::settings::{Settings, Solver};
+use crate::method::{Method, MethodSettings};
 
 /// Whether settings take part in the sweep over budgets: all of the map left as drawing takes it.
-fn over_budgets(s: &Settings, base: &Settings) -> bool {
-    (s.map_rows.is_none() || has_rows(s.solver))
+fn over_budgets(s: &MethodSettings, base: &MethodSettings) -> bool {
+    (s.map_rows.is_none() || has_rows(s.method))
         && s.map_source.is_none()
         && s.map_format == base.map_format
 }
 
 /// What a marker is called: its bound on steps, the rows of its table, or its tessellation.
-fn budget(s: &Settings) -> Option<String> {
-    if let Solver::Mesh { segments, rings } = s.solver {
+fn budget(s: &MethodSettings) -> Option<String> {
+    if let Method::Mesh { segments, rings } = s.method {
         return Some(format!("{segments}x{rings}"));
     }
     if is_papers_loop(s) {
         return None;
     }
-    if has_rows(s.solver) {
+    if has_rows(s.method) {
         return s.map_rows.map(|rows| rows.to_string());
     }
-    let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
-    has_budget(s.solver).then(|| steps.to_string())
+    let steps = s.max_steps.unwrap_or_else(|| s.method.default_steps(false));
+    has_budget(s.method).then(|| steps.to_string())
 }
 
 /// Adds the point of a way of drawing to its line: of its search and stage, or of the papers' loop. Ways that take no part in the sweep over
 /// budgets have none.
-fn add_swept(series: &mut Vec<Series>, s: &Settings, base: &Settings, x: f64, y: f64) {
+fn add_swept(series: &mut Vec<Series>, s: &MethodSettings, base: &MethodSettings, x: f64, y: f64) {
     let (name, style) = if is_papers_loop(s) {
         (PAPERS_LOOP, style(s))
     } else if over_budgets(s, base) {
-        (s.solver.name(), of_line(s))
+        (s.method.name(), of_line(s))
     } else {
         return;
     };
@@ -74,7 +74,7 @@ fn add(series: &mut Vec<Series>, name: &str, style: Style, joined: bool, point: 
 
 /// Error against time of every search swept over its steps, in both stages, with the front over all of them.
 #[must_use]
-pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &Settings) -> Figure {
+pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &MethodSettings) -> Figure {
     let mut series = Vec::new();
     for row in rows {
         if let (Some(time), Some(error)) = (row.time(), measure.of(row)) {
@@ -99,7 +99,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
         let point = Point {
             x: time.value,
             y,
-            label: Some(format!("{} {count}", s.solver.name())),
+            label: Some(format!("{} {count}", s.method.name())),
         };
         let (name, style) = (names::source(source), of_source(source));
         add(&mut series, name, style, false, point);
@@ -109,7 +109,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
 
 /// The chart that sums `views` up: error against the ratio to the papers' loop.
 #[must_use]
-pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &Settings) -> Figure {
+pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSettings) -> Figure {
     let mut series = Vec::new();
     for ratio in ratios {
         let error = match measure {
@@ -168,7 +168,7 @@ pub fn resolution(
     title: &str,
     rows: &[&Row],
     measure: Measure,
-    solver: Solver,
+    method: Method,
     alone: &[MapError],
 ) -> Figure {
     let mut series = Vec::new();
@@ -182,7 +182,7 @@ pub fn resolution(
     };
     for row in rows
         .iter()
-        .filter(|r| r.settings.solver == solver && !is_papers_loop(&r.settings))
+        .filter(|r| r.settings.method == method && !is_papers_loop(&r.settings))
     {
         let (Some(source), Some(count)) = (row.settings.map_source, row.settings.map_rows) else {
             continue;
@@ -224,17 +224,17 @@ pub fn resolution(
 /// The search whose drawn pictures are nearest to the truth: what is left of its error is the map's. Of those that read maps of every
 /// source.
 #[must_use]
-pub fn most_exact(rows: &[&Row]) -> Option<Solver> {
-    let worst = |solver: Solver| {
+pub fn most_exact(rows: &[&Row]) -> Option<Method> {
+    let worst = |method: Method| {
         rows.iter()
-            .filter(|r| r.settings.solver == solver && r.settings.map_source.is_some())
+            .filter(|r| r.settings.method == method && r.settings.map_source.is_some())
             .filter_map(|r| Measure::Depth.of(r))
             .reduce(f64::min)
-            .map(|p99| (solver, p99))
+            .map(|p99| (method, p99))
     };
-    Solver::ALL
+    Method::ALL
         .into_iter()
         .filter_map(worst)
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(solver, _)| solver)
+        .map(|(method, _)| method)
 }

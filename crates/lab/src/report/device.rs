@@ -2,26 +2,30 @@
 
 use super::measure::{Bench, Sample, Subject};
 use super::view::View;
+use crate::method::MethodSettings;
+use crate::renderer::{MethodDevice, MethodRenderer};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Renderer};
-use revmap::settings::Settings;
+use revmap::gpu::Device;
 use revmap_reference as reference;
 
 /// A Vulkan device to measure on.
 pub struct DeviceBench {
-    device: Device,
+    device: MethodDevice,
 }
 
 impl DeviceBench {
     /// Measures on this device.
-    #[must_use]
-    pub fn new(device: Device) -> Self {
-        Self { device }
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn new(device: Device) -> Result<Self> {
+        let device = MethodDevice::new(device)?;
+        Ok(Self { device })
     }
 }
 
-struct Ready(Renderer);
+struct Ready(MethodRenderer);
 
 impl Subject for Ready {
     fn sample(&mut self) -> Result<Sample> {
@@ -35,21 +39,18 @@ impl Subject for Ready {
 }
 
 impl Bench for DeviceBench {
-    fn subject(&mut self, view: &View, settings: &Settings) -> Result<Box<dyn Subject>> {
-        Ok(Box::new(Ready(Renderer::new(
-            &self.device,
-            &view.scene,
-            settings,
-        )?)))
+    fn subject(&mut self, view: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>> {
+        let renderer = self.device.renderer(&view.scene, settings)?;
+        Ok(Box::new(Ready(renderer)))
     }
 
-    fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Frame, u64)> {
-        let mut renderer = Renderer::new(&self.device, &view.scene, settings)?;
+    fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)> {
+        let mut renderer = self.device.renderer(&view.scene, settings)?;
         renderer.draw()?;
         Ok((renderer.read()?, renderer.map_bytes().iter().sum()))
     }
 
-    fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame> {
-        reference::draw(&view.scene, settings, &|_, _| {})
+    fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame> {
+        reference::draw(&view.scene, &settings.into(), &|_, _| {})
     }
 }

@@ -105,7 +105,7 @@ pub fn raw(rows: &[Row]) -> Table {
                     (number + 1).to_string(),
                     row.scene.clone(),
                     names::stage(row.settings.stage).into(),
-                    row.settings.solver.to_string(),
+                    row.settings.method.to_string(),
                     (pass + 1).to_string(),
                     (round + 1).to_string(),
                     sample
@@ -131,7 +131,7 @@ pub fn left_out(plan: &Plan, measured: &Measured) -> Table {
                 (number + 1).to_string(),
                 row.scene.clone(),
                 names::stage(row.settings.stage).into(),
-                row.settings.solver.to_string(),
+                row.settings.method.to_string(),
                 format!(
                     "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
                     names::number(gpu_ms, 4),
@@ -149,7 +149,7 @@ pub fn left_out(plan: &Plan, measured: &Measured) -> Table {
                 .map(|v| v.name.clone())
                 .unwrap_or_default(),
             names::stage(case.settings.stage).into(),
-            case.settings.solver.to_string(),
+            case.settings.method.to_string(),
             reason.clone(),
         ]);
     }

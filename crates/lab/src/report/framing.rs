@@ -235,17 +235,18 @@ mod tests {
     #[test]
     fn close_up_most_pixels_hit() {
         use super::super::suite::{Extent, views};
-        use revmap::settings::Settings;
+        use crate::method::MethodSettings;
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
-            let settings = Settings {
+            let settings = MethodSettings {
                 width,
                 height,
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             for view in views(Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
                 let share = |view: &View| {
-                    let frame = reference::draw(&view.scene, &settings, &|_, _| {}).unwrap();
+                    let frame =
+                        reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
                     let hits = frame.distance.iter().filter(|d| d.is_finite()).count();
                     hits as f64 / frame.distance.len() as f64
                 };

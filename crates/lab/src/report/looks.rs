@@ -4,32 +4,33 @@ use super::chart::style::{Dash, Marker, Style, color};
 use super::names::stage;
 use super::plan::{Labels, is_papers_loop, variant};
 use super::row::Row;
+use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{DrawStage, Solver};
 
 /// How a search looks in the fragment stage. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
-fn search(solver: Solver) -> Style {
-    let (color, marker, dash) = match solver {
-        Solver::Linear => (color::RED, Marker::Left, Dash::Dots),
-        Solver::Relief => (color::PURPLE, Marker::Right, Dash::Short),
-        Solver::Secant => (color::WINE, Marker::Star, Dash::DashDot),
-        Solver::Circle => (color::GREY, Marker::Plus, Dash::Dots),
-        Solver::Cone => (color::TAN, Marker::Cross, Dash::Short),
-        Solver::Relaxed => (color::TAN, Marker::Hexagram, Dash::Dots),
-        Solver::Live => (color::NAVY, Marker::Up, Dash::DashDot),
-        Solver::Quadric => (color::VIOLET, Marker::Down, Dash::Long),
-        Solver::Hull => (color::ORANGE, Marker::Disk, Dash::Solid),
-        Solver::Mesh { .. } => (color::BLUE, fineness(solver), Dash::Solid),
+fn search(method: Method) -> Style {
+    let (color, marker, dash) = match method {
+        Method::Search(Solver::Linear) => (color::RED, Marker::Left, Dash::Dots),
+        Method::Search(Solver::Relief) => (color::PURPLE, Marker::Right, Dash::Short),
+        Method::Search(Solver::Secant) => (color::WINE, Marker::Star, Dash::DashDot),
+        Method::Search(Solver::Circle) => (color::GREY, Marker::Plus, Dash::Dots),
+        Method::Search(Solver::Cone) => (color::TAN, Marker::Cross, Dash::Short),
+        Method::Search(Solver::Relaxed) => (color::TAN, Marker::Hexagram, Dash::Dots),
+        Method::Search(Solver::Live) => (color::NAVY, Marker::Up, Dash::DashDot),
+        Method::Search(Solver::Quadric) => (color::VIOLET, Marker::Down, Dash::Long),
+        Method::Search(Solver::Hull) => (color::ORANGE, Marker::Disk, Dash::Solid),
+        Method::Mesh { .. } => (color::BLUE, fineness(method), Dash::Solid),
     };
     Style {
         dash,
-        heavy: solver == Solver::DEFAULT,
+        heavy: method == Method::DEFAULT,
         ..Style::new(color, marker)
     }
 }
 
 /// A mesh's marker: another for each doubling of its segments and rings.
-fn fineness(mesh: Solver) -> Marker {
+fn fineness(mesh: Method) -> Marker {
     const FROM_COARSE: [Marker; 9] = [
         Marker::Disk,
         Marker::Left,
@@ -49,11 +50,11 @@ fn fineness(mesh: Solver) -> Marker {
 
 /// How a way of drawing looks: filled in the fragment stage, hollow in the compute stage.
 #[must_use]
-pub fn style(s: &Settings) -> Style {
+pub fn style(s: &MethodSettings) -> Style {
     let look = if is_papers_loop(s) {
         Style::new(color::BLACK, Marker::Diamond)
     } else {
-        search(s.solver)
+        search(s.method)
     };
     Style {
         filled: s.stage != DrawStage::Compute,
@@ -63,10 +64,10 @@ pub fn style(s: &Settings) -> Style {
 
 /// How a way looks in a chart in which a line joins the budgets of a search, or the meshes of growing fineness: all meshes alike.
 #[must_use]
-pub fn of_line(s: &Settings) -> Style {
+pub fn of_line(s: &MethodSettings) -> Style {
     let own = style(s);
-    match s.solver {
-        Solver::Mesh { .. } => Style {
+    match s.method {
+        Method::Mesh { .. } => Style {
             marker: Marker::Square,
             ..own
         },
@@ -96,7 +97,7 @@ impl Looks {
     /// Looks for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
     /// is free.
     #[must_use]
-    pub fn new<'a>(settings: impl IntoIterator<Item = &'a Settings> + Clone) -> Self {
+    pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
         let labels = Labels::new(settings.clone());
         let mut ways: Vec<(String, Style)> = Vec::new();
         for s in settings {
@@ -104,7 +105,7 @@ impl Looks {
             if ways.iter().any(|(known, _)| *known == way) {
                 continue;
             }
-            let wanted = style(&Settings {
+            let wanted = style(&MethodSettings {
                 stage: DrawStage::Fragment,
                 ..*s
             });
@@ -121,25 +122,25 @@ impl Looks {
 
     /// Looks for the ways in which rows were drawn.
     pub(super) fn of(rows: &[Row]) -> Self {
-        let ways: Vec<Settings> = rows.iter().map(|r| variant(&r.settings)).collect();
+        let ways: Vec<MethodSettings> = rows.iter().map(|r| variant(&r.settings)).collect();
         Self::new(&ways)
     }
 
     /// The name of a way, without its stage.
     #[must_use]
-    pub fn way(&self, s: &Settings) -> String {
+    pub fn way(&self, s: &MethodSettings) -> String {
         self.labels.way(s)
     }
 
     /// The name of a way and its stage.
     #[must_use]
-    pub fn name(&self, s: &Settings) -> String {
+    pub fn name(&self, s: &MethodSettings) -> String {
         format!("{}, {}", self.labels.way(s), stage(s.stage))
     }
 
     /// How it looks.
     #[must_use]
-    pub fn style(&self, s: &Settings) -> Style {
+    pub fn style(&self, s: &MethodSettings) -> Style {
         let way = self.labels.way(s);
         let known = self.ways.iter().find(|(name, _)| *name == way);
         let own = style(s);
@@ -158,16 +159,16 @@ mod tests {
     use super::*;
 
     /// All that a chart can hold: every search, the papers' loop, meshes of seven finenesses.
-    fn all() -> Vec<Settings> {
-        let base = Settings::default();
-        let mut ways: Vec<Settings> = Solver::ALL
+    fn all() -> Vec<MethodSettings> {
+        let base = MethodSettings::default();
+        let mut ways: Vec<MethodSettings> = Method::ALL
             .iter()
-            .map(|&solver| Settings { solver, ..base })
+            .map(|&method| MethodSettings { method, ..base })
             .collect();
         ways.push(papers_loop(&spindle(), &base));
         for (segments, rings) in ALL_MESHES.into_iter().chain([(16, 32), (1024, 2048)]) {
-            let solver = Solver::Mesh { segments, rings };
-            ways.push(Settings { solver, ..base });
+            let method = Method::Mesh { segments, rings };
+            ways.push(MethodSettings { method, ..base });
         }
         ways
     }
@@ -175,11 +176,11 @@ mod tests {
     #[test]
     fn no_two_searches_share_a_marker_and_none_but_cones_a_colour() {
         let ways = all();
-        let searches = &ways[..=Solver::ALL.len()];
+        let searches = &ways[..=Method::ALL.len()];
         for (i, a) in searches.iter().enumerate() {
             for b in &searches[..i] {
                 // As many colours as there are searches cannot be told apart by all eyes.
-                let cones = a.solver.is_of_cones() && b.solver.is_of_cones();
+                let cones = a.method.is_of_cones() && b.method.is_of_cones();
                 let (a, b) = (style(a), style(b));
                 assert_eq!(a.color == b.color, cones, "{a:?} {b:?}");
                 assert!(
@@ -188,7 +189,7 @@ mod tests {
                 );
             }
             assert!(color::ALL.contains(&style(a).color));
-            assert_eq!(style(a).heavy, a.solver == Solver::DEFAULT);
+            assert_eq!(style(a).heavy, a.method == Method::DEFAULT);
         }
         for (i, a) in ways.iter().enumerate() {
             for b in &ways[..i] {
@@ -208,7 +209,7 @@ mod tests {
         let (whole, few) = (Looks::new(&ways), Looks::new(&ways[4..8]));
         for way in &ways[4..8] {
             assert_eq!(whole.style(way), few.style(way));
-            let compute = Settings {
+            let compute = MethodSettings {
                 stage: DrawStage::Compute,
                 ..*way
             };
@@ -224,12 +225,12 @@ mod tests {
 
     #[test]
     fn one_search_in_several_ways_takes_several_markers() {
-        let steps = |n| Settings {
-            solver: Solver::Circle,
+        let steps = |n| MethodSettings {
+            method: Method::Search(Solver::Circle),
             max_steps: Some(n),
-            ..Settings::default()
+            ..MethodSettings::default()
         };
-        let ways: Vec<Settings> = (1..=10).map(|k| steps(8 * k)).collect();
+        let ways: Vec<MethodSettings> = (1..=10).map(|k| steps(8 * k)).collect();
         let looks = Looks::new(&ways);
         let seen: Vec<Style> = ways.iter().map(|w| looks.style(w)).collect();
         for (i, a) in seen.iter().enumerate() {

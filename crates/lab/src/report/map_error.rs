@@ -5,13 +5,13 @@
 
 use super::plan::Plan;
 use crate::compare::{CompareOptions, Comparison, compare};
+use crate::method::MethodSettings;
 use glam::DVec3;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::scene::{CameraFrame, Object, Placement, Scene};
-use revmap::settings::Settings;
 use revmap_reference as reference;
 
 /// The error of a view's maps.
@@ -51,7 +51,7 @@ impl Truths {
     }
 
     /// The frame of a view, of which distances alone are true.
-    fn frame(&self, view: usize, seen: &Scene, settings: &Settings) -> Result<Frame> {
+    fn frame(&self, view: usize, seen: &Scene, settings: &MethodSettings) -> Result<Frame> {
         let (width, height) = (settings.width, settings.height);
         match self.find(view, (width, height)) {
             Some(distance) => {
@@ -59,7 +59,7 @@ impl Truths {
                 frame.distance.clone_from(distance);
                 Ok(frame)
             }
-            None => reference::draw(seen, settings, &|_, _| {}),
+            None => reference::draw(seen, &settings.into(), &|_, _| {}),
         }
     }
 }
@@ -90,10 +90,10 @@ pub fn measure(
     }
     let mut all = Vec::new();
     let mut truth: Option<(usize, Frame)> = None;
-    let settings = Settings {
+    let settings = MethodSettings {
         width: size.0,
         height: size.1,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     for (number, &(view, source, rows)) in wanted.iter().enumerate() {
         progress(number, wanted.len());
@@ -230,12 +230,12 @@ mod tests {
     #[test]
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);
-        let settings = Settings {
+        let settings = MethodSettings {
             width: 120,
             height: 90,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
-        let truth = reference::draw(&view.scene, &settings, &|_, _| {}).unwrap();
+        let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
         let error = |source, rows| {
             let frame = draw(&view.scene, (120, 90), source, rows).unwrap();
             compare(
@@ -272,12 +272,12 @@ mod tests {
         object.placement.scale = DVec3::new(1.3, 0.8, 1.1);
         object.placement.rotation = glam::DQuat::from_rotation_x(0.4);
         let view = view.framed(15.0);
-        let settings = Settings {
+        let settings = MethodSettings {
             width: 100,
             height: 75,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
-        let truth = reference::draw(&view.scene, &settings, &|_, _| {}).unwrap();
+        let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
         let frame = draw(&view.scene, (100, 75), MapSource::Exact, 512).unwrap();
         let errors = compare(
             &truth,
@@ -298,12 +298,12 @@ mod tests {
     #[test]
     fn truths_that_are_known_are_not_drawn_again() {
         let view = spindle().framed(20.0);
-        let settings = Settings {
+        let settings = MethodSettings {
             width: 40,
             height: 30,
             map_source: Some(MapSource::Exact),
             map_rows: Some(64),
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         let plan = Plan::new(vec![view], &[settings]);
         let wrong = |truths: &Truths| {

@@ -9,9 +9,10 @@ use super::plan::{Case, Plan, together};
 use super::row::{Row, Steps};
 use super::view::View;
 use crate::compare::{self, CompareOptions, Comparison};
+use crate::method::MethodSettings;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Frame;
-use revmap::settings::{Planes, Settings};
+use revmap::settings::Planes;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
@@ -40,19 +41,19 @@ pub trait Bench {
     ///
     /// # Errors
     /// Where this way of drawing does not apply to the view; a failure of the device itself is [`Stage::Device`] and ends the run.
-    fn subject(&mut self, view: &View, settings: &Settings) -> Result<Box<dyn Subject>>;
+    fn subject(&mut self, view: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>>;
 
     /// One frame with all planes, and the bytes of its maps.
     ///
     /// # Errors
     /// As [`Bench::subject`].
-    fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Frame, u64)>;
+    fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
     /// What should be seen.
     ///
     /// # Errors
     /// Of the scene.
-    fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame>;
+    fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
 }
 
 /// Whoever waits for the measurement.
@@ -235,9 +236,9 @@ impl Run<'_> {
                 if watch.stop.load(Ordering::Relaxed) {
                     break;
                 }
-                let solver = self.plan.cases[index].settings.solver;
-                self.tell(watch, &format!("{}: errors of {solver}", view.name));
-                let settings = Settings {
+                let method = self.plan.cases[index].settings.method;
+                self.tell(watch, &format!("{}: errors of {method}", view.name));
+                let settings = MethodSettings {
                     planes: Planes::All,
                     ..self.plan.cases[index].settings
                 };

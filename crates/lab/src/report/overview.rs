@@ -82,7 +82,7 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
     let mut meshes: Vec<(&Row, f64, f64)> = Vec::new();
     for &(row, x, y) in &points {
         let s = &row.settings;
-        if s.solver.is_mesh() {
+        if s.method.is_mesh() {
             meshes.push((row, x, y));
             continue;
         }
@@ -94,7 +94,7 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
         });
     }
     // Meshes differ by fineness alone: one line, each marker with its segments and rings.
-    meshes.sort_by_key(|(row, ..)| row.settings.solver.quads());
+    meshes.sort_by_key(|(row, ..)| row.settings.method.quads());
     if let Some((coarsest, ..)) = meshes.first() {
         let point = |&(row, x, y): &(&Row, f64, f64)| Point {
             x,
@@ -198,18 +198,19 @@ mod tests {
     use super::super::view::tests::spindle;
     use super::*;
     use crate::compare::Spread;
-    use revmap::settings::{DrawStage, Settings, Solver};
+    use crate::method::{Method, MethodSettings};
+    use revmap::settings::{DrawStage, Solver};
 
     /// As much as one picture can hold: every search in both stages, five meshes, the papers' loop.
     fn crowded() -> Vec<Row> {
         let mut rows = Vec::new();
-        let meshes = ALL_MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
-        for (k, solver) in Solver::ALL.into_iter().chain(meshes).enumerate() {
+        let meshes = ALL_MESHES.map(|(segments, rings)| Method::Mesh { segments, rings });
+        for (k, method) in Method::ALL.into_iter().chain(meshes).enumerate() {
             for stage in [DrawStage::Fragment, DrawStage::Compute] {
                 let ms = 5.0 * 1.2f64.powi(k as i32) + f64::from(stage == DrawStage::Compute);
                 let mut one = row(&[&[(None, ms)], &[(None, 1.02 * ms)]]);
-                one.settings = Settings {
-                    solver,
+                one.settings = MethodSettings {
+                    method,
                     stage,
                     ..one.settings
                 };
@@ -220,20 +221,20 @@ mod tests {
                     max: p99,
                 });
                 rows.push(one.clone());
-                if solver == Solver::Circle {
+                if method == Solver::Circle {
                     one.settings = papers_loop(&spindle(), &one.settings);
                     rows.push(one);
                 }
             }
         }
-        rows.retain(|r| !r.settings.solver.is_mesh() || r.settings.stage == DrawStage::Fragment);
+        rows.retain(|r| !r.settings.method.is_mesh() || r.settings.stage == DrawStage::Fragment);
         rows
     }
 
     #[test]
     fn no_words_cover_each_other_in_the_fullest_charts() {
         let rows = crowded();
-        let ways: Vec<Settings> = rows.iter().map(|r| r.settings).collect();
+        let ways: Vec<MethodSettings> = rows.iter().map(|r| r.settings).collect();
         let looks = Looks::new(&ways);
         let all: Vec<&Row> = rows.iter().collect();
         for figure in [

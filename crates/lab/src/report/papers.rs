@@ -20,11 +20,11 @@ use super::stats::Interval;
 use super::suite;
 use super::text;
 use super::view::View;
+use crate::method::MethodSettings;
 use chart::{Scaled, chart};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::scene::Offset;
-use revmap::settings::Settings;
 use std::path::Path;
 
 /// The slope of the bevel in table 3.
@@ -97,7 +97,7 @@ pub fn trend(first: &Row, last: &Row) -> Option<(Trend, Interval)> {
 
 /// One line of a table: a way of drawing at a size, its rate at each value.
 struct Measures<'a> {
-    way: Settings,
+    way: MethodSettings,
     size: (u32, u32),
     rows: [Option<&'a Row>; 3],
 }

@@ -5,9 +5,10 @@ use super::measure::Seen;
 use super::names::{self, safe};
 use super::plan::Labels;
 use crate::compare::{Heat, heat_map, ramp};
+use crate::method::MethodSettings;
 use revmap::error::{Result, Stage};
 use revmap::frame::{Frame, Picture};
-use revmap::settings::{DrawStage, Settings};
+use revmap::settings::DrawStage;
 use std::path::{Path, PathBuf};
 
 /// A picture made smaller for a page.
@@ -38,7 +39,7 @@ const NARROW: u32 = 200;
 pub struct Album {
     folder: PathBuf,
     labels: Labels,
-    worth: fn(&Settings) -> bool,
+    worth: fn(&MethodSettings) -> bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
     /// What was collected.
@@ -50,7 +51,7 @@ impl Album {
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub fn new(folder: &Path, labels: Labels, worth: fn(&Settings) -> bool) -> Result<Self> {
+    pub fn new(folder: &Path, labels: Labels, worth: fn(&MethodSettings) -> bool) -> Result<Self> {
         let folder = folder.join("pictures");
         make(&folder)?;
         Ok(Self {
@@ -104,7 +105,7 @@ impl Album {
         let way = self.labels.way(settings);
         let file = format!("{name}-{way}");
         // A mesh makes no look-ups.
-        if !settings.solver.is_mesh() {
+        if !settings.method.is_mesh() {
             self.keep(
                 (view, WIDEST),
                 &format!("{file}-steps"),

@@ -2,8 +2,9 @@
 
 use super::names;
 use super::view::View;
+use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{DrawStage, Planes, Solver};
 
 /// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +12,7 @@ pub struct Axes {
     /// Where rays are traced.
     pub stages: Vec<DrawStage>,
     /// The searches.
-    pub solvers: Vec<Solver>,
+    pub methods: Vec<Method>,
     /// Bounds on their steps.
     pub max_steps: Vec<Option<u32>>,
     /// Widths and heights, pixels.
@@ -27,10 +28,10 @@ pub struct Axes {
 impl Default for Axes {
     /// Both stages and every search at 800x600, all else as drawing takes it.
     fn default() -> Self {
-        let settings = Settings::default();
+        let settings = MethodSettings::default();
         Self {
             stages: vec![DrawStage::Fragment, DrawStage::Compute],
-            solvers: Solver::ALL.to_vec(),
+            methods: Method::ALL.to_vec(),
             max_steps: vec![settings.max_steps],
             sizes: vec![(settings.width, settings.height)],
             map_rows: vec![settings.map_rows],
@@ -43,26 +44,26 @@ impl Default for Axes {
 impl Axes {
     /// Every combination, sizes slowest.
     #[must_use]
-    pub fn combinations(&self) -> Vec<Settings> {
+    pub fn combinations(&self) -> Vec<MethodSettings> {
         let mut all = Vec::new();
         for &(width, height) in &self.sizes {
             for &stage in &self.stages {
-                for &solver in &self.solvers {
+                for &method in &self.methods {
                     for &max_steps in &self.max_steps {
                         for &map_rows in &self.map_rows {
                             for &map_source in &self.sources {
                                 for &map_format in &self.formats {
-                                    all.push(Settings {
+                                    all.push(MethodSettings {
                                         width,
                                         height,
                                         stage,
-                                        solver,
+                                        method,
                                         max_steps,
                                         map_rows,
                                         map_source,
                                         map_format,
                                         planes: Planes::Color,
-                                        ..Settings::default()
+                                        ..MethodSettings::default()
                                     });
                                 }
                             }
@@ -81,7 +82,7 @@ pub struct Case {
     /// Index of the view.
     pub view: usize,
     /// How it is drawn.
-    pub settings: Settings,
+    pub settings: MethodSettings,
 }
 
 /// All that is measured in one run.
@@ -98,7 +99,7 @@ pub struct Plan {
 impl Plan {
     /// Every view drawn in every way; a way that is named twice is taken once.
     #[must_use]
-    pub fn new(views: Vec<View>, ways: &[Settings]) -> Self {
+    pub fn new(views: Vec<View>, ways: &[MethodSettings]) -> Self {
         let mut plan = Self {
             views,
             cases: Vec::new(),
@@ -113,7 +114,7 @@ impl Plan {
     }
 
     /// Adds a measurement unless it is there.
-    pub fn add(&mut self, view: usize, settings: Settings) {
+    pub fn add(&mut self, view: usize, settings: MethodSettings) {
         let case = Case { view, settings };
         if view < self.views.len() && !self.cases.contains(&case) {
             self.cases.push(case);
@@ -133,8 +134,8 @@ impl Plan {
         for case in self.cases.clone() {
             if case.settings.stage == DrawStage::Fragment {
                 for &(segments, rings) in meshes {
-                    let solver = Solver::Mesh { segments, rings };
-                    self.add(case.view, plain(&case.settings, solver));
+                    let method = Method::Mesh { segments, rings };
+                    self.add(case.view, plain(&case.settings, method));
                 }
             }
         }
@@ -179,16 +180,20 @@ pub fn together(a: &Case, b: &Case) -> bool {
 
 /// The searches that a benchmark takes where none is named: those that somebody may want to choose between. Equal steps are left to the whole
 /// sweep: they cost two to five times as much as the rest and are beaten in time and error at once.
-pub const USUAL: [Solver; 5] = [
-    Solver::Circle,
-    Solver::Cone,
-    Solver::Live,
-    Solver::Quadric,
-    Solver::Hull,
+pub const USUAL: [Method; 5] = [
+    Method::Search(Solver::Circle),
+    Method::Search(Solver::Cone),
+    Method::Search(Solver::Live),
+    Method::Search(Solver::Quadric),
+    Method::Search(Solver::Hull),
 ];
 
 /// The searches of a look: the papers' loop is there anyhow.
-pub const FEW: [Solver; 3] = [Solver::Live, Solver::Quadric, Solver::Hull];
+pub const FEW: [Method; 3] = [
+    Method::Search(Solver::Live),
+    Method::Search(Solver::Quadric),
+    Method::Search(Solver::Hull),
+];
 
 /// The tessellations that are measured where none is named, segments and rings: one that a game would take, and finer ones up to the errors of
 /// exact pieces. Each is a quarter as wrong as the one before.
@@ -199,23 +204,23 @@ pub const ALL_MESHES: [(u32, u32); 5] = [(32, 64), (64, 128), (128, 256), (256, 
 
 /// `solver` at the stage and size of `settings`, all else as drawing takes it.
 #[must_use]
-pub fn plain(settings: &Settings, solver: Solver) -> Settings {
-    Settings {
+pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
+    MethodSettings {
         width: settings.width,
         height: settings.height,
         stage: settings.stage,
         planes: settings.planes,
-        solver,
-        ..Settings::default()
+        method,
+        ..MethodSettings::default()
     }
 }
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a bevel of 25 and 10
 /// halvings, on a binary image's distances in 8 bits.
 #[must_use]
-pub fn papers_loop(view: &View, settings: &Settings) -> Settings {
-    Settings {
-        solver: Solver::Circle,
+pub fn papers_loop(view: &View, settings: &MethodSettings) -> MethodSettings {
+    MethodSettings {
+        method: Method::Search(Solver::Circle),
         max_steps: Some(if view.technique().is_beveled() {
             25
         } else {
@@ -230,8 +235,8 @@ pub fn papers_loop(view: &View, settings: &Settings) -> Settings {
 
 /// A way of drawing apart from its size: what a summary over views and sizes is told by.
 #[must_use]
-pub fn variant(settings: &Settings) -> Settings {
-    Settings {
+pub fn variant(settings: &MethodSettings) -> MethodSettings {
+    MethodSettings {
         width: 0,
         height: 0,
         planes: Planes::Color,
@@ -251,10 +256,13 @@ pub struct Labels {
 impl Labels {
     /// Labels for these ways; the loop of the papers and meshes have their own names and do not count.
     #[must_use]
-    pub fn new<'a>(ways: impl IntoIterator<Item = &'a Settings>) -> Self {
-        let counts = |s: &&Settings| !is_papers_loop(s) && !s.solver.is_mesh();
+    pub fn new<'a>(ways: impl IntoIterator<Item = &'a MethodSettings>) -> Self {
+        let counts = |s: &&MethodSettings| !is_papers_loop(s) && !s.method.is_mesh();
         let ways: Vec<_> = ways.into_iter().filter(counts).collect();
-        fn differs<T: PartialEq>(ways: &[&Settings], of: impl Fn(&Settings) -> T) -> bool {
+        fn differs<T: PartialEq>(
+            ways: &[&MethodSettings],
+            of: impl Fn(&MethodSettings) -> T,
+        ) -> bool {
             ways.windows(2).any(|w| of(w[0]) != of(w[1]))
         }
         Self {
@@ -267,17 +275,17 @@ impl Labels {
 
     /// The search and what else tells this way from the others, without the stage.
     #[must_use]
-    pub fn way(&self, s: &Settings) -> String {
+    pub fn way(&self, s: &MethodSettings) -> String {
         if is_papers_loop(s) {
             return PAPERS_LOOP.to_owned();
         }
-        let mut name = s.solver.to_string();
-        if s.solver.is_mesh() {
+        let mut name = s.method.to_string();
+        if s.method.is_mesh() {
             return name; // which has neither steps nor a map
         }
         // A search without a loop has no bound to tell.
-        if self.steps && s.solver.default_steps(false) > 1 {
-            let steps = s.max_steps.unwrap_or_else(|| s.solver.default_steps(false));
+        if self.steps && s.method.default_steps(false) > 1 {
+            let steps = s.max_steps.unwrap_or_else(|| s.method.default_steps(false));
             name += &format!(" {steps} steps");
         }
         if let (true, Some(rows)) = (self.rows, s.map_rows) {
@@ -298,8 +306,8 @@ pub const PAPERS_LOOP: &str = "papers' loop";
 
 /// Whether settings are those of [`papers_loop`].
 #[must_use]
-pub fn is_papers_loop(s: &Settings) -> bool {
-    s.solver == Solver::Circle
+pub fn is_papers_loop(s: &MethodSettings) -> bool {
+    s.method == Solver::Circle
         && matches!(s.max_steps, Some(20 | 25))
         && s.map_source == Some(MapSource::Binary)
         && s.map_format == MapFormat::Rgba8
@@ -318,7 +326,7 @@ mod tests {
             sizes: vec![(64, 48), (32, 24)],
             sources: vec![Some(MapSource::Binary), Some(MapSource::Exact)],
             formats: vec![MapFormat::R16, MapFormat::Rgba8],
-            solvers: vec![Solver::Circle],
+            methods: vec![Method::Search(Solver::Circle)],
             ..Axes::default()
         }
     }
@@ -379,7 +387,7 @@ mod tests {
         let mut plan = Plan::new(vec![spindle()], &Axes::default().combinations());
         plan.add_papers_loop();
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
-        assert_eq!(labels.way(&plan.cases[0].settings), Solver::ALL[0].name());
+        assert_eq!(labels.way(&plan.cases[0].settings), Method::ALL[0].name());
         assert_eq!(
             labels.way(&plan.cases.last().unwrap().settings),
             PAPERS_LOOP

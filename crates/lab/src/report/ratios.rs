@@ -3,13 +3,13 @@
 use super::plan::{is_papers_loop, variant};
 use super::row::Row;
 use super::stats::{self, Interval};
-use revmap::settings::{Settings, Solver};
+use crate::method::{Method, MethodSettings};
 
 /// One way of drawing against a rival: the loop of the papers in the same stage, or a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratio {
     /// The way, without its size.
-    pub settings: Settings,
+    pub settings: MethodSettings,
     /// Time over the rival's: the geometric mean over views and sizes, with its 95 % interval.
     pub time: Interval,
     /// The least and the greatest ratio of a single view and size.
@@ -31,7 +31,7 @@ pub struct Ratio {
 /// nothing, and neither do pictures of which the rival has no usable row.
 #[must_use]
 pub fn over_papers_loop(rows: &[Row]) -> Vec<Ratio> {
-    let pairs = |way: &Settings| of_way(rows, way, |row| papers_row(rows, row));
+    let pairs = |way: &MethodSettings| of_way(rows, way, |row| papers_row(rows, row));
     ways(rows).iter().filter_map(pairs).collect()
 }
 
@@ -41,7 +41,7 @@ pub struct Duel {
     /// The default search in one stage, its errors those in these pictures.
     pub ours: Ratio,
     /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth, pictures without one left out.
-    pub mesh: Option<Solver>,
+    pub mesh: Option<Method>,
     /// The 99th percentile of the mesh's depth error: as [`Ratio::depth_p99`].
     pub mesh_p99: Option<f64>,
     /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of equals.
@@ -53,8 +53,8 @@ pub struct Duel {
 #[must_use]
 pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
     let all = ways(rows);
-    let meshes = || all.iter().map(|w| w.solver).filter(|s| s.is_mesh());
-    let ours = all.iter().filter(|w| w.solver == Solver::DEFAULT);
+    let meshes = || all.iter().map(|w| w.method).filter(|s| s.is_mesh());
+    let ours = all.iter().filter(|w| w.method == Method::DEFAULT);
     ours.flat_map(|way| {
         let rivals = meshes().map(Some).chain(meshes().next().map(|_| None));
         rivals.filter_map(|mesh| duel(rows, way, mesh))
@@ -62,15 +62,15 @@ pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
     .collect()
 }
 
-fn duel(rows: &[Row], way: &Settings, mesh: Option<Solver>) -> Option<Duel> {
+fn duel(rows: &[Row], way: &MethodSettings, mesh: Option<Method>) -> Option<Duel> {
     let rival = |row: &Row| {
         rows.iter()
-            .filter(|r| r.settings.solver.is_mesh() && same_picture(r, row) && r.time().is_some())
+            .filter(|r| r.settings.method.is_mesh() && same_picture(r, row) && r.time().is_some())
             .filter(|r| match mesh {
-                Some(mesh) => r.settings.solver == mesh,
+                Some(mesh) => r.settings.method == mesh,
                 None => errs_no_more(r, row),
             })
-            .min_by_key(|r| r.settings.solver.quads())
+            .min_by_key(|r| r.settings.method.quads())
     };
     let ours = of_way(rows, way, rival)?;
     let own = rows.iter().filter(|r| variant(&r.settings) == *way);
@@ -104,8 +104,8 @@ fn errs_no_more(mesh: &Row, row: &Row) -> bool {
 }
 
 /// The ways of drawing, in the order in which they first appear.
-fn ways(rows: &[Row]) -> Vec<Settings> {
-    let mut ways: Vec<Settings> = Vec::new();
+fn ways(rows: &[Row]) -> Vec<MethodSettings> {
+    let mut ways: Vec<MethodSettings> = Vec::new();
     for row in rows {
         let way = variant(&row.settings);
         if !ways.contains(&way) {
@@ -118,7 +118,7 @@ fn ways(rows: &[Row]) -> Vec<Settings> {
 /// A way over the rival that `rival` gives for each of its rows.
 fn of_way<'a>(
     rows: &'a [Row],
-    way: &Settings,
+    way: &MethodSettings,
     rival: impl Fn(&Row) -> Option<&'a Row>,
 ) -> Option<Ratio> {
     let mut pairs: Vec<(&Row, &Row)> = Vec::new();
@@ -213,6 +213,7 @@ mod tests {
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
+    use crate::method::Method;
     use revmap::settings::DrawStage;
 
     fn papers(mut row: Row) -> Row {
@@ -305,15 +306,15 @@ mod tests {
                 max: p99,
             })
         };
-        let timed = |solver, ms: f64, p99| {
+        let timed = |method, ms: f64, p99| {
             let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
-            row.settings.solver = solver;
+            row.settings.method = method;
             row.errors.depth = depth(p99);
             row
         };
-        let mesh = |n| Solver::mesh(n, 2 * n).unwrap();
+        let mesh = |n| Method::mesh(n, 2 * n).unwrap();
         let rows = [
-            timed(Solver::DEFAULT, 9.0, 0.01),
+            timed(Method::DEFAULT, 9.0, 0.01),
             timed(mesh(64), 6.0, 0.5),
             timed(mesh(512), 36.0, 0.009),
             timed(mesh(256), 18.0, 0.01),

@@ -7,10 +7,10 @@ use super::plan::Case;
 use super::stats::{self, Interval};
 use super::view::{Technique, View};
 use crate::compare::Comparison;
+use crate::method::MethodSettings;
 use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::Offset;
-use revmap::settings::Settings;
 
 /// Columns of `results.csv`, in their order.
 pub const COLUMNS: [&str; 31] = [
@@ -112,7 +112,7 @@ pub struct Row {
     /// The offset, where all objects have the same.
     pub offset: Option<Offset>,
     /// How it was drawn.
-    pub settings: Settings,
+    pub settings: MethodSettings,
     /// Rows of the maps, where all objects have the same.
     pub map_rows: Option<u32>,
     /// Source of the distances, where all objects have the same.
@@ -135,7 +135,7 @@ impl Row {
     pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
         let objects = &view.scene.objects;
         let settings = case.settings;
-        let searched = !settings.solver.is_mesh();
+        let searched = !settings.method.is_mesh();
         Self {
             view: case.view,
             scene: view.name.clone(),
@@ -167,7 +167,7 @@ impl Row {
     pub fn max_steps(&self) -> u32 {
         self.settings.max_steps.unwrap_or_else(|| {
             self.settings
-                .solver
+                .method
                 .default_steps(self.offset.is_some_and(|o| o.bevel != 0.0))
         })
     }
@@ -243,7 +243,7 @@ impl Row {
         // A mesh has no search, whose columns these are.
         let search = |text: String| {
             Some(text)
-                .filter(|_| !s.solver.is_mesh())
+                .filter(|_| !s.method.is_mesh())
                 .unwrap_or_default()
         };
         vec![
@@ -253,7 +253,7 @@ impl Row {
             offset(|o| o.bevel),
             offset(|o| o.chamfer),
             names::stage(s.stage).into(),
-            s.solver.to_string(),
+            s.method.to_string(),
             search(self.max_steps().to_string()),
             s.width.to_string(),
             s.height.to_string(),

@@ -19,8 +19,8 @@ use super::page::Page;
 use super::plan::{Plan, variant};
 use super::row::Row;
 use super::text;
+use crate::method::MethodSettings;
 use revmap::error::Result;
-use revmap::settings::Settings;
 use std::path::Path;
 
 /// What is varied.
@@ -119,9 +119,9 @@ pub fn as_text(rows: &[Row]) -> String {
 }
 
 fn looks(rows: &[Row]) -> Looks {
-    let ways: Vec<Settings> = rows
+    let ways: Vec<MethodSettings> = rows
         .iter()
-        .map(|r| Settings {
+        .map(|r| MethodSettings {
             map_rows: None,
             ..variant(&r.settings)
         })

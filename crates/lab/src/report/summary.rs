@@ -12,8 +12,9 @@ use super::page::Page;
 use super::ratios::{Ratio, over_papers_loop};
 use super::row::Row;
 use super::text::{self, percent};
+use crate::method::MethodSettings;
 use revmap::error::Result;
-use revmap::settings::{DrawStage, Settings};
+use revmap::settings::DrawStage;
 use std::path::Path;
 
 /// The chapters on ratios.
@@ -56,7 +57,12 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
         if ratios.is_empty() {
             continue;
         }
-        let figure = curves::summed(part.views(), &ratios, Measure::Depth, &Settings::default());
+        let figure = curves::summed(
+            part.views(),
+            &ratios,
+            Measure::Depth,
+            &MethodSettings::default(),
+        );
         keep_figure(folder, &format!("summary{}", part.ending(&parts)), &figure)?;
         page.figure(
             &figure,
@@ -169,6 +175,8 @@ mod tests {
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
+    use crate::method::Method;
+    use crate::method::MethodSettings;
     use revmap::settings::Solver;
 
     /// A view drawn by the papers' loop and in half its time by the default, as the clocks tell it.
@@ -182,9 +190,9 @@ mod tests {
                 ..row
             }
         };
-        let ours = Settings {
-            solver: Solver::Hull,
-            ..Settings::default()
+        let ours = MethodSettings {
+            method: Method::Search(Solver::Hull),
+            ..MethodSettings::default()
         };
         [
             timed(5.0, ours),

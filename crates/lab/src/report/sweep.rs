@@ -2,8 +2,9 @@
 
 use super::plan::{Axes, Plan, papers_loop, plain};
 use super::view::View;
+use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{DrawStage, Solver};
 
 /// The values that are swept, one axis at a time, the others staying at what drawing takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +12,7 @@ pub struct Sweep {
     /// Where rays are traced. Maps are swept in the first stage alone: they cost and err alike in both.
     pub stages: Vec<DrawStage>,
     /// The searches.
-    pub solvers: Vec<Solver>,
+    pub methods: Vec<Method>,
     /// Width and height, pixels.
     pub size: (u32, u32),
     /// Bounds on steps.
@@ -28,7 +29,7 @@ impl Sweep {
     pub fn new() -> Self {
         Self {
             stages: vec![DrawStage::Fragment, DrawStage::Compute],
-            solvers: Solver::ALL.to_vec(),
+            methods: Method::ALL.to_vec(),
             size: (800, 600),
             steps: vec![8, 16, 32, 64, 128, 256],
             rows: vec![64, 128, 256, 512, 1024],
@@ -71,7 +72,7 @@ impl Sweep {
         };
         for view in 0..plan.views.len() {
             for (number, &stage) in self.stages.iter().enumerate() {
-                let base = Settings {
+                let base = MethodSettings {
                     stage,
                     width: self.size.0,
                     height: self.size.1,
@@ -81,34 +82,34 @@ impl Sweep {
                         .copied()
                         .unwrap_or_default()
                 };
-                for &solver in &self.solvers {
-                    let steps = |max_steps| Settings {
-                        solver,
+                for &method in &self.methods {
+                    let steps = |max_steps| MethodSettings {
+                        method,
                         max_steps,
                         ..base
                     };
-                    let rows = |&rows: &u32| Settings {
-                        solver,
+                    let rows = |&rows: &u32| MethodSettings {
+                        method,
                         map_rows: Some(rows),
                         ..base
                     };
-                    let ways: Vec<_> = if has_rows(solver) {
+                    let ways: Vec<_> = if has_rows(method) {
                         self.rows.iter().map(rows).collect()
                     } else {
-                        let budgets = budgets(solver, &self.steps);
+                        let budgets = budgets(method, &self.steps);
                         budgets.into_iter().map(steps).collect()
                     };
                     for settings in ways {
                         plan.add(view, settings);
                     }
-                    if number > 0 || !sweeps_maps(solver, &self.solvers) {
+                    if number > 0 || !sweeps_maps(method, &self.methods) {
                         continue;
                     }
-                    let ample = ample(solver, &self.steps);
+                    let ample = ample(method, &self.steps);
                     for &rows in &self.rows {
                         for source in [MapSource::Binary, MapSource::Coverage, MapSource::Exact] {
-                            let settings = Settings {
-                                solver,
+                            let settings = MethodSettings {
+                                method,
                                 max_steps: ample,
                                 map_rows: Some(rows),
                                 map_source: Some(source),
@@ -120,8 +121,8 @@ impl Sweep {
                     for map_format in [MapFormat::Rgba8, MapFormat::R16, MapFormat::R32] {
                         plan.add(
                             view,
-                            Settings {
-                                solver,
+                            MethodSettings {
+                                method,
                                 max_steps: ample,
                                 map_format,
                                 ..base
@@ -131,7 +132,7 @@ impl Sweep {
                 }
                 for &(segments, rings) in &self.meshes {
                     if stage == DrawStage::Fragment {
-                        plan.add(view, plain(&base, Solver::Mesh { segments, rings }));
+                        plan.add(view, plain(&base, Method::Mesh { segments, rings }));
                     }
                 }
                 let papers = papers_loop(&plan.views[view], &base);
@@ -159,8 +160,8 @@ fn doubled(from: u32, to: u32) -> Vec<(u32, u32)> {
 /// The bounds on steps worth trying: a search without a loop has none, one that ends by itself is cut short to see what the cut
 /// costs.
 #[must_use]
-pub fn budgets(solver: Solver, steps: &[u32]) -> Vec<Option<u32>> {
-    if has_budget(solver) {
+pub fn budgets(method: Method, steps: &[u32]) -> Vec<Option<u32>> {
+    if has_budget(method) {
         steps.iter().copied().map(Some).collect()
     } else {
         vec![None]
@@ -169,28 +170,28 @@ pub fn budgets(solver: Solver, steps: &[u32]) -> Vec<Option<u32>> {
 
 /// Whether a bound on steps means anything to a search.
 #[must_use]
-pub fn has_budget(solver: Solver) -> bool {
-    solver.default_steps(false) > 1
+pub fn has_budget(method: Method) -> bool {
+    method.default_steps(false) > 1
 }
 
 /// Whether a search has a table of as many rows as a map has, made from the boundary itself: these rows are its budget.
 #[must_use]
-pub fn has_rows(solver: Solver) -> bool {
-    solver.is_of_cones()
+pub fn has_rows(method: Method) -> bool {
+    method.is_of_cones()
 }
 
 /// Maps are swept with the papers' search and with `live`, the most exact of those that read them, or with what is named in place of both: the
 /// others read the same maps in the same way. The default reads none.
-fn sweeps_maps(solver: Solver, all: &[Solver]) -> bool {
-    let usual = [Solver::Circle, Solver::Live];
-    solver.reads_map() && (usual.contains(&solver) || !all.iter().any(|s| usual.contains(s)))
+fn sweeps_maps(method: Method, all: &[Method]) -> bool {
+    let usual = [Method::Search(Solver::Circle), Method::Search(Solver::Live)];
+    method.reads_map() && (usual.contains(&method) || !all.iter().any(|s| usual.contains(s)))
 }
 
 /// A budget with which what is wrong is the map's fault rather than the search's.
-fn ample(solver: Solver, steps: &[u32]) -> Option<u32> {
+fn ample(method: Method, steps: &[u32]) -> Option<u32> {
     let most = steps.iter().copied().max();
-    if has_budget(solver) {
-        most.max(Some(solver.default_steps(false)))
+    if has_budget(method) {
+        most.max(Some(method.default_steps(false)))
     } else {
         None
     }
@@ -205,19 +206,22 @@ mod tests {
     #[test]
     fn a_sweep_moves_one_axis_at_a_time() {
         let sweep = Sweep {
-            solvers: vec![Solver::Circle, Solver::Quadric],
+            methods: vec![
+                Method::Search(Solver::Circle),
+                Method::Search(Solver::Quadric),
+            ],
             ..Sweep::new()
         };
         let plan = sweep.plan(vec![spindle()]);
-        let of = |solver| {
+        let of = |method| {
             plan.cases
                 .iter()
-                .filter(move |c| c.settings.solver == solver && !is_papers_loop(&c.settings))
+                .filter(move |c| c.settings.method == method && !is_papers_loop(&c.settings))
         };
         // Steps in both stages, rows x sources and formats in one; a format that is the default is there already.
-        let circle = of(Solver::Circle).count();
+        let circle = of(Method::Search(Solver::Circle)).count();
         assert_eq!(circle, 6 * 2 + 5 * 3 + 2);
-        assert!(of(Solver::Quadric).all(|c| c.settings.max_steps.is_none()));
+        assert!(of(Method::Search(Solver::Quadric)).all(|c| c.settings.max_steps.is_none()));
         assert_eq!(
             plan.cases
                 .iter()
@@ -226,7 +230,7 @@ mod tests {
             2
         );
         assert_eq!(plan.groups().len(), 1);
-        let meshes = plan.cases.iter().filter(|c| c.settings.solver.is_mesh());
+        let meshes = plan.cases.iter().filter(|c| c.settings.method.is_mesh());
         assert!(
             meshes
                 .clone()
@@ -238,12 +242,12 @@ mod tests {
     #[test]
     fn rows_of_cones_are_swept_in_every_stage() {
         let sweep = Sweep {
-            solvers: vec![Solver::Cone],
+            methods: vec![Method::Search(Solver::Cone)],
             ..Sweep::new()
         };
         let plan = sweep.plan(vec![spindle()]);
         let cones = plan.cases.iter().map(|c| c.settings);
-        let cones: Vec<_> = cones.filter(|s| s.solver == Solver::Cone).collect();
+        let cones: Vec<_> = cones.filter(|s| s.method == Solver::Cone).collect();
         assert_eq!(cones.len(), 2 * sweep.rows.len());
         assert!(
             cones

@@ -134,7 +134,7 @@ pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
             .mesh
             .map_or("coarsest no worse".into(), |m| m.to_string());
         vec![
-            format!("{} / {mesh}", ours.settings.solver),
+            format!("{} / {mesh}", ours.settings.method),
             stage(ours.settings.stage).to_owned(),
             number(ours.time.value, 3),
             ends(&ours.time),

@@ -1,7 +1,7 @@
 //! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it draws once, and what it keeps.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run};
-use revmap::settings::{Settings, Solver};
+use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::curves;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
@@ -19,9 +19,9 @@ fn samples_are_interleaved_and_passes_are_built_anew() {
     assert_eq!(bench.made, 6 * outcome.rows[0].passes.len());
     let frames = bench.frames.borrow();
     // One frame each to warm up, then the rounds of the first group.
-    let rounds: Vec<&[Solver]> = frames[3..3 + 6 * 3].chunks(3).collect();
+    let rounds: Vec<&[Method]> = frames[3..3 + 6 * 3].chunks(3).collect();
     for pair in rounds.windows(2) {
-        let back: Vec<Solver> = pair[1].iter().rev().copied().collect();
+        let back: Vec<Method> = pair[1].iter().rev().copied().collect();
         assert_eq!(pair[0], back.as_slice());
     }
     assert_ne!(rounds[0], rounds[1]);
@@ -36,7 +36,7 @@ fn no_truth_is_drawn_twice() {
         for case in sizes {
             plan.add(
                 case.view,
-                Settings {
+                MethodSettings {
                     width: 32,
                     height: 24,
                     ..case.settings

@@ -2,7 +2,8 @@
 
 use crate::stand_in::{Fault, StandIn, measured, plan, run};
 use revmap::error::Stage;
-use revmap::settings::{Settings, Solver};
+use revmap::settings::Solver;
+use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::chart::front::front;
 use revmap_lab::report::curves::{self, Measure};
 use revmap_lab::report::folder;
@@ -12,14 +13,14 @@ use revmap_lab::report::ratios::over_papers_loop;
 use revmap_lab::report::row::{Clocks, Row};
 use std::sync::atomic::AtomicBool;
 
-fn of(rows: &[Row], solver: Solver) -> Vec<&Row> {
+fn of(rows: &[Row], method: Method) -> Vec<&Row> {
     rows.iter()
-        .filter(|r| r.settings.solver == solver && !is_papers_loop(&r.settings))
+        .filter(|r| r.settings.method == method && !is_papers_loop(&r.settings))
         .collect()
 }
 
 /// Places of (time, error) on a chart and which of them are on the front, of the first view.
-fn on_front(rows: &[Row]) -> Vec<Solver> {
+fn on_front(rows: &[Row]) -> Vec<Method> {
     let first: Vec<&Row> = rows.iter().filter(|r| r.view == 0).collect();
     let points: Vec<_> = first
         .iter()
@@ -32,7 +33,7 @@ fn on_front(rows: &[Row]) -> Vec<Solver> {
         .collect();
     front(&points, 1.0)
         .into_iter()
-        .map(|i| first[i].settings.solver)
+        .map(|i| first[i].settings.method)
         .collect()
 }
 
@@ -50,14 +51,14 @@ fn without_a_fault_all_is_as_it_was_planted() {
     let ratios = over_papers_loop(&outcome.rows);
     let live = ratios
         .iter()
-        .find(|r| r.settings.solver == Solver::Live)
+        .find(|r| r.settings.method == Solver::Live)
         .unwrap();
     assert!(
         (live.time.value - 0.5).abs() < 0.03 && live.pictures == 2,
         "{live:?}"
     );
     assert!(live.wrong == 0.0 && live.depth_p99.unwrap() < 0.01);
-    assert!(on_front(&outcome.rows).contains(&Solver::Live));
+    assert!(on_front(&outcome.rows).contains(&Method::Search(Solver::Live)));
 }
 
 #[test]
@@ -66,7 +67,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     let ratios = over_papers_loop(&outcome.rows);
     let live = ratios
         .iter()
-        .find(|r| r.settings.solver == Solver::Live)
+        .find(|r| r.settings.method == Solver::Live)
         .unwrap();
     assert!(
         (live.time.value - 1.5).abs() < 0.08 && live.time.low > 1.0,
@@ -74,15 +75,15 @@ fn a_search_that_sleeps_is_charted_slower() {
         live.time
     );
     let (slept, other) = (
-        of(&outcome.rows, Solver::Live),
-        of(&outcome.rows, Solver::Circle),
+        of(&outcome.rows, Method::Search(Solver::Live)),
+        of(&outcome.rows, Method::Search(Solver::Circle)),
     );
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
     }
     // In the chart its marker stands further right: marks in order of series, the markers of the plot before those of the legend.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
-    let figure = curves::searches("t", &rows, Measure::Depth, &Settings::default());
+    let figure = curves::searches("t", &rows, Measure::Depth, &MethodSettings::default());
     let lefts: Vec<f64> = figure
         .marks
         .iter()
@@ -95,14 +96,14 @@ fn a_search_that_sleeps_is_charted_slower() {
 #[test]
 fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
     let outcome = measured(Fault::BoxFace);
-    for row in of(&outcome.rows, Solver::Live) {
+    for row in of(&outcome.rows, Method::Search(Solver::Live)) {
         assert!(row.errors.ghost > 100, "{:?}", row.errors);
         assert!(row.errors.depth.unwrap().p99 > 10.0 && row.errors.normal.unwrap().rms > 10.0);
         assert!(Measure::Wrong.of(row).unwrap() > 20.0);
     }
     assert_eq!(
         on_front(&outcome.rows),
-        [Solver::Circle],
+        [Method::Search(Solver::Circle)],
         "it must not stand on the front"
     );
     let ratio = &over_papers_loop(&outcome.rows)[0];
@@ -112,16 +113,16 @@ fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
 #[test]
 fn a_clock_that_lies_is_rejected() {
     let outcome = measured(Fault::ClockLies);
-    for row in of(&outcome.rows, Solver::Live) {
+    for row in of(&outcome.rows, Method::Search(Solver::Live)) {
         assert!(matches!(row.clocks(), Clocks::Disagree { .. }));
         assert_eq!(row.time(), None);
     }
     assert!(
         over_papers_loop(&outcome.rows)
             .iter()
-            .all(|r| r.settings.solver != Solver::Live)
+            .all(|r| r.settings.method != Solver::Live)
     );
-    assert!(!on_front(&outcome.rows).contains(&Solver::Live));
+    assert!(!on_front(&outcome.rows).contains(&Method::Search(Solver::Live)));
     let marked = folder::left_out(&plan(), &outcome);
     assert_eq!(marked.records.len(), 2);
     assert!(
@@ -134,13 +135,13 @@ fn a_clock_that_lies_is_rejected() {
         &outcome.rows,
         &Machine::here("stand-in", "none", "none", "revmap bench"),
     );
-    let (solver, gpu, frame) = (
+    let (method, gpu, frame) = (
         results.column("solver").unwrap(),
         results.column("gpu_ms_median").unwrap(),
         results.column("frame_ms_median").unwrap(),
     );
     for record in &results.records {
-        assert_eq!(record[gpu].is_empty(), record[solver] == "live");
+        assert_eq!(record[gpu].is_empty(), record[method] == "live");
         assert!(!record[frame].is_empty());
     }
 }

@@ -5,7 +5,8 @@ use revmap::error::{Error, Result, Stage};
 use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{DrawStage, Solver};
+use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::measure::{Bench, Limits, Measured, Sample, Subject, Watch, measure};
 use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
 use revmap_lab::report::view::View;
@@ -36,7 +37,7 @@ pub enum Fault {
 pub struct StandIn {
     fault: Fault,
     /// Every frame that was timed: the view and the search.
-    pub frames: Rc<RefCell<Vec<Solver>>>,
+    pub frames: Rc<RefCell<Vec<Method>>>,
     /// How often something was made ready to be timed.
     pub made: usize,
     /// Every picture of which the truth was asked: the view and the width.
@@ -48,15 +49,15 @@ pub struct StandIn {
 struct Timed {
     gpu_ms: f64,
     frame_ms: f64,
-    solver: Solver,
-    frames: Rc<RefCell<Vec<Solver>>>,
+    method: Method,
+    frames: Rc<RefCell<Vec<Method>>>,
     stop_after: Option<(usize, &'static AtomicBool)>,
 }
 
 impl Subject for Timed {
     fn sample(&mut self) -> Result<Sample> {
         let mut frames = self.frames.borrow_mut();
-        frames.push(self.solver);
+        frames.push(self.method);
         if let Some((count, stop)) = self.stop_after {
             stop.fetch_or(frames.len() >= count, Ordering::Relaxed);
         }
@@ -80,9 +81,9 @@ impl StandIn {
         }
     }
 
-    fn refusal(&self, settings: &Settings) -> Result<()> {
+    fn refusal(&self, settings: &MethodSettings) -> Result<()> {
         match self.fault {
-            Fault::Refuses if settings.solver == Solver::Live => Err(Error::new(
+            Fault::Refuses if settings.method == Solver::Live => Err(Error::new(
                 Stage::Draw,
                 "this search does not apply to this profile",
             )),
@@ -93,10 +94,10 @@ impl StandIn {
 }
 
 impl Bench for StandIn {
-    fn subject(&mut self, _: &View, settings: &Settings) -> Result<Box<dyn Subject>> {
+    fn subject(&mut self, _: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>> {
         self.refusal(settings)?;
         self.made += 1;
-        let live = settings.solver == Solver::Live;
+        let live = settings.method == Solver::Live;
         let base = if is_papers_loop(settings) { 20.0 } else { 10.0 };
         let frame_ms = if live && self.fault == Fault::Sleeps {
             base * 3.0
@@ -111,24 +112,24 @@ impl Bench for StandIn {
         Ok(Box::new(Timed {
             gpu_ms,
             frame_ms,
-            solver: settings.solver,
+            method: settings.method,
             frames: self.frames.clone(),
             stop_after: self.stop_after,
         }))
     }
 
-    fn picture(&mut self, view: &View, settings: &Settings) -> Result<(Frame, u64)> {
+    fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)> {
         self.refusal(settings)?;
         let mut view = view.clone();
-        if settings.solver == Solver::Live && self.fault == Fault::BoxFace {
+        if settings.method == Solver::Live && self.fault == Fault::BoxFace {
             // A cylinder as wide and high as the box.
             let radius = view.scene.objects[0].profile.radius;
             let polygon = [[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]];
             view.scene.objects[0].profile = Arc::new(Profile::polygon(&polygon, radius)?);
         }
-        let mut frame = reference::draw(&view.scene, settings, &|_, _| {})?;
+        let mut frame = reference::draw(&view.scene, &settings.into(), &|_, _| {})?;
         // Nobody is perfect: a little error for all, or all would be on one front.
-        let error = if settings.solver == Solver::Live {
+        let error = if settings.method == Solver::Live {
             1e-6
         } else {
             2e-6
@@ -137,9 +138,9 @@ impl Bench for StandIn {
         Ok((frame, 1000))
     }
 
-    fn truth(&mut self, view: &View, settings: &Settings) -> Result<Frame> {
+    fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame> {
         self.truths.push((view.name.clone(), settings.width));
-        reference::draw(&view.scene, settings, &|_, _| {})
+        reference::draw(&view.scene, &settings.into(), &|_, _| {})
     }
 }
 
@@ -161,7 +162,7 @@ fn views() -> Vec<View> {
 pub fn plan() -> Plan {
     let axes = Axes {
         stages: vec![DrawStage::Fragment],
-        solvers: vec![Solver::Live, Solver::Circle],
+        methods: vec![Method::Search(Solver::Live), Method::Search(Solver::Circle)],
         sizes: vec![(48, 36)],
         ..Axes::default()
     };

@@ -1,6 +1,7 @@
 //! The pages of a chart run: one for each view, and one that sums up.
 
 use super::{Measure, maps, most_exact, resolution, searches, summed};
+use crate::method::MethodSettings;
 use crate::report::chapters;
 use crate::report::chart::front::{WORTH, front};
 use crate::report::covered::{parts, pictures_of};
@@ -17,7 +18,6 @@ use crate::report::ratios::over_papers_loop;
 use crate::report::row::Row;
 use crate::report::text::percent;
 use revmap::error::Result;
-use revmap::settings::Settings;
 use std::path::Path;
 
 /// Writes the pages of a chart run: `report.html` that sums up, and one page for each view.
@@ -32,7 +32,7 @@ pub fn write(
     album: &Album,
     alone: &[MapError],
 ) -> Result<()> {
-    let base = Settings::default();
+    let base = MethodSettings::default();
     let all: Vec<&Row> = measured.rows.iter().collect();
     let mut pages = Vec::new();
     for group in pictures_of(&all) {
@@ -71,24 +71,24 @@ pub fn write(
         );
         keep_figure(folder, &format!("{name}-maps"), &figure)?;
         page.figure(&figure, "Each marker is a search with ample steps on a map of one source and one number of rows; those on the front are named.");
-        if let Some(solver) = most_exact(&group) {
+        if let Some(method) = most_exact(&group) {
             let own: Vec<MapError> = alone
                 .iter()
                 .filter(|e| e.view == first.view)
                 .cloned()
                 .collect();
             let title = format!("{}: depth error against the map's rows", first.scene);
-            let figure = resolution(&title, &group, Measure::Depth, solver, &own);
+            let figure = resolution(&title, &group, Measure::Depth, method, &own);
             keep_figure(folder, &format!("{name}-rows-depth"), &figure)?;
             page.figure(
                 &figure,
                 &format!(
                     "Hollow markers are the error of the map's own surface, found without any search; filled ones what `{}` draws from it: the gap between the two is the search's share."
-                    , solver.name()
+                    , method.name()
                 ),
             );
             let title = format!("{}: error of normals against the map's rows", first.scene);
-            let figure = resolution(&title, &group, Measure::Normal, solver, &[]);
+            let figure = resolution(&title, &group, Measure::Normal, method, &[]);
             keep_figure(folder, &format!("{name}-rows-normals"), &figure)?;
             page.figure(&figure, "Normals as drawn: more rows mend them where distances are exact or from coverage, and do not where they come from a binary image.");
         }
@@ -109,7 +109,7 @@ fn summary(
     machine: &Machine,
     album: &Album,
     pages: &[(String, String)],
-    base: &Settings,
+    base: &MethodSettings,
 ) -> Result<()> {
     let mut page = Page::new("revmap: speed against accuracy");
     chapters::begin(&mut page, machine, measured);
@@ -150,7 +150,7 @@ fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
     let all: Vec<&Row> = rows.iter().collect();
     let groups = pictures_of(&all);
     let labels = Labels::new(rows.iter().map(|r| &r.settings));
-    let mut counts: Vec<(Settings, usize, f64, f64)> = Vec::new();
+    let mut counts: Vec<(MethodSettings, usize, f64, f64)> = Vec::new();
     for group in &groups {
         let points: Vec<(f64, f64)> = group
             .iter()

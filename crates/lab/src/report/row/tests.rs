@@ -2,6 +2,8 @@
 use super::super::view::tests::spindle;
 use super::*;
 use crate::compare::{CompareOptions, compare};
+use crate::method::Method;
+use revmap::settings::Solver;
 
 /// A row without errors, timed as told: `(gpu, frame)` in each pass and round.
 pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
@@ -9,10 +11,10 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
     let errors = compare(&frame, &frame, &CompareOptions::default()).unwrap();
     let case = Case {
         view: 0,
-        settings: Settings {
-            solver: revmap::settings::Solver::Circle,
+        settings: MethodSettings {
+            method: Method::Search(Solver::Circle),
             map_format: revmap::maps::MapFormat::R16,
-            ..Settings::default()
+            ..MethodSettings::default()
         },
     };
     let mut row = Row::new(&spindle(), &case, errors, Steps::of(&frame), 1000);

@@ -1,10 +1,10 @@
 //! How the time of each way of drawing grows with a quantity.
 
 use super::Quantity;
+use crate::method::MethodSettings;
 use crate::report::plan::variant;
 use crate::report::row::Row;
 use crate::report::stats::{self, Interval, PowerLaw};
-use revmap::settings::Settings;
 
 /// The value of a quantity in a row, if the row is part of that sweep.
 #[must_use]
@@ -22,7 +22,7 @@ pub fn value(row: &Row, quantity: Quantity) -> Option<f64> {
 #[derive(Clone, Debug)]
 pub struct Growth {
     /// The way, without what is varied.
-    pub way: Settings,
+    pub way: MethodSettings,
     /// `(quantity, ms)`, growing.
     pub points: Vec<(f64, f64)>,
     /// The medians of each pass, point by point.
@@ -44,7 +44,7 @@ pub fn growth(rows: &[Row], quantity: Quantity) -> Vec<Growth> {
         let (Some(x), Some(time)) = (value(row, quantity), row.time()) else {
             continue;
         };
-        let way = Settings {
+        let way = MethodSettings {
             map_rows: None,
             ..variant(&row.settings)
         };

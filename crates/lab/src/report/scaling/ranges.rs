@@ -1,5 +1,6 @@
 //! What is measured to see how time grows: sizes of pictures, numbers of copies, rows of maps.
 
+use crate::method::{Method, MethodSettings};
 use crate::report::plan::{Plan, papers_loop};
 use crate::report::suite;
 use crate::report::sweep::has_rows;
@@ -7,7 +8,7 @@ use crate::report::view::View;
 use glam::DVec3;
 use revmap::error::Result;
 use revmap::scene::Placement;
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::DrawStage;
 
 /// Sizes of pictures.
 const SIZES: [(u32, u32); 5] = [
@@ -58,7 +59,7 @@ impl Ranges {
 ///
 /// # Errors
 /// Of the solid that the program carries.
-pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<Plan> {
+pub fn plan(stages: &[DrawStage], methods: &[Method], ranges: Ranges) -> Result<Plan> {
     let one = suite::one()?;
     let copies = &COPIES[..ranges.copies.min(COPIES.len())];
     let mut views = vec![one.clone()];
@@ -69,41 +70,41 @@ pub fn plan(stages: &[DrawStage], solvers: &[Solver], ranges: Ranges) -> Result<
         mixed: false,
     };
     for &stage in stages {
-        let base = Settings {
+        let base = MethodSettings {
             stage,
             planes: revmap::settings::Planes::Color,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
-        let mut ways: Vec<Settings> = solvers
+        let mut ways: Vec<MethodSettings> = methods
             .iter()
-            .map(|&solver| Settings { solver, ..base })
+            .map(|&method| MethodSettings { method, ..base })
             .collect();
         ways.push(papers_loop(&one, &base));
-        let sized = |s: &Settings, (width, height): (u32, u32)| Settings {
+        let sized = |s: &MethodSettings, (width, height): (u32, u32)| MethodSettings {
             width,
             height,
             ..*s
         };
         // A mesh is not drawn by compute, and has no map.
-        ways.retain(|w| !w.solver.is_mesh() || stage == DrawStage::Fragment);
+        ways.retain(|w| !w.method.is_mesh() || stage == DrawStage::Fragment);
         for way in &ways {
             for &size in SIZES.iter().take(ranges.sizes) {
                 plan.add(0, sized(way, size));
             }
             for &rows in ROWS.iter().take(ranges.rows) {
-                if !(way.solver.reads_map() || has_rows(way.solver)) {
+                if !(way.method.reads_map() || has_rows(way.method)) {
                     continue;
                 }
                 plan.add(
                     0,
-                    Settings {
+                    MethodSettings {
                         map_rows: Some(rows),
                         ..sized(way, STILL)
                     },
                 );
             }
             for (view, &count) in copies.iter().enumerate() {
-                if way.solver.quads() * u64::from(count) <= MOST_QUADS {
+                if way.method.quads() * u64::from(count) <= MOST_QUADS {
                     plan.add(view + 1, sized(way, STILL));
                 }
             }
@@ -136,10 +137,16 @@ fn field(one: &View, count: u32) -> View {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use revmap::settings::Solver;
 
     #[test]
     fn a_field_holds_its_copies_side_by_side() {
-        let plan = plan(&[DrawStage::Compute], &[Solver::Circle], Ranges::ALL).unwrap();
+        let plan = plan(
+            &[DrawStage::Compute],
+            &[Method::Search(Solver::Circle)],
+            Ranges::ALL,
+        )
+        .unwrap();
         for (view, count) in plan.views[1..].iter().zip(COPIES) {
             view.scene.check().unwrap();
             assert_eq!(view.solids(), count as usize);
@@ -161,19 +168,19 @@ mod tests {
 
     #[test]
     fn meshes_grow_with_pixels_and_solids_alone() {
-        let solvers = MESHES.map(|(segments, rings)| Solver::Mesh { segments, rings });
+        let methods = MESHES.map(|(segments, rings)| Method::Mesh { segments, rings });
         let stages = [DrawStage::Fragment, DrawStage::Compute];
-        let plan = plan(&stages, &solvers, Ranges::ALL).unwrap();
-        let of = |solver| {
+        let plan = plan(&stages, &methods, Ranges::ALL).unwrap();
+        let of = |method| {
             plan.cases
                 .iter()
-                .filter(move |c| c.settings.solver == solver)
+                .filter(move |c| c.settings.method == method)
         };
-        for (solver, copies) in solvers.into_iter().zip([5, 4]) {
-            assert!(of(solver).all(|c| c.settings.stage == DrawStage::Fragment));
-            assert!(of(solver).all(|c| c.settings.map_rows.is_none()));
-            assert_eq!(of(solver).filter(|c| c.view == 0).count(), SIZES.len());
-            assert_eq!(of(solver).filter(|c| c.view > 0).count(), copies);
+        for (method, copies) in methods.into_iter().zip([5, 4]) {
+            assert!(of(method).all(|c| c.settings.stage == DrawStage::Fragment));
+            assert!(of(method).all(|c| c.settings.map_rows.is_none()));
+            assert_eq!(of(method).filter(|c| c.view == 0).count(), SIZES.len());
+            assert_eq!(of(method).filter(|c| c.view > 0).count(), copies);
         }
     }
 }

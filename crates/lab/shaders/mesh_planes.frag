@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Shades a pixel of a mesh: every plane; the depth is the rasteriser's.
-#include "include/mesh_varyings.glsl"
+// A pixel of a mesh: every plane.
+#include "shade.glsl"
 
 layout(location = 0) out vec4 color;
 layout(location = 1) out vec4 normal_distance;
@@ -10,8 +10,7 @@ layout(location = 3) out vec4 albedo_v;
 
 void main()
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
-    Shaded s = shade_fragment(pixel, mesh_hit(pixel));
+    Shaded s = shade();
     color = s.color;
     normal_distance = vec4(s.normal, s.distance);
     shading_normal_u = vec4(s.shading_normal, s.uv.x);

@@ -1,0 +1,338 @@
+//! Meshes on the device, drawn as a [`Guest`] of an off-screen frame. The only module with
+//! `unsafe`.
+#![allow(unsafe_code)]
+
+mod memory;
+mod pipelines;
+
+pub use pipelines::MeshPipelines;
+
+use super::blocks::{FrameBlock, InstanceBlock, MAX_LIGHTS, ObjectBlock};
+use super::placed::PlacedMesh;
+use super::tessellation::Mesh;
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use memory::Buffer;
+use pipelines::PipelineKey;
+use revmap::error::{Error, Result, Stage};
+use revmap::gpu::{Device, Guest};
+use revmap::settings::Planes;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Meshes and what is drawn of them. Every frame is waited for before the next call.
+pub(super) struct MeshDrawer {
+    objects: Vec<DrawnObject>,
+    meshes: Vec<DeviceMesh>,
+    frame: Buffer,
+    instances: Buffer,
+    pool: vk::DescriptorPool,
+    set: vk::DescriptorSet,
+    pass: (vk::RenderPass, Planes),
+    pipelines: Arc<MeshPipelines>,
+}
+
+struct DrawnObject {
+    /// Index of its mesh.
+    mesh: usize,
+    pipeline: vk::Pipeline,
+    block: ObjectBlock,
+    instances: Range<u32>,
+    start: u32,
+}
+
+impl MeshDrawer {
+    /// A drawer of nothing, for a pass that lives as long as the device.
+    pub fn new(pipelines: &Arc<MeshPipelines>, pass: (vk::RenderPass, Planes)) -> Result<Self> {
+        let device = pipelines.device();
+        let mut drawer = Self {
+            objects: Vec::new(),
+            meshes: Vec::new(),
+            frame: Buffer::new(
+                device,
+                "mesh frame",
+                size_of::<FrameBlock>() as u64,
+                vk::BufferUsageFlags::UNIFORM_BUFFER,
+                MemoryLocation::CpuToGpu,
+            )?,
+            instances: instance_buffer(device, 1)?,
+            pool: vk::DescriptorPool::null(),
+            set: vk::DescriptorSet::null(),
+            pass,
+            pipelines: pipelines.clone(),
+        };
+        let size = |kind| {
+            vk::DescriptorPoolSize::default()
+                .ty(kind)
+                .descriptor_count(1)
+        };
+        let sizes = [
+            size(vk::DescriptorType::UNIFORM_BUFFER),
+            size(vk::DescriptorType::STORAGE_BUFFER),
+        ];
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(1)
+            .pool_sizes(&sizes);
+        // SAFETY: a plain creation; Drop destroys the pool, and the set with it.
+        drawer.pool = unsafe { device.raw().create_descriptor_pool(&info, None) }
+            .map_err(|code| vulkan("vkCreateDescriptorPool", code))?;
+        let layouts = [pipelines.set_layout];
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(drawer.pool)
+            .set_layouts(&layouts);
+        // SAFETY: the pool holds one set of this layout.
+        let sets = unsafe { device.raw().allocate_descriptor_sets(&info) }
+            .map_err(|code| vulkan("vkAllocateDescriptorSets", code))?;
+        drawer.set = sets.first().copied().unwrap_or_default();
+        drawer.write_set();
+        Ok(drawer)
+    }
+
+    /// Takes over a frame's block and its objects, in the order in which they are drawn. Nothing
+    /// changes where it fails.
+    pub fn update(
+        &mut self,
+        frame: &FrameBlock,
+        lights: usize,
+        placed: &[PlacedMesh],
+    ) -> Result<()> {
+        let device = self.pipelines.device().clone();
+        let mut new: Vec<DeviceMesh> = Vec::new();
+        let mut objects = Vec::new();
+        let mut instances: Vec<InstanceBlock> = Vec::new();
+        for one in placed {
+            let same = |mesh: &DeviceMesh| Arc::ptr_eq(&mesh.mesh, &one.mesh);
+            let known = self.meshes.iter().chain(&new).position(same);
+            let mesh = match known {
+                Some(mesh) => mesh,
+                None => {
+                    new.push(DeviceMesh::new(&device, &one.mesh)?);
+                    self.meshes.len() + new.len() - 1
+                }
+            };
+            let key = PipelineKey {
+                pass: self.pass.0,
+                planes: self.pass.1,
+                lights: lights.min(MAX_LIGHTS) as u32,
+                single: one.instances.len() == 1,
+                projection: one.projection,
+                both_sides: one.both_sides,
+            };
+            let first = instances.len() as u32;
+            instances.extend(&one.instances);
+            objects.push(DrawnObject {
+                mesh,
+                pipeline: self.pipelines.get(key)?,
+                block: one.block,
+                instances: first..instances.len() as u32,
+                start: one.start,
+            });
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&instances);
+        if bytes.len() as u64 > self.instances.bytes {
+            let mut larger = instance_buffer(&device, instances.len())?;
+            larger.write(bytes)?;
+            self.instances = larger;
+            self.write_set();
+        } else {
+            self.instances.write(bytes)?;
+        }
+        self.frame.write(bytemuck::bytes_of(frame))?;
+        self.meshes.append(&mut new);
+        self.objects = objects;
+        self.drop_unused();
+        Ok(())
+    }
+
+    /// Drops meshes that no object has any more.
+    fn drop_unused(&mut self) {
+        let objects = &mut self.objects;
+        let mut kept = 0;
+        let mut place = 0;
+        self.meshes.retain(|_| {
+            let used = objects.iter().any(|o| o.mesh == place);
+            if used {
+                for object in objects.iter_mut().filter(|o| o.mesh == place) {
+                    object.mesh = kept;
+                }
+                kept += 1;
+            }
+            place += 1;
+            used
+        });
+    }
+
+    /// Drops what meshes were copied from, once a frame was drawn.
+    pub fn drop_staging(&mut self) {
+        for mesh in &mut self.meshes {
+            mesh.staging = None;
+        }
+    }
+
+    /// Bytes of vertices and indices.
+    pub fn mesh_bytes(&self) -> u64 {
+        let bytes = |mesh: &DeviceMesh| mesh.vertices.bytes + mesh.indices.bytes;
+        self.meshes.iter().map(bytes).sum()
+    }
+
+    /// Points the set to the buffers.
+    fn write_set(&self) {
+        let whole = |buffer: &Buffer| {
+            [vk::DescriptorBufferInfo::default()
+                .buffer(buffer.raw)
+                .range(vk::WHOLE_SIZE)]
+        };
+        let (frame, instances) = (whole(&self.frame), whole(&self.instances));
+        let write = |binding, kind, info| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(self.set)
+                .dst_binding(binding)
+                .descriptor_type(kind)
+                .buffer_info(info)
+        };
+        let writes = [
+            write(0, vk::DescriptorType::UNIFORM_BUFFER, &frame),
+            write(1, vk::DescriptorType::STORAGE_BUFFER, &instances),
+        ];
+        let raw = self.pipelines.device().raw();
+        // SAFETY: set and buffers are live; the last frame was waited for.
+        unsafe { raw.update_descriptor_sets(&writes, &[]) };
+    }
+}
+
+impl Guest for MeshDrawer {
+    unsafe fn prepare(&self, cmd: vk::CommandBuffer) {
+        let raw = self.pipelines.device().raw();
+        let mut copied = false;
+        for mesh in &self.meshes {
+            let Some(staging) = &mesh.staging else {
+                continue;
+            };
+            copied = true;
+            let region = |from, size| [vk::BufferCopy::default().src_offset(from).size(size)];
+            let (vertices, indices) = (mesh.vertices.bytes, mesh.indices.bytes);
+            let (first, second) = (region(0, vertices), region(vertices, indices));
+            // SAFETY: `cmd` is recording outside of a pass; the staging buffer holds both regions.
+            unsafe {
+                raw.cmd_copy_buffer(cmd, staging.raw, mesh.vertices.raw, &first);
+                raw.cmd_copy_buffer(cmd, staging.raw, mesh.indices.raw, &second);
+            }
+        }
+        if copied {
+            use vk::PipelineStageFlags as Stages;
+            let read = vk::AccessFlags::VERTEX_ATTRIBUTE_READ | vk::AccessFlags::INDEX_READ;
+            let barriers = [vk::MemoryBarrier::default()
+                .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+                .dst_access_mask(read)];
+            let (from, to) = (Stages::TRANSFER, Stages::VERTEX_INPUT);
+            let none = vk::DependencyFlags::empty();
+            // SAFETY: as above.
+            unsafe { raw.cmd_pipeline_barrier(cmd, from, to, none, &barriers, &[], &[]) };
+        }
+    }
+
+    unsafe fn record(&self, cmd: vk::CommandBuffer) {
+        let raw = self.pipelines.device().raw();
+        let layout = self.pipelines.layout;
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
+        for object in &self.objects {
+            let mesh = &self.meshes[object.mesh];
+            let first = object.instances.start;
+            let copies = object.instances.end - first;
+            // SAFETY: `cmd` is recording in the pass that the pipeline was made for; what is bound
+            // lives as long as `self`, and the buffers hold the indices and instances drawn.
+            unsafe {
+                raw.cmd_bind_pipeline(cmd, point, object.pipeline);
+                raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.set], &[]);
+                let block = bytemuck::bytes_of(&object.block);
+                raw.cmd_push_constants(cmd, layout, stages, 0, block);
+                raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
+                raw.cmd_bind_index_buffer(cmd, mesh.indices.raw, 0, mesh.kind);
+                for part in [object.start..mesh.count, 0..object.start] {
+                    let count = part.end - part.start;
+                    if count > 0 {
+                        raw.cmd_draw_indexed(cmd, count, copies, part.start, 0, first);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Drop for MeshDrawer {
+    fn drop(&mut self) {
+        let raw = self.pipelines.device().raw();
+        // SAFETY: every frame was waited for; a null pool may be destroyed.
+        unsafe { raw.destroy_descriptor_pool(self.pool, None) };
+    }
+}
+
+/// A mesh on the device.
+struct DeviceMesh {
+    mesh: Arc<Mesh>,
+    vertices: Buffer,
+    indices: Buffer,
+    /// Vertices, then indices; until a frame was drawn.
+    staging: Option<Buffer>,
+    count: u32,
+    kind: vk::IndexType,
+}
+
+impl DeviceMesh {
+    /// Buffers for `mesh`; the next frame copies it into them. Indices have 16 bits where these
+    /// hold them.
+    fn new(device: &Device, mesh: &Arc<Mesh>) -> Result<Self> {
+        let short: Option<Vec<u16>> = mesh.indices.iter().map(|i| (*i).try_into().ok()).collect();
+        let (kind, indices): (_, &[u8]) = match &short {
+            Some(short) => (vk::IndexType::UINT16, bytemuck::cast_slice(short)),
+            None => (vk::IndexType::UINT32, bytemuck::cast_slice(&mesh.indices)),
+        };
+        let vertices: &[u8] = bytemuck::cast_slice(&mesh.vertices);
+        let local = |name, bytes: &[u8], usage| {
+            let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+            let bytes = bytes.len().next_multiple_of(16) as u64;
+            Buffer::new(device, name, bytes, usage, MemoryLocation::GpuOnly)
+        };
+        let vertex_buffer = local(
+            "mesh vertices",
+            vertices,
+            vk::BufferUsageFlags::VERTEX_BUFFER,
+        )?;
+        let index_buffer = local("mesh indices", indices, vk::BufferUsageFlags::INDEX_BUFFER)?;
+        let mut both = vertices.to_vec();
+        both.resize(vertex_buffer.bytes as usize, 0);
+        both.extend(indices);
+        let mut staging = Buffer::new(
+            device,
+            "mesh staging",
+            vertex_buffer.bytes + index_buffer.bytes,
+            vk::BufferUsageFlags::TRANSFER_SRC,
+            MemoryLocation::CpuToGpu,
+        )?;
+        staging.write(&both)?;
+        Ok(Self {
+            count: mesh.indices.len() as u32,
+            kind,
+            mesh: mesh.clone(),
+            vertices: vertex_buffer,
+            indices: index_buffer,
+            staging: Some(staging),
+        })
+    }
+}
+
+fn instance_buffer(device: &Device, count: usize) -> Result<Buffer> {
+    Buffer::new(
+        device,
+        "mesh instances",
+        (count * size_of::<InstanceBlock>()) as u64,
+        vk::BufferUsageFlags::STORAGE_BUFFER,
+        MemoryLocation::CpuToGpu,
+    )
+}
+
+/// A failed Vulkan call.
+fn vulkan(name: &str, code: vk::Result) -> Error {
+    Error::new(Stage::Draw, format!("{name} failed: {code:?}"))
+}

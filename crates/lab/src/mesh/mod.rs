@@ -1,0 +1,22 @@
+//! The mesh baseline: the same solids as triangles, drawn beside the searches for comparison.
+//!
+//! Data flows one way: contour → rings of a meridian → [`Mesh`] → the meshes of a scene → a drawer
+//! that records into an [`Offscreen`](revmap::gpu::Offscreen)'s pass as a
+//! [`Guest`](revmap::gpu::Guest). Nothing in [`revmap`] knows of it. Pass, depth buffer,
+//! timestamps and reading back are the renderer's, so that times compare.
+//!
+//! Meshes draw plain colours with the renderer's shading. They refuse what they do not draw:
+//! shadows, replicas, maps of colours and heights, and coordinates along the profile.
+
+mod blocks;
+mod drawer;
+mod meridian;
+mod offscreen;
+mod placed;
+mod tessellation;
+#[cfg(test)]
+mod tests;
+
+pub use drawer::MeshPipelines;
+pub use offscreen::MeshOffscreen;
+pub use tessellation::{BAND, Mesh, Vertex};

@@ -1,0 +1,97 @@
+//! A scene drawn as meshes in an off-screen frame.
+
+use super::blocks::FrameBlock;
+use super::drawer::{MeshDrawer, MeshPipelines};
+use super::placed::SceneMeshes;
+use crate::method::{Method, MethodSettings};
+use revmap::error::{Error, Result, Stage};
+use revmap::frame::Frame;
+use revmap::gpu::{Offscreen, Times};
+use revmap::scene::{CameraFrame, Scene};
+use revmap::settings::{DrawStage, Settings};
+use std::sync::Arc;
+
+/// A scene as meshes on a device, and a picture of it: what [`Offscreen`] is for searches.
+pub struct MeshOffscreen {
+    drawer: MeshDrawer,
+    offscreen: Offscreen,
+    meshes: SceneMeshes,
+    size: (u32, u32),
+}
+
+impl MeshOffscreen {
+    /// Tessellates the scene's objects and makes a target of the settings' size.
+    ///
+    /// # Errors
+    /// [`Stage::Usage`] for a search, for a mesh that [`Method::mesh`] refuses, and for the compute
+    /// stage; of the scene, of profiles, and of Vulkan as [`Offscreen::new`].
+    pub fn new(
+        pipelines: &Arc<MeshPipelines>,
+        scene: &Scene,
+        settings: &MethodSettings,
+    ) -> Result<Self> {
+        let method = settings.method;
+        let Method::Mesh { segments, rings } = method else {
+            let message = format!("{method} is a search; give a mesh as mesh:64x128");
+            return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+        };
+        // Settings are plain values: the numbers may not have come through the check.
+        Method::mesh(segments, rings)?;
+        if settings.stage == DrawStage::Compute {
+            let message = format!(
+                "{method} is rasterised, which a compute shader does not; give the stage fragment"
+            );
+            return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+        }
+        let own = Settings::from(settings);
+        let offscreen = Offscreen::for_guests(pipelines.device(), scene, &own)?;
+        let pass = (offscreen.render_pass(), settings.planes);
+        let mut all = Self {
+            drawer: MeshDrawer::new(pipelines, pass)?,
+            offscreen,
+            meshes: SceneMeshes::new(segments, rings),
+            size: (settings.width, settings.height),
+        };
+        all.update(scene)?;
+        Ok(all)
+    }
+
+    /// Takes over a scene. Meshes are made anew where a profile or an offset differs.
+    ///
+    /// # Errors
+    /// As [`MeshOffscreen::new`]. After those of the scene and of profiles, the frame before can
+    /// still be drawn.
+    pub fn update(&mut self, scene: &Scene) -> Result<()> {
+        scene.check()?;
+        let camera = CameraFrame::new(&scene.camera, self.size.0, self.size.1)?;
+        let placed = self.meshes.place(scene, &camera)?;
+        self.offscreen.update(scene)?;
+        let lighting = scene.lighting();
+        let frame = FrameBlock::new(self.offscreen.view(), &camera, &lighting);
+        self.drawer.update(&frame, lighting.lights.len(), &placed)
+    }
+
+    /// Draws one frame and waits for it.
+    ///
+    /// # Errors
+    /// Of Vulkan ([`Stage::Draw`]).
+    pub fn draw(&mut self) -> Result<Times> {
+        let times = self.offscreen.draw_with(Some(&self.drawer))?;
+        self.drawer.drop_staging();
+        Ok(times)
+    }
+
+    /// The frame that was drawn last.
+    ///
+    /// # Errors
+    /// Of Vulkan ([`Stage::Draw`]).
+    pub fn read(&self) -> Result<Frame> {
+        self.offscreen.read()
+    }
+
+    /// Bytes of vertices and indices on the device.
+    #[must_use]
+    pub fn mesh_bytes(&self) -> u64 {
+        self.drawer.mesh_bytes()
+    }
+}

@@ -1,0 +1,201 @@
+//! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
+
+use super::blocks::{InstanceBlock, ObjectBlock, axis_offset};
+use super::tessellation::Mesh;
+use glam::DVec3;
+use revmap::error::{Error, Result, Stage};
+use revmap::maps::Projection;
+use revmap::pieces::ContourSource;
+use revmap::profile::Profile;
+use revmap::scene::{CameraFrame, Object, Offset, Placement, Scene, Shadow};
+use std::sync::Arc;
+
+/// An object's mesh and what is drawn of it.
+pub(super) struct PlacedMesh {
+    pub mesh: Arc<Mesh>,
+    pub block: ObjectBlock,
+    /// The nearest first.
+    pub instances: Vec<InstanceBlock>,
+    pub projection: Projection,
+    /// Whether an eye may see the back of a triangle.
+    pub both_sides: bool,
+    /// The index that is drawn first; then on to the end, then from the beginning.
+    pub start: u32,
+    /// Depth of the nearest instance, along the view.
+    depth: f64,
+}
+
+/// Makes and keeps the meshes of a scene; objects of one profile and offset share one.
+pub(super) struct SceneMeshes {
+    segments: u32,
+    rings: u32,
+    sources: Vec<(Arc<Profile>, ContourSource)>,
+    made: Vec<Made>,
+}
+
+#[derive(Clone)]
+struct Made {
+    profile: Arc<Profile>,
+    offset: Offset,
+    mesh: Arc<Mesh>,
+}
+
+impl SceneMeshes {
+    /// Meshes of so many segments and at most so many rings each.
+    pub fn new(segments: u32, rings: u32) -> Self {
+        Self {
+            segments,
+            rings,
+            sources: Vec::new(),
+            made: Vec::new(),
+        }
+    }
+
+    /// The meshes of a checked scene, the nearest first. Only those whose profile or offset is new
+    /// are made.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] for what meshes do not draw; [`Stage::Profile`] for a profile without a
+    /// contour.
+    pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Vec<PlacedMesh>> {
+        if scene.shadow != Shadow::Off {
+            return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
+        }
+        let mut used = Vec::new();
+        let mut placed = Vec::new();
+        for (number, object) in scene.objects.iter().enumerate() {
+            let under = |key: &str| format!("object.{number}.{key}");
+            check_object(object).map_err(|(key, error)| error.at_key(under(key)))?;
+            let made = self.make(object).map_err(|error| {
+                let error = error.at_key(under("profile"));
+                match &object.file {
+                    Some(file) => error.in_file(file),
+                    None => error,
+                }
+            })?;
+            check_box(object, made.mesh.extent[0])
+                .map_err(|(key, error)| error.at_key(under(key)))?;
+            placed.push(place(object, made.mesh.clone(), camera));
+            used.push(made);
+        }
+        self.sources
+            .retain(|(profile, _)| used.iter().any(|u| Arc::ptr_eq(&u.profile, profile)));
+        self.made = used;
+        placed.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        Ok(placed)
+    }
+
+    fn make(&mut self, object: &Object) -> Result<Made> {
+        let same = |made: &&Made| {
+            Arc::ptr_eq(&made.profile, &object.profile) && made.offset == object.offset
+        };
+        if let Some(made) = self.made.iter().find(same) {
+            return Ok(made.clone());
+        }
+        let known = |(profile, _): &(Arc<Profile>, _)| Arc::ptr_eq(profile, &object.profile);
+        let place = match self.sources.iter().position(known) {
+            Some(place) => place,
+            None => {
+                let source = ContourSource::new(&object.profile.outline)?;
+                self.sources.push((object.profile.clone(), source));
+                self.sources.len() - 1
+            }
+        };
+        let contour = self.sources[place].1.contour(&object.offset)?;
+        let made = Made {
+            profile: object.profile.clone(),
+            offset: object.offset,
+            mesh: Arc::new(Mesh::new(&contour, self.segments, self.rings)),
+        };
+        self.made.push(made.clone());
+        Ok(made)
+    }
+}
+
+fn place(object: &Object, mesh: Arc<Mesh>, camera: &CameraFrame) -> PlacedMesh {
+    let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
+    let mut placements = object.placements().to_vec();
+    placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let eyes: Vec<DVec3> = (placements.iter())
+        .map(|p| eye_about_axis(object, p, camera))
+        .collect();
+    let instances: Vec<InstanceBlock> = placements.iter().map(InstanceBlock::from).collect();
+    // Of several instances, all would be drawn in two halves.
+    let start = match eyes.as_slice() {
+        [eye] => mesh.start(eye.y.atan2(eye.x)),
+        _ => 0,
+    };
+    PlacedMesh {
+        block: ObjectBlock::new(object, instances.first().copied().unwrap_or_default()),
+        instances,
+        projection: object.texturing.projection,
+        both_sides: eyes.iter().any(|eye| may_hold(&mesh, *eye)),
+        start,
+        depth: placements.first().map_or(f64::INFINITY, depth),
+        mesh,
+    }
+}
+
+/// An error at a key of the object.
+type KeyError = (&'static str, Error);
+
+fn refused(what: &str) -> Error {
+    Error::new(Stage::Scene, format!("a mesh {what}, or take a search"))
+}
+
+/// Refuses what the baseline does not draw.
+fn check_object(object: &Object) -> std::result::Result<(), KeyError> {
+    let texturing = &object.texturing;
+    let refuse = |key, what| Err((key, refused(what)));
+    if object.repeat != [1; 3] {
+        return refuse("repeat", "draws one cell; give [1, 1, 1], and instances");
+    }
+    if texturing.color_map.is_some() {
+        return refuse("color_map", "draws no colour map; give a color");
+    }
+    if texturing.displacement_map.is_some() && texturing.bump != 0.0 {
+        return refuse("height_map", "draws no height map; leave it out");
+    }
+    if texturing.projection == Projection::Arc {
+        let what = "has no coordinates along the profile; give \"cylindrical\"";
+        return refuse("projection", what);
+    }
+    Ok(())
+}
+
+/// Refuses a mesh that leaves its box, because the box does not cut it. `widest` is the contour's
+/// largest radius.
+fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> {
+    let radius = object.profile.radius;
+    let off = axis_offset(object).map(f64::abs);
+    if widest + off[0].max(off[1]) <= radius * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    let reaches = |remedy: &str| format!("is not cut by its box, past which it reaches; {remedy}");
+    let (key, what) = if off != [0.0; 2] {
+        let what = "is not cut by its box, past which the axis moves it; give [0.5, 0.5]";
+        ("axis", what.to_owned())
+    } else if object.offset.extend > 0.0 {
+        ("extend", reaches("give less"))
+    } else if object.offset.bevel > 0.0 {
+        ("bevel", reaches("give less"))
+    } else {
+        ("radius", reaches("give more"))
+    };
+    Err((key, refused(&what)))
+}
+
+/// The eye in object space, about the axis.
+fn eye_about_axis(object: &Object, placement: &Placement, camera: &CameraFrame) -> DVec3 {
+    let [x, y] = axis_offset(object);
+    let back = placement.rotation.normalize().conjugate();
+    back * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
+}
+
+/// Whether an eye may be inside, or so near that the near plane cuts the mesh: then backs of
+/// triangles are seen.
+fn may_hold(mesh: &Mesh, eye: DVec3) -> bool {
+    let [r_max, z_min, z_max] = mesh.extent;
+    let margin = 0.01;
+    eye.truncate().length() <= r_max + margin && (z_min - margin..=z_max + margin).contains(&eye.z)
+}

@@ -1,0 +1,166 @@
+#![allow(clippy::unwrap_used)]
+use super::tessellation::Mesh;
+use glam::{DVec3, Vec3};
+use revmap::pieces::{Contour, ContourSource};
+use revmap::profile::Profile;
+use revmap::scene::Offset;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
+    let profile = Profile::polygon(points, 0.5).unwrap();
+    ContourSource::new(&profile.outline)
+        .unwrap()
+        .contour(offset)
+        .unwrap()
+}
+
+fn ring(n: u32) -> Vec<[f64; 2]> {
+    (0..n)
+        .map(|k| {
+            let angle = TAU * f64::from(k) / f64::from(n);
+            [0.28 + 0.12 * angle.cos(), 0.5 + 0.12 * angle.sin()]
+        })
+        .collect()
+}
+
+const CUP: [[f64; 2]; 6] = [
+    [0.0, 0.1],
+    [0.2, 0.1],
+    [0.3, 0.9],
+    [0.28, 0.9],
+    [0.18, 0.15],
+    [0.0, 0.14],
+];
+
+fn triangles(mesh: &Mesh) -> Vec<[Vec3; 3]> {
+    mesh.indices
+        .chunks_exact(3)
+        .map(|t| [0, 1, 2].map(|k| Vec3::from(mesh.vertices[t[k] as usize].position)))
+        .collect()
+}
+
+/// Six times the signed volume: positive when triangles are counter-clockwise from outside.
+fn volume(mesh: &Mesh) -> f64 {
+    triangles(mesh)
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(Vec3::as_dvec3);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum()
+}
+
+fn is_closed(mesh: &Mesh) -> bool {
+    let key = |p: Vec3| p.to_array().map(|v| (v + 0.0).to_bits());
+    let mut edges: HashMap<_, i32> = HashMap::new();
+    for t in triangles(mesh) {
+        for k in 0..3 {
+            let (a, b) = (key(t[k]), key(t[(k + 1) % 3]));
+            *edges.entry((a, b)).or_default() += 1;
+            *edges.entry((b, a)).or_default() -= 1;
+        }
+    }
+    edges.values().all(|n| *n == 0)
+}
+
+#[test]
+fn meshes_are_closed_and_hold_the_volume() {
+    let bevel = Offset {
+        extend: 0.01,
+        bevel: 0.05,
+        chamfer: 0.6,
+    };
+    let pappus = TAU * 0.28 * PI * 0.12 * 0.12;
+    let torus = contour(&ring(512), &Offset::default());
+    for (segments, rings, within) in [(16, 16, 2e-2), (64, 64, 1.5e-3), (256, 256, 1e-4)] {
+        let mesh = Mesh::new(&torus, segments, rings);
+        assert!(is_closed(&mesh));
+        assert_eq!(mesh.segments, segments);
+        assert!(
+            mesh.rings <= rings && 2 * mesh.rings > rings,
+            "{}",
+            mesh.rings
+        );
+        let off = volume(&mesh) / pappus - 1.0;
+        assert!(off.abs() < within, "{segments}x{rings}: {off}");
+    }
+    for offset in [Offset::default(), bevel] {
+        let mesh = Mesh::new(&contour(&CUP, &offset), 48, 64);
+        assert!(is_closed(&mesh) && volume(&mesh) > 0.0);
+    }
+}
+
+/// Straight walls are one frustum each, and creases stay sharp: the cup needs no more rings than its outline has sides.
+#[test]
+fn no_ring_is_wasted_and_no_corner_lost() {
+    let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 24, 100);
+    assert_eq!(mesh.rings, 5);
+    // All but the two poles have a vertex on either side of the crease, and nothing is kept that no triangle names.
+    assert_eq!(mesh.vertices.len(), 4 * 2 * 24 + 2);
+    let coarse = Mesh::new(&contour(&CUP, &Offset::default()), 24, 2);
+    assert_eq!(coarse.rings, 5);
+}
+
+/// The polygon's corners lie as far outside the circle as the middles of its sides inside.
+#[test]
+fn errors_are_even_on_both_sides() {
+    let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 12, 8);
+    let [mut corner, mut middle] = [0.0f64, 1.0];
+    for t in triangles(&mesh) {
+        for k in 0..3 {
+            let [a, b] = [t[k], t[(k + 1) % 3]].map(Vec3::as_dvec3);
+            if (a.z - 0.9).abs() < 1e-6 && (b.z - 0.9).abs() < 1e-6 {
+                let m: DVec3 = 0.5 * (a + b);
+                corner = corner.max(a.truncate().length());
+                if (a.truncate().length() - b.truncate().length()).abs() < 1e-6
+                    && a.x.hypot(a.y) > 0.29
+                {
+                    middle = middle.min(m.truncate().length());
+                }
+            }
+        }
+    }
+    assert!(
+        (corner - 0.3 - (0.3 - middle)).abs() < 1e-6,
+        "{corner} {middle}"
+    );
+}
+
+#[test]
+fn drawing_starts_before_the_eye() {
+    let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 64, 8);
+    let per_segment = mesh.indices.len() as u32 / 64;
+    assert_eq!(mesh.start(0.5 * PI + 1e-9), 0);
+    assert_eq!(mesh.start(PI + 1e-9), 16 * per_segment);
+    assert_eq!(mesh.start(0.0), 48 * per_segment);
+    assert_eq!(Mesh::default().start(1.0), 0);
+}
+
+/// A bend of 8 degrees between straight walls: a shared normal would be wrong all along both.
+#[test]
+fn straight_walls_keep_their_normals() {
+    let bend = [
+        [0.0, 0.1],
+        [0.2, 0.1],
+        [0.2, 0.5],
+        [0.25, 0.86],
+        [0.0, 0.86],
+    ];
+    let mesh = Mesh::new(&contour(&bend, &Offset::default()), 16, 64);
+    assert_eq!(mesh.rings, 4);
+    let upright = mesh.vertices.iter().filter(|v| v.normal == [i16::MAX, 0]);
+    assert_eq!(upright.count(), 2 * 16);
+}
+
+/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing on them.
+#[test]
+fn jags_are_no_corners() {
+    let mut jagged = vec![[0.0, 0.1], [0.2, 0.1]];
+    let jag = |k: u32| 0.2 + 0.1 / 512.0 * f64::from(k % 2);
+    jagged.extend((1..600).map(|k| [jag(k), 0.1 + f64::from(k) / 2.0 / 512.0]));
+    jagged.extend([[0.2, 0.7], [0.0, 0.7]]);
+    let mesh = Mesh::new(&contour(&jagged, &Offset::default()), 16, 8);
+    assert!(mesh.rings <= 8, "{}", mesh.rings);
+    assert!(is_closed(&mesh));
+}

@@ -1,0 +1,285 @@
+//! What is measured: a search of [`revmap`], or the mesh baseline.
+
+use revmap::error::{Error, Result, Stage};
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use std::fmt;
+use std::str::FromStr;
+
+/// How the surface is found in each pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// A search along the pixel's ray.
+    Search(Solver),
+    /// Triangles, rasterised: the mesh baseline. In the fragment stage alone.
+    Mesh {
+        /// Steps around the axis.
+        segments: u32,
+        /// Most steps along the meridian; fewer where fewer follow it exactly.
+        rings: u32,
+    },
+}
+
+impl Method {
+    /// Every search, in the order in which reports list them. Meshes are as many as there are
+    /// numbers of segments and rings, and not among them.
+    pub const ALL: [Self; Solver::ALL.len()] = {
+        let mut all = [Self::DEFAULT; Solver::ALL.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = Self::Search(Solver::ALL[i]);
+            i += 1;
+        }
+        all
+    };
+
+    /// The method taken where none is named.
+    pub const DEFAULT: Self = Self::Search(Solver::DEFAULT);
+
+    /// Most quads of a mesh.
+    pub const MOST_QUADS: u64 = 1 << 22;
+
+    /// A mesh of so many segments around the axis and rings along the meridian.
+    ///
+    /// # Errors
+    /// [`Stage::Usage`] below 3 segments or 2 rings, or beyond [`Method::MOST_QUADS`].
+    pub fn mesh(segments: u32, rings: u32) -> Result<Self> {
+        let quads = u64::from(segments) * u64::from(rings);
+        if segments < 3 || rings < 2 || quads > Self::MOST_QUADS {
+            return Err(Error::new(
+                Stage::Usage,
+                format!(
+                    "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 \
+                     rings, and at most {} of both together",
+                    Self::MOST_QUADS
+                ),
+            ));
+        }
+        Ok(Self::Mesh { segments, rings })
+    }
+
+    /// The search; `None` of a mesh.
+    #[must_use]
+    pub const fn solver(self) -> Option<Solver> {
+        match self {
+            Self::Search(solver) => Some(solver),
+            Self::Mesh { .. } => None,
+        }
+    }
+
+    /// Whether it is a mesh.
+    #[must_use]
+    pub const fn is_mesh(self) -> bool {
+        matches!(self, Self::Mesh { .. })
+    }
+
+    /// Most quads of one copy of a solid: of a mesh the product of its numbers, of a search none.
+    #[must_use]
+    pub const fn quads(self) -> u64 {
+        match self {
+            Self::Mesh { segments, rings } => segments as u64 * rings as u64,
+            Self::Search(_) => 0,
+        }
+    }
+
+    /// Its name; of a mesh the first part, [`Display`](fmt::Display) gives the whole:
+    /// `mesh:64x128`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Search(solver) => solver.name(),
+            Self::Mesh { .. } => "mesh",
+        }
+    }
+
+    /// As [`Solver::is_of_cones`]; a mesh is not.
+    #[must_use]
+    pub const fn is_of_cones(self) -> bool {
+        matches!(self, Self::Search(solver) if solver.is_of_cones())
+    }
+
+    /// As [`Solver::reads_map`]; a mesh is made from the boundary itself.
+    #[must_use]
+    pub const fn reads_map(self) -> bool {
+        matches!(self, Self::Search(solver) if solver.reads_map())
+    }
+
+    /// As [`Solver::may_run_out`]; a mesh makes no steps.
+    #[must_use]
+    pub const fn may_run_out(self) -> bool {
+        matches!(self, Self::Search(solver) if solver.may_run_out())
+    }
+
+    /// As [`Solver::default_steps`]; 1 for a mesh, which has none to bound.
+    #[must_use]
+    pub fn default_steps(self, beveled: bool) -> u32 {
+        self.solver().map_or(1, |s| s.default_steps(beveled))
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl From<Solver> for Method {
+    fn from(solver: Solver) -> Self {
+        Self::Search(solver)
+    }
+}
+
+impl PartialEq<Solver> for Method {
+    fn eq(&self, other: &Solver) -> bool {
+        self.solver() == Some(*other)
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Search(solver) => solver.fmt(f),
+            Self::Mesh { segments, rings } => write!(f, "mesh:{segments}x{rings}"),
+        }
+    }
+}
+
+/// The inverse of [`Display`](fmt::Display).
+///
+/// ```
+/// use revmap_lab::method::Method;
+/// assert_eq!("mesh:64x128".parse(), Method::mesh(64, 128));
+/// assert!("mesh:64".parse::<Method>().is_err());
+/// ```
+impl FromStr for Method {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if let Ok(solver) = text.parse() {
+            return Ok(Self::Search(solver));
+        }
+        let numbers = text
+            .strip_prefix("mesh:")
+            .and_then(|rest| rest.split_once('x'))
+            .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+        match numbers {
+            Some((segments, rings)) => Self::mesh(segments, rings),
+            None => Err(Error::new(
+                Stage::Usage,
+                format!(
+                    "{text:?} is no search; give one of {}, or a mesh as mesh:64x128",
+                    Solver::ALL.map(Solver::name).join(", ")
+                ),
+            )),
+        }
+    }
+}
+
+/// How a picture is drawn: [`Settings`] with any method in place of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MethodSettings {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Where rays are traced; a mesh is rasterised in the fragment stage.
+    pub stage: DrawStage,
+    /// How the surface is found.
+    pub method: Method,
+    /// Bound on a search's steps; `None` takes the method's own.
+    pub max_steps: Option<u32>,
+    /// Rows of every shape map; `None` takes each object's own.
+    pub map_rows: Option<u32>,
+    /// Source of distances; `None` takes the most accurate for the profile.
+    pub map_source: Option<MapSource>,
+    /// Storage of distances.
+    pub map_format: MapFormat,
+    /// What to draw.
+    pub planes: Planes,
+}
+
+impl Default for MethodSettings {
+    /// As [`Settings::default`].
+    fn default() -> Self {
+        let settings = Settings::default();
+        Self {
+            width: settings.width,
+            height: settings.height,
+            stage: settings.stage,
+            method: Method::Search(settings.solver),
+            max_steps: settings.max_steps,
+            map_rows: settings.map_rows,
+            map_source: settings.map_source,
+            map_format: settings.map_format,
+            planes: settings.planes,
+        }
+    }
+}
+
+/// The renderer's settings. A mesh leaves the default search, for a picture without objects.
+impl From<&MethodSettings> for Settings {
+    fn from(settings: &MethodSettings) -> Self {
+        Self {
+            width: settings.width,
+            height: settings.height,
+            stage: settings.stage,
+            solver: settings.method.solver().unwrap_or(Solver::DEFAULT),
+            max_steps: settings.max_steps,
+            map_rows: settings.map_rows,
+            map_source: settings.map_source,
+            map_format: settings.map_format,
+            planes: settings.planes,
+            ..Self::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_bounded() {
+        for text in ["mesh:3x2", "mesh:64x128", "mesh:2048x2048", "quadric"] {
+            assert_eq!(text.parse::<Method>().unwrap().to_string(), text);
+        }
+        for bad in [
+            "mesh",
+            "mesh:",
+            "mesh:2x1",
+            "mesh:0x0",
+            "mesh:3x1",
+            "mesh:99999999x9",
+            "mesh:axb",
+            "mesh:64",
+            "mesh:64x",
+            "mesh:-3x9",
+            "mesh:64x128x2",
+            "mesh:2049x2048",
+            "MESH:64x128",
+            "magic",
+            "",
+        ] {
+            let error = bad.parse::<Method>().unwrap_err();
+            assert_eq!(error.stage, Stage::Usage, "{bad}");
+            assert!(!error.message.contains('\n'), "{error}");
+        }
+    }
+
+    #[test]
+    fn settings_keep_what_they_are_given() {
+        let settings = MethodSettings {
+            width: 7,
+            method: Solver::Live.into(),
+            ..MethodSettings::default()
+        };
+        let wanted = Settings {
+            width: 7,
+            solver: Solver::Live,
+            ..Settings::default()
+        };
+        assert_eq!(Settings::from(&settings), wanted);
+        assert_eq!(Method::ALL.map(|m| m.solver().unwrap()), Solver::ALL);
+    }
+}

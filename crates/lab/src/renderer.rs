@@ -1,0 +1,135 @@
+//! One renderer for every method: searches and meshes behind the same calls.
+
+use crate::mesh::{MeshOffscreen, MeshPipelines};
+use crate::method::MethodSettings;
+use revmap::error::Result;
+use revmap::frame::Frame;
+use revmap::gpu::{Device, Offscreen, Times};
+use revmap::scene::Scene;
+use revmap::settings::Settings;
+use std::sync::Arc;
+
+/// A device, and what drawing by any method shares on it.
+pub struct MethodDevice {
+    device: Device,
+    pipelines: Arc<MeshPipelines>,
+}
+
+/// A drawn frame and what it cost.
+#[derive(Clone, Debug)]
+pub struct MethodDrawn {
+    /// The picture.
+    pub frame: Frame,
+    /// What drawing it took, of a second frame: the first waits for the driver's compiler.
+    pub times: Times,
+    /// As [`MethodRenderer::map_bytes`].
+    pub map_bytes: [u64; 2],
+    /// As [`Offscreen::notes`]; none of a mesh.
+    pub notes: Vec<String>,
+}
+
+impl MethodDevice {
+    /// Draws on this device.
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn new(device: Device) -> Result<Self> {
+        let pipelines = MeshPipelines::new(&device)?;
+        Ok(Self { device, pipelines })
+    }
+
+    /// Makes all ready to draw a scene.
+    ///
+    /// # Errors
+    /// As [`Offscreen::new`] or [`MeshOffscreen::new`].
+    pub fn renderer(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodRenderer> {
+        Ok(if settings.method.is_mesh() {
+            let mesh = MeshOffscreen::new(&self.pipelines, scene, settings)?;
+            MethodRenderer::Mesh(Box::new(mesh))
+        } else {
+            let own = Settings::from(settings);
+            MethodRenderer::Search(Box::new(Offscreen::new(&self.device, scene, &own)?))
+        })
+    }
+
+    /// Draws a scene once, as [`revmap::gpu::draw`].
+    ///
+    /// # Errors
+    /// As [`MethodDevice::renderer`]; of drawing.
+    pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodDrawn> {
+        let mut renderer = self.renderer(scene, settings)?;
+        renderer.draw()?;
+        let times = renderer.draw()?;
+        let drawn = MethodDrawn {
+            frame: renderer.read()?,
+            times,
+            map_bytes: renderer.map_bytes(),
+            notes: renderer.notes().to_vec(),
+        };
+        drop(renderer);
+        self.device.check()?;
+        Ok(drawn)
+    }
+}
+
+/// A scene on a device and a picture that it is drawn into, by either kind of method.
+pub enum MethodRenderer {
+    /// By a search.
+    Search(Box<Offscreen>),
+    /// As meshes.
+    Mesh(Box<MeshOffscreen>),
+}
+
+impl MethodRenderer {
+    /// Takes over a scene.
+    ///
+    /// # Errors
+    /// As [`Offscreen::update`] or [`MeshOffscreen::update`].
+    pub fn update(&mut self, scene: &Scene) -> Result<()> {
+        match self {
+            Self::Search(offscreen) => offscreen.update(scene),
+            Self::Mesh(mesh) => mesh.update(scene),
+        }
+    }
+
+    /// Draws one frame and waits for it.
+    ///
+    /// # Errors
+    /// Of drawing.
+    pub fn draw(&mut self) -> Result<Times> {
+        match self {
+            Self::Search(offscreen) => offscreen.draw(),
+            Self::Mesh(mesh) => mesh.draw(),
+        }
+    }
+
+    /// The frame that was drawn last.
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn read(&self) -> Result<Frame> {
+        match self {
+            Self::Search(offscreen) => offscreen.read(),
+            Self::Mesh(mesh) => mesh.read(),
+        }
+    }
+
+    /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
+    /// maps.
+    #[must_use]
+    pub fn map_bytes(&self) -> [u64; 2] {
+        match self {
+            Self::Search(offscreen) => offscreen.map_bytes(),
+            Self::Mesh(mesh) => [mesh.mesh_bytes(), 0],
+        }
+    }
+
+    /// As [`Offscreen::notes`]; none of a mesh.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::Search(offscreen) => offscreen.notes(),
+            Self::Mesh(_) => &[],
+        }
+    }
+}

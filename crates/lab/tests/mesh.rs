@@ -1,0 +1,484 @@
+//! The mesh baseline: that it is the same solid, as exact as its tessellation lets it be, shaded as
+//! the renderer shades, and that what it does not draw is refused. All under the validation layers.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../../../tests/common/shapes.rs"]
+#[allow(dead_code)]
+mod shapes;
+
+use glam::{DQuat, DVec3, EulerRot};
+use revmap::error::Stage;
+use revmap::frame::Frame;
+use revmap::gpu::Device;
+use revmap::maps::{ColorMap, DisplacementMap, Projection};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Light, Object, Offset, Placement, Scene, Shadow, Specular};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_lab::compare::{CompareOptions, Comparison, compare};
+use revmap_lab::mesh::{MeshOffscreen, MeshPipelines};
+use revmap_lab::method::{Method, MethodSettings};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+const TEXEL: f64 = 1.0 / 512.0;
+
+/// The device of these tests, and its pipelines. Without a device or without the layers, tests fail.
+fn pipelines() -> &'static Arc<MeshPipelines> {
+    static PIPELINES: OnceLock<Arc<MeshPipelines>> = OnceLock::new();
+    PIPELINES.get_or_init(|| {
+        let device = Device::open_validated(None).unwrap();
+        MeshPipelines::new(&device).unwrap()
+    })
+}
+
+fn settings(segments: u32, rings: u32) -> MethodSettings {
+    MethodSettings {
+        width: 240,
+        height: 180,
+        method: Method::mesh(segments, rings).unwrap(),
+        ..MethodSettings::default()
+    }
+}
+
+/// Draws meshes; any message of the layers is a failure.
+fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
+    let mut mesh = MeshOffscreen::new(pipelines(), scene, settings).unwrap();
+    mesh.draw().unwrap();
+    let frame = mesh.read().unwrap();
+    drop(mesh);
+    pipelines().device().check().unwrap();
+    frame
+}
+
+/// Draws by the exact search.
+fn searched(scene: &Scene, settings: &MethodSettings) -> Frame {
+    let settings = Settings {
+        solver: Solver::Quadric,
+        ..Settings::from(settings)
+    };
+    let drawn = revmap::gpu::draw(pipelines().device(), scene, &settings);
+    drawn.unwrap().frame
+}
+
+fn reference(scene: &Scene, settings: &MethodSettings) -> Frame {
+    revmap_reference::draw(scene, &settings.into(), &|_, _| {}).unwrap()
+}
+
+/// One object of a polygon under two lights, seen from `eye`.
+fn scene_of(profile: Profile, eye: DVec3) -> Scene {
+    let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
+    scene.lights.push(Light {
+        direction: DVec3::new(0.7, 0.5, -0.2),
+        color: [0.3, 0.3, 0.4],
+    });
+    scene.objects.push(Object::new("test", Arc::new(profile)));
+    scene
+}
+
+/// An eye at `distance` from the middle of a box of height 1, `elevation` degrees up.
+fn eye(elevation: f64, distance: f64) -> DVec3 {
+    let (s, c) = elevation.to_radians().sin_cos();
+    DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
+}
+
+fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
+    Placement {
+        position: position.into(),
+        rotation: DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], euler[2]),
+        scale: scale.into(),
+    }
+}
+
+fn errors(truth: &Frame, frame: &Frame) -> Comparison {
+    let options = CompareOptions {
+        texel: TEXEL,
+        ..CompareOptions::default()
+    };
+    compare(truth, frame, &options).unwrap()
+}
+
+const PLAIN: Offset = Offset {
+    extend: 0.0,
+    bevel: 0.0,
+    chamfer: 1.0,
+};
+const BEVELED: Offset = Offset {
+    extend: -0.01,
+    bevel: 0.3,
+    chamfer: 0.25,
+};
+
+/// Both steps of a tessellation halved: errors of chords fall to a quarter.
+#[test]
+fn errors_fall_with_the_square_of_the_steps() {
+    let solids = [
+        ("vase", shapes::vase()),
+        ("torus", shapes::torus()),
+        ("glass", shapes::glass()),
+        ("sphere", shapes::sphere()),
+    ];
+    for (name, profile) in solids {
+        for offset in [PLAIN, BEVELED] {
+            let mut scene = scene_of(profile.clone(), eye(28.0, 2.0));
+            scene.objects[0].offset = offset;
+            let truth = reference(&scene, &settings(3, 2));
+            let found: Vec<Comparison> = [16, 32, 64, 128, 256]
+                .map(|n| errors(&truth, &draw(&scene, &settings(n, 2 * n))))
+                .to_vec();
+            let p99 = |c: &Comparison| c.depth.unwrap().p99;
+            let said: Vec<_> = found
+                .iter()
+                .map(|c| (c.missed + c.ghost, p99(c), c.normal.unwrap().rms))
+                .collect();
+            println!("{name} {offset:?}: {said:.4?}");
+            for pair in found.windows(2) {
+                assert!(p99(&pair[1]) < 0.5 * p99(&pair[0]), "{name}: {said:?}");
+            }
+            let (first, last) = (&found[0], &found[4]);
+            assert!(p99(last) < p99(first) / 100.0 && p99(last) < 0.06, "{name}");
+            assert!(first.wrong() > 0.003, "{name}: the coarsest is coarse");
+            assert!(
+                last.wrong() < first.wrong() / 20.0 + 2e-4,
+                "{name}: {said:?}"
+            );
+            assert_eq!(last.silhouette_hausdorff.max(1.0), 1.0, "{name}");
+        }
+    }
+}
+
+/// What of a frame is wrong in more pixels than silhouettes, creases and texture's edges have: planes by name.
+fn wrong_planes(truth: &Frame, frame: &Frame) -> Vec<&'static str> {
+    let both: Vec<usize> = (0..truth.pixels())
+        .filter(|&k| truth.hits(k) && frame.hits(k))
+        .collect();
+    assert!(both.len() > 2000);
+    let mut wrong = Vec::new();
+    let mut check = |name, most: f32, difference: &dyn Fn(usize) -> f32| {
+        let beyond = both.iter().filter(|&&k| difference(k) > most).count();
+        println!(
+            "{name}: {:.3} % beyond {most}",
+            100.0 * beyond as f64 / both.len() as f64
+        );
+        if beyond * 33 > both.len() {
+            wrong.push(name);
+        }
+    };
+    fn apart<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
+        let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        differences.fold(0.0, f32::max)
+    }
+    let hits = |k: usize| truth.hits(k) != frame.hits(k);
+    let strayed = (0..truth.pixels()).filter(|&k| hits(k)).count();
+    check("distance", 1e-3, &|k| {
+        (truth.distance[k] - frame.distance[k]).abs()
+    });
+    check("normal", 0.05, &|k| apart(truth.normal[k], frame.normal[k]));
+    check("shading normal", 0.08, &|k| {
+        apart(truth.shading_normal[k], frame.shading_normal[k])
+    });
+    check("albedo", 0.03, &|k| apart(truth.albedo[k], frame.albedo[k]));
+    check("uv", 4e-3, &|k| {
+        let [u, v] = [0, 1].map(|i| (truth.uv[k][i] - frame.uv[k][i]).abs());
+        u.min(1.0 - u).max(v)
+    });
+    check("color", 0.05, &|k| apart(truth.color[k], frame.color[k]));
+    if strayed * 300 > both.len() {
+        wrong.push("hits");
+    }
+    wrong
+}
+
+#[test]
+fn every_plane_is_the_reference_s() {
+    for projection in [
+        Projection::Planar,
+        Projection::Cylindrical,
+        Projection::Spherical,
+    ] {
+        let mut scene = scene_of(shapes::vase(), eye(33.0, 1.9));
+        let object = &mut scene.objects[0];
+        object.texturing.projection = projection;
+        object.color = [0.7, 0.3, 0.1];
+        object.offset = BEVELED;
+        object.placement = placement([0.05, 0.0, 0.1], [0.3, -0.2, 0.4], [1.1, 0.8, 0.9]);
+        let settings = settings(256, 512);
+        let frame = draw(&scene, &settings);
+        for pixel in 0..frame.pixels() {
+            let infinite = |v: &f32| !v.is_finite();
+            let wrong = frame.pixel(pixel).iter().filter(|v| infinite(v)).count();
+            assert_eq!(wrong, usize::from(!frame.hits(pixel)), "only Z of no hit");
+        }
+        assert!(frame.steps.iter().all(|s| *s == 0.0), "nothing is searched");
+        let wrong = wrong_planes(&reference(&scene, &settings), &frame);
+        assert!(wrong.is_empty(), "{projection:?}: {wrong:?}");
+    }
+}
+
+/// Where mesh and search hit the same point of the same normal, they give the same colour: of any
+/// number of lights, as colour alone and among all planes.
+#[test]
+fn shading_is_the_renderer_s() {
+    let mut scene = scene_of(shapes::sphere(), eye(30.0, 1.6));
+    scene.ambient = [0.05, 0.1, 0.2];
+    scene.background = [0.2, 0.1, 0.0, 0.5];
+    let object = &mut scene.objects[0];
+    object.color = [0.2, 0.6, 0.4];
+    object.specular = Specular {
+        strength: 0.8,
+        shininess: 9.0,
+    };
+    object.placement = placement([0.1, 0.0, 0.0], [0.3, 0.1, 0.0], [0.9, 0.8, 1.0]);
+    let all = [
+        ([-0.4, -0.6, -0.7], [0.9, 0.2, 0.1]),
+        ([-0.9, 0.3, -0.1], [0.1, 0.8, 0.2]),
+        ([0.1, -0.8, 0.3], [0.2, 0.2, 0.9]),
+        ([-0.3, 0.2, -0.9], [0.3, 0.3, 0.0]),
+    ];
+    for count in 0..=all.len() {
+        let light = |(direction, color): ([f64; 3], _)| Light {
+            direction: direction.into(),
+            color,
+        };
+        scene.lights = all[..count].iter().copied().map(light).collect();
+        for planes in [Planes::All, Planes::Color] {
+            let settings = MethodSettings {
+                planes,
+                ..settings(512, 1024)
+            };
+            let (frame, wanted) = (draw(&scene, &settings), searched(&scene, &settings));
+            let apart = |a: &[f32; 4], b: &[f32; 4]| {
+                (a.iter().zip(b)).fold(0f32, |most, (a, b)| most.max((a - b).abs()))
+            };
+            let mut apart: Vec<f32> = (frame.color.iter().zip(&wanted.color))
+                .map(|(a, b)| apart(a, b))
+                .collect();
+            apart.sort_by(f32::total_cmp);
+            // Beside the silhouette: facets of the profile turn a normal by up to a degree.
+            let (typical, most) = (apart[apart.len() / 2], apart[apart.len() * 99 / 100]);
+            println!("{count} lights, {planes:?}: median {typical}, 99 % below {most}");
+            assert!(typical < 2e-3 && most < 2e-2, "{count} lights, {planes:?}");
+        }
+    }
+}
+
+/// The checks above can fail.
+#[test]
+fn planted_faults_are_found() {
+    let mut scene = scene_of(shapes::glass(), eye(25.0, 1.9));
+    let settings = settings(256, 512);
+    let truth = reference(&scene, &settings);
+    let good = draw(&scene, &settings);
+    assert_eq!(wrong_planes(&truth, &good), [""; 0]);
+
+    let mut turned = good.clone();
+    for n in &mut turned.normal {
+        *n = n.map(|v| -v);
+    }
+    assert_eq!(wrong_planes(&truth, &turned), ["normal"]);
+    assert!(errors(&truth, &turned).normal.unwrap().rms > 170.0);
+
+    // Every seventh pixel too deep, as where a far face covers a near one.
+    let mut behind = good.clone();
+    for (k, z) in behind.distance.iter_mut().enumerate() {
+        *z += if k % 7 == 0 { 0.01 } else { 0.0 };
+    }
+    assert_eq!(wrong_planes(&truth, &behind), ["distance"]);
+
+    // One ring of the glass a texel too wide.
+    let mut points = shapes::GLASS;
+    points[6][0] += TEXEL;
+    let bent = Profile::polygon(&points, 0.5).unwrap();
+    scene.objects[0].profile = Arc::new(bent);
+    let bent = errors(&truth, &draw(&scene, &settings)).depth.unwrap();
+    let straight = errors(&truth, &good).depth.unwrap();
+    assert!(bent.p99 > 10.0 * straight.p99, "{bent:?} {straight:?}");
+}
+
+#[test]
+fn eyes_may_be_inside() {
+    // In the vase's solid; in the glass's hollow; through the torus's hole; just above a lid.
+    let cases = [
+        (
+            shapes::vase(),
+            DVec3::new(0.1, 0.05, 0.6),
+            DVec3::new(0.3, 0.3, 0.2),
+        ),
+        (
+            shapes::glass(),
+            DVec3::new(0.05, 0.0, 0.8),
+            DVec3::new(-0.2, 0.1, 0.4),
+        ),
+        (
+            shapes::torus(),
+            DVec3::new(0.02, 0.0, 0.5),
+            DVec3::new(0.6, 0.1, 0.55),
+        ),
+        (
+            shapes::vase(),
+            DVec3::new(0.05, 0.0, 0.953),
+            DVec3::new(0.2, 0.1, 0.8),
+        ),
+    ];
+    for (n, (profile, eye, target)) in cases.into_iter().enumerate() {
+        let mut scene = scene_of(profile, eye);
+        scene.camera.target = target;
+        scene.camera.fov_y = 70.0;
+        let settings = settings(256, 512);
+        let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
+        let found = errors(&truth, &frame);
+        assert!(found.hits > 10_000 && found.wrong() < 2e-3, "{n}: {found}");
+        assert!(found.normal.unwrap().rms < 5.0, "{n}: {found}");
+        assert!(found.depth.unwrap().p99 < 0.1, "{n}: {found}");
+    }
+}
+
+fn crowd() -> Scene {
+    let mut scene = scene_of(shapes::vase(), eye(20.0, 3.0));
+    let place = |k: usize, z: f64| {
+        let (x, y) = ((k % 4) as f64 - 1.5, (k / 4) as f64 - 1.5);
+        placement(
+            [0.8 * x, 0.8 * y, z],
+            [0.1 * x, 0.2 * y, 0.3],
+            [0.7, 0.7, 0.9],
+        )
+    };
+    scene.objects[0].instances = (0..16).map(|k| place(k, 0.0)).collect();
+    let mut glass = Object::new("glass", Arc::new(shapes::glass()));
+    glass.placement = placement([0.4, 0.3, 0.3], [0.4, 0.0, 0.0], [0.6; 3]);
+    let mut second = scene.objects[0].clone();
+    second.color = [0.2, 0.7, 0.3];
+    second.instances = (0..5).map(|k| place(3 * k, 0.5)).collect();
+    scene.objects.extend([glass, second]);
+    scene
+}
+
+#[test]
+fn several_solids_hide_each_other() {
+    let scene = crowd();
+    let settings = settings(128, 256);
+    let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
+    let found = errors(&truth, &frame);
+    assert!(found.hits > 8000 && found.wrong() < 3e-3, "{found}");
+    assert!(found.depth.unwrap().p99 < 0.3, "{found}");
+    let wrong = wrong_planes(&truth, &frame);
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// Offsets and cameras that move give what a new renderer gives, in both kinds of picture.
+#[test]
+fn updates_leave_nothing_behind() {
+    for planes in [Planes::All, Planes::Color] {
+        let settings = MethodSettings {
+            planes,
+            ..settings(48, 96)
+        };
+        let mut scene = crowd();
+        let mut mesh = MeshOffscreen::new(pipelines(), &scene, &settings).unwrap();
+        mesh.draw().unwrap();
+        for (n, offset) in [BEVELED, PLAIN, BEVELED].into_iter().enumerate() {
+            scene.objects[0].offset = offset;
+            scene.camera.eye = eye(40.0 + 20.0 * n as f64, 2.5);
+            match n {
+                // More copies than before; then an object less.
+                1 => scene.objects[2].instances = (0..9).map(|_| Placement::default()).collect(),
+                2 => drop(scene.objects.remove(0)),
+                _ => {}
+            }
+            mesh.update(&scene).unwrap();
+            mesh.draw().unwrap();
+            let fresh = draw(&scene, &settings);
+            let kept = mesh.read().unwrap();
+            assert!(kept.color == fresh.color && kept.distance == fresh.distance);
+        }
+        // What is refused leaves the frame before.
+        let before = mesh.read().unwrap();
+        let mut spoilt = scene.clone();
+        spoilt.objects[0].repeat = [2, 1, 1];
+        assert!(mesh.update(&spoilt).is_err());
+        mesh.draw().unwrap();
+        assert!(mesh.read().unwrap().color == before.color);
+        let bytes = mesh.mesh_bytes();
+        assert!(bytes > 2 * 16 * 48 && bytes < 10_000_000, "{bytes}");
+        drop(mesh);
+        pipelines().device().check().unwrap();
+    }
+}
+
+/// An offset under which nothing is left draws nothing.
+#[test]
+fn nothing_is_a_mesh_too() {
+    let mut scene = scene_of(shapes::glass(), eye(20.0, 2.0));
+    scene.objects[0].offset.extend = -0.4;
+    let frame = draw(&scene, &settings(16, 32));
+    assert!((0..frame.pixels()).all(|k| !frame.hits(k)));
+}
+
+fn asset(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../assets")
+        .join(name)
+}
+
+#[test]
+fn what_a_mesh_cannot_draw_is_refused() {
+    #[track_caller]
+    fn refused(stage: Stage, key: &str, spoil: impl Fn(&mut Scene, &mut MethodSettings)) {
+        let mut scene = crowd();
+        let mut settings = settings(16, 32);
+        spoil(&mut scene, &mut settings);
+        let made = MeshOffscreen::new(pipelines(), &scene, &settings);
+        let error = made.err().unwrap();
+        assert_eq!(
+            (error.stage, error.key.as_deref()),
+            (stage, Some(key).filter(|k| !k.is_empty())),
+            "{error}"
+        );
+        pipelines().device().check().unwrap();
+    }
+    refused(Stage::Usage, "--solver", |_, s| {
+        s.stage = DrawStage::Compute
+    });
+    refused(Stage::Scene, "shadow", |s, _| s.shadow = Shadow::Hard);
+    refused(Stage::Scene, "object.1.repeat", |s, _| {
+        s.objects[1].repeat = [2, 1, 1]
+    });
+    refused(Stage::Scene, "object.2.color_map", |s, _| {
+        let file = asset("colors/natural-earth.png");
+        s.objects[2].texturing.color_map = Some(Arc::new(ColorMap::load(file).unwrap()));
+    });
+    refused(Stage::Scene, "object.0.height_map", |s, _| {
+        let map = DisplacementMap::from_image(asset("heights/brick.png")).unwrap();
+        s.objects[0].texturing.displacement_map = Some(Arc::new(map));
+    });
+    refused(Stage::Scene, "object.0.projection", |s, _| {
+        s.objects[0].texturing.projection = Projection::Arc
+    });
+    refused(Stage::Usage, "--solver", |_, s| s.method = Method::DEFAULT);
+    refused(Stage::Scene, "object.2.axis", |s, _| {
+        s.objects[2].axis = [0.9, 0.5]
+    });
+    refused(Stage::Scene, "object.0.extend", |s, _| {
+        s.objects[0].offset.extend = 0.3
+    });
+    refused(Stage::Scene, "object.0.bevel", |s, _| {
+        s.objects[0].offset.bevel = 0.8
+    });
+    for (segments, rings) in [(2, 1), (0, 0), (99_999_999, 9), (u32::MAX, u32::MAX)] {
+        refused(Stage::Usage, "", |_, s| {
+            s.method = Method::Mesh { segments, rings }
+        });
+    }
+}
+
+/// An axis off the middle is no obstacle while the solid stays in its box.
+#[test]
+fn an_axis_may_stand_off_the_middle() {
+    let mut scene = scene_of(shapes::vase(), eye(30.0, 2.0));
+    scene.objects[0].axis = [0.6, 0.45];
+    let settings = settings(128, 256);
+    let found = errors(&reference(&scene, &settings), &draw(&scene, &settings));
+    assert!(
+        found.wrong() < 2e-3 && found.depth.unwrap().p99 < 0.3,
+        "{found}"
+    );
+}

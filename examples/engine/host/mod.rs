@@ -1,0 +1,224 @@
+//! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here is revmap's.
+
+mod memory;
+mod mesh;
+mod stage;
+
+pub use mesh::Mesh;
+pub use stage::Stage;
+
+use ash::{ext, vk};
+use glam::{DMat4, DVec3, DVec4};
+use std::error::Error;
+use std::ffi::{CStr, c_void};
+use std::sync::Mutex;
+
+pub type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// How a host draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    pub width: u32,
+    pub height: u32,
+    /// Dynamic rendering, or a render pass.
+    pub dynamic: bool,
+    /// 1 or 4.
+    pub samples: u32,
+    /// Depth 1 is near.
+    pub reversed: bool,
+}
+
+pub const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
+pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+pub const FRAMES: usize = 2;
+
+/// An instance and a device, with the validation layers where asked for.
+pub struct Host {
+    pub instance: ash::Instance,
+    pub physical: vk::PhysicalDevice,
+    pub device: ash::Device,
+    pub family: u32,
+    pub queue: vk::Queue,
+    pub features: vk::PhysicalDeviceFeatures,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messages: Box<Mutex<Vec<String>>>,
+    _entry: ash::Entry,
+}
+
+unsafe extern "system" fn keep(
+    _: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    store: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: the layers hand over a live message, and the store that was registered with it.
+    unsafe {
+        let text = CStr::from_ptr((*data).p_message)
+            .to_string_lossy()
+            .into_owned();
+        if let Ok(mut all) = (*store.cast::<Mutex<Vec<String>>>()).lock() {
+            all.push(text);
+        }
+    }
+    vk::FALSE
+}
+
+impl Host {
+    /// Opens a device; `requirements` says what has to be enabled on it.
+    pub fn open(
+        validate: bool,
+        requirements: impl Fn(
+            &ash::Instance,
+            vk::PhysicalDevice,
+        ) -> Fallible<(u32, vk::PhysicalDeviceFeatures)>,
+    ) -> Fallible<Self> {
+        // SAFETY: plain creations in order; everything is destroyed in Drop.
+        unsafe {
+            let entry = ash::Entry::load()?;
+            let layer = [c"VK_LAYER_KHRONOS_validation".as_ptr()];
+            let extensions = [
+                ext::debug_utils::NAME.as_ptr(),
+                ext::validation_features::NAME.as_ptr(),
+            ];
+            let checks = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+            let mut checked =
+                vk::ValidationFeaturesEXT::default().enabled_validation_features(&checks);
+            let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
+            let mut info = vk::InstanceCreateInfo::default().application_info(&application);
+            if validate {
+                info = info
+                    .enabled_layer_names(&layer)
+                    .enabled_extension_names(&extensions)
+                    .push_next(&mut checked);
+            }
+            let instance = entry.create_instance(&info, None)?;
+            let messages = Box::<Mutex<Vec<String>>>::default();
+            let messenger = if validate {
+                let functions = ext::debug_utils::Instance::new(&entry, &instance);
+                type Severity = vk::DebugUtilsMessageSeverityFlagsEXT;
+                type Kind = vk::DebugUtilsMessageTypeFlagsEXT;
+                let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
+                    .message_severity(Severity::WARNING | Severity::ERROR)
+                    .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
+                    .pfn_user_callback(Some(keep))
+                    .user_data((&raw const *messages).cast_mut().cast());
+                let messenger = functions.create_debug_utils_messenger(&info, None)?;
+                Some((functions, messenger))
+            } else {
+                None
+            };
+            let mut refused: Box<dyn Error> = "no Vulkan device".into();
+            for physical in instance.enumerate_physical_devices()? {
+                let (family, features) = match requirements(&instance, physical) {
+                    Ok(found) => found,
+                    Err(error) => {
+                        refused = error;
+                        continue;
+                    }
+                };
+                let priorities = [1.0];
+                let queues = [vk::DeviceQueueCreateInfo::default()
+                    .queue_family_index(family)
+                    .queue_priorities(&priorities)];
+                let mut newer =
+                    vk::PhysicalDeviceVulkan13Features::default().dynamic_rendering(true);
+                let info = vk::DeviceCreateInfo::default()
+                    .queue_create_infos(&queues)
+                    .enabled_features(&features)
+                    .push_next(&mut newer);
+                let device = instance.create_device(physical, &info, None)?;
+                let queue = device.get_device_queue(family, 0);
+                return Ok(Self {
+                    instance,
+                    physical,
+                    device,
+                    family,
+                    queue,
+                    features,
+                    messenger,
+                    messages,
+                    _entry: entry,
+                });
+            }
+            Err(refused)
+        }
+    }
+
+    /// What the validation layers have said since the last call.
+    pub fn take_messages(&self) -> Vec<String> {
+        self.messages
+            .lock()
+            .map(|mut all| std::mem::take(&mut *all))
+            .unwrap_or_default()
+    }
+
+    pub fn memory(
+        &self,
+        needs: vk::MemoryRequirements,
+        wanted: vk::MemoryPropertyFlags,
+    ) -> Fallible<vk::DeviceMemory> {
+        // SAFETY: plain query and creation.
+        unsafe {
+            let all = self
+                .instance
+                .get_physical_device_memory_properties(self.physical);
+            let kind = (0..all.memory_type_count)
+                .find(|&n| {
+                    needs.memory_type_bits & (1 << n) != 0
+                        && all.memory_types[n as usize].property_flags.contains(wanted)
+                })
+                .ok_or("no such memory")?;
+            let info = vk::MemoryAllocateInfo::default()
+                .allocation_size(needs.size)
+                .memory_type_index(kind);
+            Ok(self.device.allocate_memory(&info, None)?)
+        }
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        // SAFETY: everything made on the device is gone.
+        unsafe {
+            self.device.destroy_device(None);
+            if let Some((functions, messenger)) = &self.messenger {
+                functions.destroy_debug_utils_messenger(*messenger, None);
+            }
+            self.instance.destroy_instance(None);
+        }
+    }
+}
+
+/// A host's matrices: looking along -z from `eye` to `target`, z up in the world, clip space with Vulkan's y downwards. Reversed
+/// depth reaches to infinity.
+pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMat4; 2] {
+    let forward = (target - eye).normalize();
+    let right = forward.cross(DVec3::Z).normalize();
+    let up = right.cross(forward);
+    let row = |axis: DVec3| axis.extend(-axis.dot(eye));
+    let view = DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose();
+    let (near, far) = (0.1, 50.0);
+    let focal = 1.0 / 20f64.to_radians().tan();
+    let aspect = f64::from(options.width) / f64::from(options.height);
+    let (z, w) = if options.reversed {
+        (0.0, near)
+    } else {
+        (far / (near - far), near * far / (near - far))
+    };
+    let projection = DMat4::from_cols(
+        DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -focal, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, z, -1.0),
+        DVec4::new(0.0, 0.0, w, 0.0),
+    );
+    [view, projection]
+}
+
+/// Writes sRGB bytes as a PNG.
+pub fn write_png(path: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
+    let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+    let mut encoder = png::Encoder::new(file, options.width, options.height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.write_header()?.write_image_data(pixels)?;
+    Ok(())
+}
