@@ -63,16 +63,7 @@ impl Device {
     /// # Errors
     /// [`Stage::Device`] when there is none, or it lacks what is needed.
     pub fn open(choice: Option<&str>) -> Result<Self> {
-        Self::on(Instance::from_environment()?, choice, &[])
-    }
-
-    /// As [`Device::open`], with what [`Device::pipeline_cache_data`] gave in another process. Data of another driver, or
-    /// damaged data, is no error: pipelines are compiled anew.
-    ///
-    /// # Errors
-    /// As `open`.
-    pub fn open_with_cache(choice: Option<&str>, cache: &[u8]) -> Result<Self> {
-        Self::on(Instance::from_environment()?, choice, cache)
+        Self::on(Instance::from_environment()?, choice)
     }
 
     /// As [`Device::open`], with the validation layers on whatever the environment says: core checks and synchronization.
@@ -80,7 +71,7 @@ impl Device {
     /// # Errors
     /// As `open`, and [`Stage::Device`] when the layer is not installed.
     pub fn open_validated(choice: Option<&str>) -> Result<Self> {
-        Self::on(Instance::new(true)?, choice, &[])
+        Self::on(Instance::new(true)?, choice)
     }
 
     /// Borrows a host's device.
@@ -107,14 +98,13 @@ impl Device {
             host.queue,
             Allocation::of(host),
             host.pipeline_cache,
-            &[],
         )?;
         Ok(Self {
             shared: Arc::new(shared),
         })
     }
 
-    fn on(instance: Instance, choice: Option<&str>, cache: &[u8]) -> Result<Self> {
+    fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
         let variable = std::env::var(DEVICE_VARIABLE)
             .ok()
             .filter(|v| !v.is_empty());
@@ -123,7 +113,7 @@ impl Device {
         // SAFETY: the queue was asked for when the device was made.
         let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
         let memory = Allocation::New(&instance.raw, chosen.physical);
-        match Shared::new(&chosen, raw.clone(), Some(queue), memory, None, cache) {
+        match Shared::new(&chosen, raw.clone(), Some(queue), memory, None) {
             Ok(mut shared) => {
                 shared.instance = Some(instance);
                 Ok(Self {
@@ -150,7 +140,16 @@ impl Device {
         self.shared.pipelines().map_or(0, Pipelines::compiled)
     }
 
-    /// The driver's compiled pipelines, to be kept and given to [`Device::open_with_cache`].
+    /// Adds what [`Device::pipeline_cache_data`] gave in another process: pipelines compiled there are found instead of compiled.
+    /// Data of another driver is passed over.
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] of Vulkan.
+    pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
+        self.shared.pipelines()?.add_cache(data)
+    }
+
+    /// The driver's compiled pipelines, to be kept for [`Device::add_pipeline_cache`].
     ///
     /// # Errors
     /// [`Stage::Draw`] of Vulkan.
@@ -273,11 +272,10 @@ impl Shared {
         queue: Option<vk::Queue>,
         memory: Allocation<'_>,
         pipeline_cache: Option<vk::PipelineCache>,
-        cache_data: &[u8],
     ) -> Result<Self> {
         let limits = chosen.properties.limits;
         let allocator = memory.allocator(&raw)?;
-        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, cache_data)?;
+        let pipelines = Pipelines::new(raw.clone(), pipeline_cache)?;
         Ok(Self {
             allocator: Some(allocator),
             pipelines: Some(pipelines),

@@ -54,8 +54,8 @@ struct Key {
 }
 
 impl Pipelines {
-    /// `cache`: a host's; `data`: what [`Pipelines::cache_data`] gave another time.
-    pub fn new(raw: ash::Device, cache: Option<vk::PipelineCache>, data: &[u8]) -> Result<Self> {
+    /// `cache`: a host's.
+    pub fn new(raw: ash::Device, cache: Option<vk::PipelineCache>) -> Result<Self> {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
             layout: vk::PipelineLayout::null(),
@@ -120,11 +120,9 @@ impl Pipelines {
                 .create_pipeline_layout(&info, None)
                 .call("vkCreatePipelineLayout")?;
             if all.owns_cache {
-                let with = vk::PipelineCacheCreateInfo::default();
-                // Drivers look at the header of the data and pass over what is not theirs; some fail instead.
+                let empty = vk::PipelineCacheCreateInfo::default();
                 all.cache = raw
-                    .create_pipeline_cache(&with.initial_data(data), None)
-                    .or_else(|_| raw.create_pipeline_cache(&with, None))
+                    .create_pipeline_cache(&empty, None)
                     .call("vkCreatePipelineCache")?;
             }
         }
@@ -211,6 +209,21 @@ impl Pipelines {
     /// How many have been compiled.
     pub fn compiled(&self) -> u64 {
         self.compiled.load(Ordering::Relaxed)
+    }
+
+    /// Adds what [`Pipelines::cache_data`] gave another time.
+    pub fn add_cache(&self, data: &[u8]) -> Result<()> {
+        let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: drivers look at the data's header and pass over what is not theirs; the second cache is gone again.
+        unsafe {
+            let other = self
+                .raw
+                .create_pipeline_cache(&with, None)
+                .call("vkCreatePipelineCache")?;
+            let merged = self.raw.merge_pipeline_caches(self.cache, &[other]);
+            self.raw.destroy_pipeline_cache(other, None);
+            merged.call("vkMergePipelineCaches")
+        }
     }
 
     /// What the driver wants to be kept for another process.

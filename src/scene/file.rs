@@ -53,7 +53,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toml::Table;
+use toml::{Table, Value};
 
 /// Keys of the whole file.
 const SCENE: &[&str] = &[
@@ -104,16 +104,7 @@ const RADIUS: f64 = 0.5;
 /// # Errors
 /// [`Stage::Scene`] and [`Stage::Profile`], with file and key; [`Stage::Usage`] for a malformed assignment.
 pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
-    let file = file.as_ref();
-    let text = std::fs::read_to_string(file).map_err(|e| {
-        Error::new(
-            Stage::Scene,
-            format!("cannot be read ({e}); give a scene in TOML"),
-        )
-        .in_file(file)
-    })?;
-    let folder = file.parent().unwrap_or(Path::new(""));
-    parse(&text, folder, sets).map_err(|e| e.in_file(file))
+    SceneFile::open(file)?.scene(sets)
 }
 
 /// Reads a scene from `text`; paths in it are relative to `folder`. `sets` as in [`load`].
@@ -121,19 +112,97 @@ pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
 /// # Errors
 /// As [`load`]; faults of the text itself name no file.
 pub fn parse(text: &str, folder: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
-    let mut root: Table = text.parse().map_err(|e| syntax(text, &e))?;
-    for assignment in sets {
-        overrides::apply(&mut root, assignment)?;
+    SceneFile::parse(text, folder)?.scene(sets)
+}
+
+/// A scene file that was read, for scenes that differ in some keys: what it names is read once, and shared by all of them.
+pub struct SceneFile {
+    root: Table,
+    file: Option<PathBuf>,
+    reader: Reader,
+}
+
+impl SceneFile {
+    /// Reads the text of `file`, a scene in TOML; or a profile (SVG or a picture), which gets a scene of its own: seen from in
+    /// front and a little above, as a whole.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`], with the file; [`Stage::Profile`] for a profile that cannot be read.
+    pub fn open(file: impl AsRef<Path>) -> Result<Self> {
+        let file = file.as_ref();
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let is_profile = |e: &str| ["svg", "svgz", "png", "jpg", "jpeg"].contains(&e);
+        let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if ending.is_some_and(|e| is_profile(&e)) {
+            return Self::of_profile(file, folder);
+        }
+        let text = std::fs::read_to_string(file).map_err(|e| {
+            Error::new(
+                Stage::Scene,
+                format!("cannot be read ({e}); give a scene in TOML"),
+            )
+            .in_file(file)
+        })?;
+        let mut read = Self::parse(&text, folder).map_err(|e| e.in_file(file))?;
+        read.file = Some(file.to_owned());
+        Ok(read)
     }
-    let mut reader = Reader {
-        folder: folder.as_ref(),
-        profiles: HashMap::new(),
-        color_maps: HashMap::new(),
-        height_maps: HashMap::new(),
-    };
-    let scene = reader.scene(&root)?;
-    scene.check()?;
-    Ok(scene)
+
+    /// Reads `text`; paths in it are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`Stage::Scene`] for what is not TOML.
+    pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
+        Ok(Self {
+            root: text.parse().map_err(|e| syntax(text, &e))?,
+            file: None,
+            reader: Reader::new(folder.as_ref()),
+        })
+    }
+
+    fn of_profile(file: &Path, folder: &Path) -> Result<Self> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let mut reader = Reader::new(folder);
+        let profile = reader.load_profile(file, ProfileAxis::Center)?;
+        // As far off as a sphere about the box fills the picture's height.
+        let reach = profile.radius.hypot(0.5) * 1.05;
+        let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
+        let eye = DVec3::new(0.0, 0.0, 0.5) + distance * DVec3::new(0.9, 0.3, 0.32).normalize();
+        let numbers = |v: DVec3| Value::Array(v.to_array().map(Value::Float).to_vec());
+        let mut camera = Table::new();
+        camera.insert("eye".into(), numbers(eye));
+        camera.insert("target".into(), numbers(DVec3::new(0.0, 0.0, 0.5)));
+        let mut object = Table::new();
+        object.insert("profile".into(), Value::String(name.into_owned()));
+        let mut root = Table::new();
+        root.insert("camera".into(), Value::Table(camera));
+        root.insert("object".into(), Value::Array(vec![Value::Table(object)]));
+        Ok(Self {
+            root,
+            file: None,
+            reader,
+        })
+    }
+
+    /// The scene, with each of `sets` (`key=value`, as in [`load`]) in place of what the file says.
+    ///
+    /// # Errors
+    /// As [`load`].
+    pub fn scene(&mut self, sets: &[String]) -> Result<Scene> {
+        let mut root = self.root.clone();
+        let mut read = || {
+            for assignment in sets {
+                overrides::apply(&mut root, assignment)?;
+            }
+            let scene = self.reader.scene(&root)?;
+            scene.check()?;
+            Ok(scene)
+        };
+        read().map_err(|e: Error| match &self.file {
+            Some(file) => e.in_file(file),
+            None => e,
+        })
+    }
 }
 
 /// A fault of TOML's grammar, on one line.
@@ -148,9 +217,11 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
 }
 
 /// What has been read so far: files named more than once are read once, and shared.
-struct Reader<'a> {
-    folder: &'a Path,
+struct Reader {
+    folder: PathBuf,
     profiles: HashMap<(PathBuf, ProfileAxisKey), Arc<Profile>>,
+    /// With their points and radius.
+    polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
     height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
 }
@@ -158,7 +229,17 @@ struct Reader<'a> {
 /// [`ProfileAxis`] as a part of a table's key: whether it is the middle.
 type ProfileAxisKey = bool;
 
-impl Reader<'_> {
+impl Reader {
+    fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            profiles: HashMap::new(),
+            polygons: Vec::new(),
+            color_maps: HashMap::new(),
+            height_maps: HashMap::new(),
+        }
+    }
+
     fn scene(&mut self, root: &Table) -> Result<Scene> {
         let keys = Keys::new(root, "", SCENE)?;
         let empty = Table::new();
@@ -196,7 +277,7 @@ impl Reader<'_> {
         object.repeat = keys.counts("repeat")?.unwrap_or(object.repeat);
         object.mirror = keys.flags("mirror")?.unwrap_or(object.mirror);
         object.placement = placement(&keys)?;
-        if let Some(file) = keys.file("instances", self.folder)? {
+        if let Some(file) = keys.file("instances", &self.folder)? {
             object.instances = instances::load(&file)?;
         }
         Ok(object)
@@ -204,21 +285,15 @@ impl Reader<'_> {
 
     /// An object with its profile, all else at its default.
     fn profile(&mut self, keys: &Keys) -> Result<Object> {
-        let file = keys.file("profile", self.folder)?;
+        let file = keys.file("profile", &self.folder)?;
         let polygon = keys.pairs("polygon")?;
         let axis = keys.one_of("profile_axis", &AXES)?.unwrap_or_default();
         let radius = keys.number("radius")?.unwrap_or(RADIUS);
         match (file, polygon) {
             (Some(file), None) => {
-                let key = (file.clone(), axis == ProfileAxis::Center);
-                let profile = match self.profiles.get(&key) {
-                    Some(known) => known.clone(),
-                    None => {
-                        let new = Profile::load(&file, axis)
-                            .map_err(|e| e.in_file(&file).at_key(keys.place("profile")))?;
-                        self.profiles.entry(key).or_insert(Arc::new(new)).clone()
-                    }
-                };
+                let profile = self
+                    .load_profile(&file, axis)
+                    .map_err(|e| e.at_key(keys.place("profile")))?;
                 let name = file
                     .file_name()
                     .unwrap_or_default()
@@ -229,9 +304,16 @@ impl Reader<'_> {
                 Ok(object)
             }
             (None, Some(points)) => {
+                let same =
+                    |known: &&(Vec<[f64; 2]>, f64, _)| known.0 == points && known.1 == radius;
+                if let Some((_, _, profile)) = self.polygons.iter().find(same) {
+                    return Ok(Object::new("polygon", profile.clone()));
+                }
                 let profile =
                     Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
-                Ok(Object::new("polygon", Arc::new(profile)))
+                let profile = Arc::new(profile);
+                self.polygons.push((points, radius, profile.clone()));
+                Ok(Object::new("polygon", profile))
             }
             (None, None) => Err(keys.fail(
                 "profile",
@@ -243,13 +325,24 @@ impl Reader<'_> {
         }
     }
 
+    /// A file's profile, read once.
+    fn load_profile(&mut self, file: &Path, axis: ProfileAxis) -> Result<Arc<Profile>> {
+        let key = (file.to_owned(), axis == ProfileAxis::Center);
+        if let Some(known) = self.profiles.get(&key) {
+            return Ok(known.clone());
+        }
+        let new = Arc::new(Profile::load(file, axis).map_err(|e| e.in_file(file))?);
+        self.profiles.insert(key, new.clone());
+        Ok(new)
+    }
+
     fn texturing(&mut self, keys: &Keys, profile: Option<&Path>) -> Result<Texturing> {
         let mut covering = Texturing::default();
-        if let Some(file) = keys.file("color_map", self.folder)? {
+        if let Some(file) = keys.file("color_map", &self.folder)? {
             let map = shared(&mut self.color_maps, &file, |f| ColorMap::load(f));
             covering.color_map = Some(map.map_err(|e| e.at_key(keys.place("color_map")))?);
         }
-        if let Some(file) = keys.file("height_map", self.folder)? {
+        if let Some(file) = keys.file("height_map", &self.folder)? {
             let map = shared(&mut self.height_maps, &file, |f| {
                 DisplacementMap::from_image(f)
             });

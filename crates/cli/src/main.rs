@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed feature. A failure is one
 //! line on standard error.
 
+mod animate;
 mod bake;
 mod bench;
 mod chart;
@@ -12,6 +13,7 @@ mod interrupt;
 mod lists;
 mod options;
 mod output;
+mod pipelines;
 mod progress;
 mod render;
 mod usage;
@@ -34,6 +36,7 @@ feature. A failure is one line on standard error.";
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
+    Animate(animate::Animate),
     Bake(bake::Bake),
     Bench(bench::Bench),
     Chart(chart::Chart),
@@ -45,6 +48,7 @@ impl Command {
     fn run(self) -> revmap::Result<()> {
         match self {
             Self::Render(command) => command.run(),
+            Self::Animate(command) => command.run(),
             Self::Bake(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Chart(command) => command.run(),

@@ -1,13 +1,13 @@
 //! `revmap render`: one frame, off screen.
 
 use super::options::{self, Drawing, Tracing};
-use super::output;
 use super::progress::Progress;
+use super::{output, pipelines};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
-use revmap::gpu;
-use revmap::scene::{Scene, file};
+use revmap::scene::Scene;
+use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::MethodDevice;
@@ -18,7 +18,7 @@ use std::time::Instant;
 /// Draws one frame of a scene, off screen
 #[derive(Args)]
 pub struct Render {
-    /// The scene, a TOML file
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
     /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
@@ -39,7 +39,7 @@ impl Render {
     pub fn run(self) -> Result<()> {
         output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
         let begin = Instant::now();
-        let scene = file::load(&self.scene, &self.drawing.set)?;
+        let scene = SceneFile::open(&self.scene)?.scene(&self.drawing.set)?;
         let loading = milliseconds(begin);
         let floats = self
             .output
@@ -73,13 +73,14 @@ impl Render {
     }
 
     fn on_gpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
-        let device = gpu::Device::open(self.drawing.device.as_deref())?;
+        let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
         let report = device.report();
         let progress = Progress::start(&format!("drawing on {}", report.name), self.drawing.quiet);
         let drawn = MethodDevice::new(device.clone())
             .and_then(|device| device.draw(scene, settings))
             .map_err(|e| on(&report.name, e))?;
         drop(progress);
+        kept.save(&device);
         Ok(Picture {
             device: format!(
                 "{} ({}), driver {}",

@@ -114,6 +114,15 @@ impl MethodRenderer {
         }
     }
 
+    /// As [`Offscreen::rebuild_count`]; none of a mesh.
+    #[must_use]
+    pub fn rebuild_count(&self) -> u64 {
+        match self {
+            Self::Search(offscreen) => offscreen.rebuild_count(),
+            Self::Mesh(_) => 0,
+        }
+    }
+
     /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
     /// maps.
     #[must_use]

@@ -1,0 +1,280 @@
+//! `revmap animate`: a turntable, or parameters that move, as numbered pictures with the time of every frame.
+
+use super::options::{Drawing, Tracing};
+use super::output;
+use super::pipelines;
+use super::progress::Progress;
+use clap::Args;
+use glam::{DQuat, DVec3};
+use revmap::error::{Error, Result, Stage};
+use revmap::frame;
+use revmap::gpu::Device;
+use revmap::scene::Scene;
+use revmap::scene::file::SceneFile;
+use revmap::settings::Planes;
+use revmap_lab::renderer::MethodDevice;
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Draws a turntable or a sweep of parameters: numbered pictures, and what each frame took
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
+    revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1 --times out/times.csv")]
+pub struct Animate {
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture
+    scene: PathBuf,
+    /// Number of frames
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: u32,
+    /// Turns the camera about its target by so many degrees in all
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    turn: Option<f64>,
+    /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or lists of
+    /// numbers; may be given more than once
+    #[arg(long, value_name = "KEY=FROM:TO")]
+    vary: Vec<String>,
+    /// The folder that frame-0000.png and so on go into; it is made if it is not there
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// A CSV file for the times of each frame
+    #[arg(long, value_name = "FILE")]
+    times: Option<PathBuf>,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+/// A key that moves.
+struct Vary {
+    key: String,
+    from: Vec<f64>,
+    to: Vec<f64>,
+    list: bool,
+}
+
+/// One line of the times.
+struct Row {
+    prepare_ms: f64,
+    gpu_ms: Option<f64>,
+    frame_ms: f64,
+    compiled: u64,
+    rebuilt: u64,
+}
+
+impl Animate {
+    pub fn run(self) -> Result<()> {
+        let Tracing::Device(_) = self.drawing.stage else {
+            return Err(usage(
+                "--stage",
+                "the reference draws no animations; give fragment or compute",
+            ));
+        };
+        if let Some(file) = &self.times {
+            output::check(
+                std::slice::from_ref(file),
+                "--times",
+                &["csv"],
+                &[&self.scene],
+            )?;
+        }
+        if let Some(folder) = &self.output {
+            std::fs::create_dir_all(folder).map_err(|e| {
+                let message = format!("cannot be made ({e}); choose another folder");
+                Error::new(Stage::Frame, message).in_file(folder)
+            })?;
+        }
+        let varied = self
+            .vary
+            .iter()
+            .map(|text| Vary::parse(text))
+            .collect::<Result<Vec<_>>>()?;
+        let mut file = SceneFile::open(&self.scene)?;
+        let first = self.scene_at(&mut file, &varied, 0)?;
+        let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
+        let progress = Progress::start(
+            &format!("drawing on {}", device.report().name),
+            self.drawing.quiet,
+        );
+        let rows = self.draw(&device, &mut file, &varied, &first, &progress)?;
+        drop(progress);
+        device.check()?;
+        kept.save(&device);
+        if let Some(path) = &self.times {
+            write_times(path, &rows)?;
+        }
+        self.tell(&device, &rows);
+        Ok(())
+    }
+
+    /// Every frame: the scene is taken over, drawn, and read back after its times were taken.
+    fn draw(
+        &self,
+        device: &Device,
+        file: &mut SceneFile,
+        varied: &[Vary],
+        first: &Scene,
+        progress: &Progress,
+    ) -> Result<Vec<Row>> {
+        let settings = self.drawing.settings(Planes::Color);
+        let methods = MethodDevice::new(device.clone())?;
+        let mut renderer = methods.renderer(first, &settings)?;
+        let mut rows = Vec::new();
+        let (mut compiled, mut rebuilt) = (0, 0);
+        for n in 0..self.frames {
+            let scene = self.scene_at(file, varied, n)?;
+            let start = Instant::now();
+            renderer.update(&scene)?;
+            let updated = start.elapsed().as_secs_f64() * 1e3;
+            let times = renderer.draw()?;
+            let counts = (device.pipelines_compiled(), renderer.rebuild_count());
+            rows.push(Row {
+                prepare_ms: updated + times.prepare_ms,
+                gpu_ms: times.gpu_ms,
+                frame_ms: times.frame_ms,
+                compiled: counts.0 - compiled,
+                rebuilt: counts.1 - rebuilt,
+            });
+            (compiled, rebuilt) = counts;
+            if let Some(folder) = &self.output {
+                frame::write_png(&renderer.read()?, folder.join(format!("frame-{n:04}.png")))?;
+            }
+            progress.report(n as usize + 1, self.frames as usize);
+        }
+        Ok(rows)
+    }
+
+    fn scene_at(&self, file: &mut SceneFile, varied: &[Vary], n: u32) -> Result<Scene> {
+        let last = (self.frames - 1).max(1);
+        let part = f64::from(n) / f64::from(last);
+        let mut sets = self.drawing.set.clone();
+        sets.extend(varied.iter().map(|v| v.at(part)));
+        let mut scene = file.scene(&sets)?;
+        if let Some(turn) = self.turn {
+            // The last frame is one step before the first comes again.
+            let angle = (turn * f64::from(n) / f64::from(self.frames)).to_radians();
+            let camera = &mut scene.camera;
+            let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
+            camera.eye = camera.target + about * (camera.eye - camera.target);
+        }
+        Ok(scene)
+    }
+
+    fn tell(&self, device: &Device, rows: &[Row]) {
+        if self.drawing.quiet {
+            return;
+        }
+        let report = device.report();
+        output::note(&format!(
+            "device: {} ({}), driver {}",
+            report.name, report.kind, report.driver
+        ));
+        let whole = |r: &Row| r.prepare_ms + r.frame_ms;
+        let settled = &rows[rows.len().min(10)..];
+        let mut all: Vec<f64> = (if settled.is_empty() { rows } else { settled })
+            .iter()
+            .map(whole)
+            .collect();
+        all.sort_by(f64::total_cmp);
+        let (median, most) = (all[all.len() / 2], all[all.len() - 1]);
+        let late: u64 = settled.iter().map(|r| r.compiled).sum();
+        let compiled: u64 = rows.iter().map(|r| r.compiled).sum();
+        let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
+        output::result(&format!(
+            "{} frames: median {median:.2} ms, slowest after the tenth {most:.2} ms ({:.2} of the median); {compiled} pipelines compiled, {late} of them after the tenth; {rebuilt} surfaces made",
+            rows.len(),
+            most / median,
+        ));
+    }
+}
+
+impl Vary {
+    fn parse(text: &str) -> Result<Self> {
+        let wrong = |what: &str| {
+            usage(
+                "--vary",
+                &format!("{text:?} {what}; write KEY=FROM:TO, as in object.0.extend=0:0.1"),
+            )
+        };
+        let (key, range) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("names no values"))?;
+        let (from, to) = range
+            .split_once(':')
+            .ok_or_else(|| wrong("has no second value"))?;
+        let list = from.trim().starts_with('[');
+        let numbers = |text: &str| {
+            let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
+            let parsed: Option<Vec<f64>> = inner
+                .split(',')
+                .map(|n| n.trim().parse::<f64>().ok())
+                .collect();
+            parsed
+                .filter(|all| all.iter().all(|n| n.is_finite()))
+                .ok_or_else(|| wrong("holds what is no number"))
+        };
+        let (from, to) = (numbers(from)?, numbers(to)?);
+        if from.len() != to.len() {
+            return Err(wrong("has lists of two lengths"));
+        }
+        Ok(Self {
+            key: key.trim().to_owned(),
+            from,
+            to,
+            list,
+        })
+    }
+
+    /// The assignment at `part` of the way, 0 to 1.
+    fn at(&self, part: f64) -> String {
+        let values: Vec<String> = self
+            .from
+            .iter()
+            .zip(&self.to)
+            .map(|(a, b)| format!("{:?}", a + (b - a) * part))
+            .collect();
+        let joined = values.join(", ");
+        if self.list {
+            format!("{}=[{joined}]", self.key)
+        } else {
+            format!("{}={joined}", self.key)
+        }
+    }
+}
+
+fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
+    frame::beside::write_beside(Stage::Frame, path, |out| {
+        let mut text =
+            String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
+        for (n, row) in rows.iter().enumerate() {
+            let gpu = row.gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
+            text += &format!(
+                "{n},{:.4},{gpu},{:.4},{},{}\n",
+                row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
+            );
+        }
+        out.write_all(text.as_bytes())
+            .map_err(|e| Error::new(Stage::Frame, format!("cannot be written: {e}")))
+    })
+}
+
+fn usage(option: &str, message: &str) -> Error {
+    Error::new(Stage::Usage, message).at_key(option)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn keys_move_from_value_to_value() {
+        let one = Vary::parse("object.0.extend=0:0.1").unwrap();
+        assert_eq!(one.at(0.5), "object.0.extend=0.05");
+        let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
+        assert_eq!(three.at(0.0), "camera.eye=[1.0, 2.0, -3.0]");
+        for bad in ["a", "a=1", "a=1:b", "a=[1,2]:3", "a=nan:1"] {
+            assert_eq!(Vary::parse(bad).err().unwrap().stage, Stage::Usage, "{bad}");
+        }
+    }
+}
