@@ -25,7 +25,8 @@ const AROUND: f64 = 3.0 / 512.0;
 /// Vertices are shared where the normals on both sides differ by less. The error is half of that.
 /// Without sharing a fine mesh takes a tenth more time (llvmpipe).
 const SHARED: f64 = 4.0 * std::f64::consts::PI / 180.0;
-/// The least and the largest tolerance, object units: points nearer to a line are on it, and what is farther is another shape.
+/// The least and the largest tolerance, object units: points nearer to a line are on it, and what
+/// is farther is another shape.
 const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 
 /// All chains, in at most `most` chords together if corners allow.
@@ -48,7 +49,8 @@ pub(super) fn meridian(contour: &Contour, most: usize) -> Vec<Strand> {
     lines.iter().map(|l| l.strand(high)).collect()
 }
 
-/// A chain from its first point to its last; a closed one begins, and ends, at a crease if it has any.
+/// A chain from its first point to its last; a closed one begins, and ends, at a crease if it has
+/// any.
 struct Line {
     points: Vec<DVec2>,
     /// Outward normals of the segments: segment `k` runs from point `k` on.
@@ -104,7 +106,8 @@ impl Line {
     }
 
     /// The farthest point up to `end` such that all between lie within the tolerance of the line to
-    /// it: the directions that meet the discs about all points so far are an interval (Imai and Iri).
+    /// it: the directions that meet the discs about all points so far are an interval (Imai and
+    /// Iri).
     fn reach(&self, from: usize, end: usize, tolerance: f64) -> usize {
         let start = self.points[from];
         let ahead = self.points[from + 1] - start;
@@ -171,8 +174,8 @@ impl Line {
         }
     }
 
-    /// The chord between two points, with the normals that are nearest to the contour's if they turn
-    /// evenly along it: least squares of the angle over the length.
+    /// The chord between two points, with the normals that are nearest to the contour's if they
+    /// turn evenly along it: least squares of the angle over the length.
     fn chord(&self, a: usize, b: usize) -> Chord {
         let first = self.normals[a];
         let (mut length, mut moments, mut angle) = (0.0, [0.0; 2], 0.0);
@@ -195,7 +198,8 @@ impl Line {
         }
     }
 
-    /// How far the contour lies outside the chord between two of its points, at most; negative inside.
+    /// How far the contour lies outside the chord between two of its points, at most; negative
+    /// inside.
     fn bulge(&self, a: usize, b: usize) -> f64 {
         let (start, chord) = (self.points[a], self.points[b] - self.points[a]);
         let outward = -chord.perp().normalize_or_zero();
@@ -231,7 +235,8 @@ fn joined(before: Chord, after: Chord) -> [DVec2; 2] {
     }
 }
 
-/// The normal of a chord that ends on the axis: along it where the surface is smooth there, else a cone's.
+/// The normal of a chord that ends on the axis: along it where the surface is smooth there, else a
+/// cone's.
 fn pole(normal: DVec2) -> DVec2 {
     if turns(normal, DVec2::new(-normal.x, normal.y)) {
         normal

@@ -98,8 +98,8 @@ impl Mesh {
         self.vertices = sorted;
     }
 
-    /// The index at which the band a quarter turn before `azimuth` begins. From there on, what faces
-    /// an eye in that direction comes first.
+    /// The index at which the band a quarter turn before `azimuth` begins. From there on, what
+    /// faces an eye in that direction comes first.
     #[must_use]
     pub fn start(&self, azimuth: f64) -> u32 {
         let turns = ((azimuth - 0.5 * PI) / TAU).rem_euclid(1.0);
