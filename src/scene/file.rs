@@ -184,6 +184,18 @@ impl SceneFile {
         })
     }
 
+    /// Every file that was read for its scenes.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let reader = &self.reader;
+        let profiles = reader.profiles.keys().map(|(file, _)| file);
+        profiles
+            .chain(reader.color_maps.keys())
+            .chain(reader.height_maps.keys())
+            .chain(&reader.instances)
+            .chain(&self.file)
+            .map(PathBuf::as_path)
+    }
+
     /// The scene, with each of `sets` (`key=value`, as in [`load`]) in place of what the file says.
     ///
     /// # Errors
@@ -224,6 +236,7 @@ struct Reader {
     polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
     height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
+    instances: Vec<PathBuf>,
 }
 
 /// [`ProfileAxis`] as a part of a table's key: whether it is the middle.
@@ -237,6 +250,7 @@ impl Reader {
             polygons: Vec::new(),
             color_maps: HashMap::new(),
             height_maps: HashMap::new(),
+            instances: Vec::new(),
         }
     }
 
@@ -279,6 +293,9 @@ impl Reader {
         object.placement = placement(&keys)?;
         if let Some(file) = keys.file("instances", &self.folder)? {
             object.instances = instances::load(&file)?;
+            if !self.instances.contains(&file) {
+                self.instances.push(file);
+            }
         }
         Ok(object)
     }

@@ -91,6 +91,9 @@ impl Animate {
             .collect::<Result<Vec<_>>>()?;
         let mut file = SceneFile::open(&self.scene)?;
         let first = self.scene_at(&mut file, &varied, 0)?;
+        let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
+        written.extend((0..self.frames).filter_map(|n| self.picture(n)));
+        output::spare(file.files(), &written, "--output")?;
         let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
         let progress = Progress::start(
             &format!("drawing on {}", device.report().name),
@@ -136,12 +139,18 @@ impl Animate {
                 rebuilt: counts.1 - rebuilt,
             });
             (compiled, rebuilt) = counts;
-            if let Some(folder) = &self.output {
-                frame::write_png(&renderer.read()?, folder.join(format!("frame-{n:04}.png")))?;
+            if let Some(picture) = self.picture(n) {
+                frame::write_png(&renderer.read()?, picture)?;
             }
             progress.report(n as usize + 1, self.frames as usize);
         }
         Ok(rows)
+    }
+
+    /// Where frame `n` goes, if anywhere.
+    fn picture(&self, n: u32) -> Option<PathBuf> {
+        let folder = self.output.as_ref()?;
+        Some(folder.join(format!("frame-{n:04}.png")))
     }
 
     fn scene_at(&self, file: &mut SceneFile, varied: &[Vary], n: u32) -> Result<Scene> {

@@ -56,6 +56,29 @@ pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]
     Ok(())
 }
 
+/// Refuses to write any of `files` over what was read.
+///
+/// # Errors
+/// [`Stage::Usage`], naming the file.
+pub fn spare<'a>(
+    inputs: impl Iterator<Item = &'a Path>,
+    files: &[PathBuf],
+    option: &str,
+) -> Result<()> {
+    let inputs: Vec<_> = inputs
+        .filter_map(|input| input.canonicalize().ok())
+        .collect();
+    let over = |file: &&PathBuf| file.canonicalize().is_ok_and(|file| inputs.contains(&file));
+    match files.iter().find(over) {
+        None => Ok(()),
+        Some(file) => Err(
+            Error::new(Stage::Usage, "is read as well; write to another file")
+                .in_file(file)
+                .at_key(option),
+        ),
+    }
+}
+
 /// Whether `file` ends in `.ending`, in any case.
 pub fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension()

@@ -39,7 +39,9 @@ impl Render {
     pub fn run(self) -> Result<()> {
         output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
         let begin = Instant::now();
-        let scene = SceneFile::open(&self.scene)?.scene(&self.drawing.set)?;
+        let mut file = SceneFile::open(&self.scene)?;
+        let scene = file.scene(&self.drawing.set)?;
+        output::spare(file.files(), &self.output, "--output")?;
         let loading = milliseconds(begin);
         let floats = self
             .output
