@@ -459,6 +459,7 @@ fn memory_stays_flat() {
     }
     assert_eq!(early, Some(taken()));
     assert_eq!(few.rebuild_count(), 10_001);
+    stage.wait().unwrap();
     drop((few, stage));
     drop(device);
     assert_silent(&host);
