@@ -2,13 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation a tile of GROUP_PIXELS^2: lists the tiles whose rays may meet the solid, and between which t. The list's length becomes the
 // number of work groups of the dispatch that follows.
-#include "include/beams.glsl"
-#include "include/piece_tables.glsl"
+#include "stage/beams.glsl"
+#include "core/piece_tables.glsl"
 
 void main()
 {
-    frame = frame_block;
-    solid = batch_solid;
+    take_frame();
+    take_solid();
     PixelRays rays = pixel_rays(solid.single);
     uvec2 tile = uvec2(pushed.corner & 0xffffu, pushed.corner >> 16) + gl_GlobalInvocationID.xy;
     vec2 middle = (vec2(tile) + 0.5) * float(GROUP_PIXELS) - 0.5;

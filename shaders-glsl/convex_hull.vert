@@ -1,18 +1,18 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // The convex hull of each instance, for searches on the map: fragments are where rays enter it.
-#include "include/vertex.glsl"
-#include "include/box_varyings.glsl"
-#include "include/bands.glsl"
+#include "stage/vertex.glsl"
+#include "stage/box_varyings.glsl"
+#include "stage/bands.glsl"
 
 void main()
 {
-    frame = frame_block;
-    solid = batch_solid;
-    Instance i = batch_instance(gl_InstanceIndex);
+    Instance i = begin();
     gl_Position = frame.clip_from_world * vec4(point_to_world(i, band_corner(this_band())), 1.0);
     // Its corners stand out of the box, beyond which the far plane may be; no fragment takes its depth from here.
-    gl_Position.z = min(gl_Position.z, gl_Position.w);
-    hand_over(i, gl_InstanceIndex, 0.0);
+    float sense = frame.forward.w;
+    float far = (1.0 - frame.ambient.w) * gl_Position.w;
+    gl_Position.z = sense * min(sense * gl_Position.z, sense * far);
+    hand_over(i, 1.0, frame.dir_00.w);
     hand_over_box();
 }

@@ -80,6 +80,6 @@ pub mod pieces;
 pub mod profile;
 pub mod scene;
 pub mod settings;
-pub mod shader;
+mod shader;
 
 pub use error::{Error, Result};

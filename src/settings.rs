@@ -142,6 +142,11 @@ impl FromStr for Solver {
 pub enum Planes {
     /// Colour alone, 8-bit sRGB.
     Color,
+    /// Depth alone, for shadow maps; `parallel`: along parallel rays, as a directional light sees. In a host's pass only.
+    Depth {
+        /// Whether views are parallel.
+        parallel: bool,
+    },
     /// Everything a [`Frame`](crate::frame::Frame) holds, in 32-bit floats.
     All,
 }

@@ -9,6 +9,7 @@ use crate::maps::MapFormat;
 use crate::scene::{Lighting, Object, Offset, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
+use crate::shader::is_beveled;
 use glam::DVec3;
 
 /// The largest offset that the surface takes in the box.
@@ -63,6 +64,7 @@ pub(crate) fn solid_block(
     instances: &std::ops::Range<u32>,
     shadow_map: u32,
     solver: Solver,
+    settings: &SearchSettings,
 ) -> SolidBlock {
     let texel = 1.0 / f64::from(map.rows);
     let width = largest_width(&object.offset);
@@ -80,6 +82,11 @@ pub(crate) fn solid_block(
     #[allow(clippy::cast_possible_truncation)]
     let f = |v: f64| v as f32;
     let look = &object.texturing;
+    let beveled = is_beveled(object);
+    let steps = settings
+        .max_steps
+        .unwrap_or_else(|| solver.default_steps(beveled))
+        .max(1);
     let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
     SolidBlock {
         #[allow(clippy::cast_precision_loss)] // at most 16384
@@ -92,9 +99,12 @@ pub(crate) fn solid_block(
         ],
         offset: [
             f(object.offset.extend),
-            f(object.offset.bevel),
+            if beveled { f(object.offset.bevel) } else { 0.0 },
             f(object.offset.chamfer),
-            f(width),
+            #[allow(clippy::cast_precision_loss)] // at most 65536
+            {
+                steps as f32
+            },
         ],
         axis: [f(x), f(y), f(1.0 / arc_length), 0.0],
         albedo: [object.color[0], object.color[1], object.color[2], 1.0],

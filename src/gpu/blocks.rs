@@ -27,9 +27,9 @@ pub struct FrameBlock {
     pub dir_x: [f32; 4],
     /// Its change from row to row; w: see `dir_x`.
     pub dir_y: [f32; 4],
-    /// Unit.
+    /// Unit; w: 1 where depth grows away from the eye, -1 where it falls.
     pub forward: [f32; 4],
-    /// Linear RGB.
+    /// Linear RGB; w: depth value of the near plane.
     pub ambient: [f32; 4],
     /// Width, height, number of lights, unused.
     pub size: [u32; 4],
@@ -57,7 +57,7 @@ pub struct SolidBlock {
     pub map: [f32; 4],
     /// `R`, clip radius about the axis, clip z low and high.
     pub bounds: [f32; 4],
-    /// `e`, `b`, `c`, largest `w`.
+    /// `e`, `b`, `c`; bound of the search's steps.
     pub offset: [f32; 4],
     /// Where the axis stands, object units from the middle of the box; 1 / length of the outline.
     pub axis: [f32; 4],

@@ -100,7 +100,8 @@ pub(crate) fn bands(
     let eyes: Vec<DVec2> = sampled
         .map(|copy| flat(seen_from(object, copy, view).0))
         .collect();
-    let bands = if eyes.len() == copies.len() {
+    // Parallel rays come from everywhere.
+    let bands = if eyes.len() == copies.len() && !view.parallel {
         hull.seen_from(&eyes)
     } else {
         std::iter::once(0..hull.bands.len() as u32).collect()
@@ -109,7 +110,7 @@ pub(crate) fn bands(
     if covered < u64::from(least_pixels) * (drawn * count) as u64 {
         return None;
     }
-    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view.near);
+    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view);
     copies.iter().all(seen).then_some(bands)
 }
 
@@ -119,14 +120,15 @@ fn flat(p: DVec3) -> DVec2 {
 }
 
 /// Whether a copy's shells are all in front of the near plane, and the eye in none of them.
-fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), near: f64) -> bool {
+fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), view: &View) -> bool {
     let aside = forward.truncate().length();
     let margin = CLEARANCE * forward.length();
     let ahead = hull.extents.iter().all(|&[_, r, low, high]| {
         let lowest = (forward.z * (low - eye.z)).min(forward.z * (high - eye.z));
-        lowest - forward.truncate().dot(eye.truncate()) - r * aside >= near + margin
+        lowest - forward.truncate().dot(eye.truncate()) - r * aside >= view.near + margin
     });
-    ahead && hull.clear_of(flat(eye), CLEARANCE)
+    // Parallel rays begin in the near plane, which all is in front of.
+    ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }
 
 /// A hull's bands in the layout of `hull.vert`.

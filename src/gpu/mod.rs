@@ -7,8 +7,7 @@
 mod arena;
 mod bins;
 mod block;
-#[doc(hidden)]
-pub mod blocks;
+pub(crate) mod blocks;
 mod buffers;
 mod call;
 mod clock;
@@ -24,6 +23,7 @@ mod output;
 mod pipelines;
 mod plan;
 mod prepare;
+mod prewarm;
 mod read_back;
 mod record;
 mod refresh;
@@ -47,6 +47,7 @@ pub use instance::VALIDATION_VARIABLE;
 pub use offscreen::{Guest, Offscreen, Times};
 pub use output::{DepthOrder, Output, PassFormats, PassKind};
 pub use plan::DrawPath;
+pub use prewarm::Prewarm;
 pub use renderer::{ObjectId, Renderer};
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
 pub use requirements::Requirements;

@@ -11,7 +11,7 @@ use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Object, Scene};
-use crate::settings::{DrawStage, SearchSettings, Settings};
+use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
 use glam::DVec3;
 use std::sync::Arc;
@@ -88,6 +88,10 @@ impl Offscreen {
         settings: &Settings,
         guests_only: bool,
     ) -> Result<Self> {
+        if matches!(settings.planes, Planes::Depth { .. }) {
+            let message = "depth alone is drawn in a host's pass; give color or all";
+            return Err(Error::new(Stage::Usage, message));
+        }
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
         let size = (settings.width, settings.height);
@@ -186,6 +190,14 @@ impl Offscreen {
             }
         }
         result
+    }
+
+    /// Compiles every pipeline that updates can come to need, as long as no object's technique changes ([`Renderer::prewarm`]).
+    ///
+    /// # Errors
+    /// Of Vulkan ([`Stage::Draw`]).
+    pub fn prewarm(&mut self) -> Result<()> {
+        self.renderer.prewarm()?.compile()
     }
 
     /// Draws one frame and waits for it.

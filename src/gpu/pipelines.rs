@@ -6,26 +6,11 @@ use super::render_pass::{color_formats, render_pass};
 use crate::error::{Error, Result, Stage};
 use crate::settings::Planes;
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::shader::{Variant, generated as spirv};
+use crate::shader::{Kind, Module, Variant, depth_less, words};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard};
-
-/// What a pipeline draws with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Kind {
-    /// Shape boxes, rasterised.
-    Box,
-    /// Hulls of pieces, rasterised.
-    Hull,
-    /// Convex hulls, in which fragments search as in boxes.
-    ConvexHull,
-    /// Bins of pixels.
-    Compute,
-    /// The list of tiles that an object's rays may meet.
-    Beams,
-}
 
 /// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
@@ -45,8 +30,7 @@ pub(crate) struct Pipelines {
 
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
-    /// None of beams, which read no constant.
-    variant: Option<Variant>,
+    variant: Variant,
     kind: Kind,
     output: Output,
     /// The renderer whose host's pass it is for; 0 where all may share it.
@@ -138,7 +122,7 @@ impl Pipelines {
         owner: u64,
     ) -> Result<vk::Pipeline> {
         let key = Key {
-            variant: (kind != Kind::Beams).then_some(variant),
+            variant,
             kind,
             output: output.clone(),
             owner,
@@ -254,29 +238,32 @@ impl Pipelines {
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
-        match (kind, output) {
-            (Kind::Beams, _) => self.compute(spirv::BEAM_COMP, &vk::SpecializationInfo::default()),
-            (Kind::Compute, _) => {
-                let words = match output.planes() {
-                    Planes::Color => spirv::TRACE_COLOR_COMP,
-                    Planes::All => spirv::TRACE_PLANES_COMP,
-                };
-                self.compute(words, &specialization)
+        let module = variant.module(kind);
+        match (variant.vertices(kind), output) {
+            (None, _) => self.compute(&module, &specialization),
+            (Some(vertices), Output::Pass(pass)) => {
+                self.graphics(kind, pass, [&vertices, &module], &specialization)
             }
-            (_, Output::Pass(pass)) => self.graphics(kind, pass, &specialization),
-            (_, Output::Compute(_)) => Err(Error::new(
+            (Some(_), Output::Compute(_)) => Err(Error::new(
                 Stage::Draw,
                 "fragments are drawn in a pass, not in compute",
             )),
         }
     }
 
-    fn module(&self, words: &[u32]) -> Result<Module<'_>> {
-        let info = vk::ShaderModuleCreateInfo::default().code(words);
+    fn module(&self, module: &Module, order: DepthOrder) -> Result<ShaderModule<'_>> {
+        let Some(mut words) = words(module) else {
+            let name = module.name();
+            return Err(Error::new(Stage::Draw, format!("no shader is {name}")));
+        };
+        if order == DepthOrder::Reversed {
+            words = depth_less(&words);
+        }
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
-        Ok(Module {
+        Ok(ShaderModule {
             raw,
             device: &self.raw,
         })
@@ -284,10 +271,10 @@ impl Pipelines {
 
     fn compute(
         &self,
-        words: &[u32],
+        module: &Module,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let module = self.module(words)?;
+        let module = self.module(module, DepthOrder::Normal)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
             .layout(self.layout);
@@ -300,30 +287,12 @@ impl Pipelines {
         &self,
         kind: Kind,
         pass: &PassFormats,
+        modules: [&Module; 2],
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let (vertex, color, planes) = match kind {
-            Kind::Hull => (
-                spirv::HULL_VERT,
-                spirv::HULL_COLOR_FRAG,
-                spirv::HULL_PLANES_FRAG,
-            ),
-            Kind::ConvexHull => (
-                spirv::CONVEX_HULL_VERT,
-                spirv::SHAPE_BOX_COLOR_FRAG,
-                spirv::SHAPE_BOX_PLANES_FRAG,
-            ),
-            _ => (
-                spirv::SHAPE_BOX_VERT,
-                spirv::SHAPE_BOX_COLOR_FRAG,
-                spirv::SHAPE_BOX_PLANES_FRAG,
-            ),
-        };
-        let vertex = self.module(vertex)?;
-        let fragment = self.module(match pass.planes {
-            Planes::Color => color,
-            Planes::All => planes,
-        })?;
+        let [vertex, fragment] = modules;
+        let vertex = self.module(vertex, DepthOrder::Normal)?;
+        let fragment = self.module(fragment, pass.depth)?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
@@ -434,12 +403,12 @@ fn first(
         .call(name)
 }
 
-struct Module<'a> {
+struct ShaderModule<'a> {
     raw: vk::ShaderModule,
     device: &'a ash::Device,
 }
 
-impl Module<'_> {
+impl ShaderModule<'_> {
     fn stage<'i>(
         &self,
         stage: vk::ShaderStageFlags,
@@ -453,7 +422,7 @@ impl Module<'_> {
     }
 }
 
-impl Drop for Module<'_> {
+impl Drop for ShaderModule<'_> {
     fn drop(&mut self) {
         // SAFETY: pipelines made of a module do not need it afterwards.
         unsafe { self.device.destroy_shader_module(self.raw, None) };

@@ -5,16 +5,18 @@ use super::blocks::{InstanceBlock, SolidBlock};
 use super::buffers::{indices, write_slice};
 use super::hulls;
 use super::output::Output;
-use super::pipelines::Kind;
 use super::plan::{Lists, Planner, Work};
 use super::renderer::{Entry, Renderer};
-use super::surface::Part;
+use super::surface::{OffsetSurface, Part};
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::scene::Shadow;
+use crate::settings::{Planes, SearchSettings};
 use crate::shader::generated::PIECE_VECTORS;
+use crate::shader::{Dispatch, Kind, Variant};
 use ash::vk;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// From so many objects on they are planned on all cores.
 const MANY: usize = 256;
@@ -67,6 +69,12 @@ impl Renderer {
         if view.order != self.output.depth_order() {
             return usage("the view's depth order is not the output's; give both the same".into());
         }
+        let parallel = self.output.planes() == Planes::Depth { parallel: true };
+        if view.parallel != parallel {
+            return usage(
+                "parallel views go with an output of parallel depths, and no others".into(),
+            );
+        }
         if matches!(self.output, Output::Compute(_)) && self.target.is_none() {
             return usage("compute has no target yet; set one".into());
         }
@@ -100,8 +108,8 @@ impl Renderer {
         } else {
             self.plan_compute(view, &numbers)?
         };
-        for (place, (number, work)) in numbers.into_iter().zip(planned).enumerate() {
-            self.apply(number, place, work)?;
+        for (number, work) in numbers.into_iter().zip(planned) {
+            self.apply(number, work)?;
         }
         Ok(())
     }
@@ -160,9 +168,9 @@ impl Renderer {
         Ok(planned)
     }
 
-    /// Gives an entry the pipeline and the tables that its work asks for; `place` is its own among all, in compute.
-    fn apply(&mut self, number: u32, place: usize, work: Work) -> Result<()> {
-        let last = self.order.len().saturating_sub(1);
+    /// Gives an entry the pipeline and the tables that its work asks for.
+    fn apply(&mut self, number: u32, work: Work) -> Result<()> {
+        let several = self.order.len() > 1;
         let casts = self.lighting.shadow != Shadow::Off;
         let Some(entry) = &mut self.entries[number as usize] else {
             return Ok(());
@@ -171,36 +179,42 @@ impl Renderer {
             entry.draw.work = None;
             return Ok(());
         };
-        let mut variant = prepared.variant;
-        variant.single = u32::from(entry.object.placements().len() == 1);
+        let variant = prepared.variant;
         let (mut bands, mut tables) = (None, prepared.surface.as_ref());
-        let kind = match &work {
+        let large = |surface: Option<&Arc<OffsetSurface>>| {
+            surface.is_some_and(|s| s.tables().own > PIECE_VECTORS as usize)
+        };
+        let (kind, variant) = match &work {
             Work::Hull(_) => {
                 bands = prepared.wrapped.as_ref();
                 if bands.is_some_and(|s| s.is_boundary()) {
                     // A hull's own fragments read none of the tree; shadows' rays do.
                     tables = tables.filter(|_| casts);
-                    variant.tests = bands.map_or(0, |s| s.hull().hull.tests());
-                    Kind::Hull
+                    (Kind::Hull, variant.in_shell())
                 } else {
-                    variant.ahead = 1;
-                    Kind::ConvexHull
+                    (Kind::ConvexHull, variant)
                 }
             }
-            Work::Box => Kind::Box,
-            _ => Kind::Compute,
-        };
-        if kind == Kind::Compute {
-            let mut several = false;
-            if let Work::Beams(copies) = &work {
-                (variant.ahead, variant.single) = (1, 1);
-                several = copies.len() > 1;
+            Work::Box => (Kind::Box, variant.with_tables(!large(tables))),
+            Work::Beams(copies) => {
+                let variant = variant.with_tables(!large(tables));
                 // Of an envelope beams alone read something.
                 tables = tables.or(prepared.wrapped.as_ref());
+                let several = several || copies.len() > 1;
+                (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
             }
-            variant.depth_test = u32::from(place > 0 || several);
-            variant.depth_keep = u32::from(place < last || several);
-        }
+            Work::Bins(_) | Work::Nothing if entry.object.placements().len() > 1 => {
+                let variant = variant.with_tables(!large(tables));
+                (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
+            }
+            Work::Rectangle(_) | Work::Bins(_) | Work::Nothing => {
+                let variant = variant.with_tables(!large(tables));
+                (
+                    Kind::Compute,
+                    variant.dispatched(Dispatch::Rectangle, several),
+                )
+            }
+        };
         let mut replaced = Vec::new();
         let mut put = |surface: Option<&_>, part| match surface {
             Some(surface) => self.arena.place(surface, part).map(|(begin, old)| {
@@ -211,9 +225,6 @@ impl Renderer {
         };
         let bands_at = put(bands, Part::Bands)?;
         let tables_at = put(tables, Part::Tables)?;
-        if let Some(surface) = tables {
-            variant.own_tables = u32::from(surface.tables().own <= PIECE_VECTORS as usize);
-        }
         let most = bands.map_or(0, |s| s.hull().hull.bands.len());
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
@@ -222,7 +233,7 @@ impl Renderer {
         }
         if matches!(work, Work::Beams(_)) && entry.draw.list == vk::Pipeline::null() {
             let pipelines = self.device.pipelines()?;
-            entry.draw.list = pipelines.get(variant, Kind::Beams, &self.output, self.owner)?;
+            entry.draw.list = pipelines.get(Variant::BEAM, Kind::Beam, &self.output, self.owner)?;
         }
         entry.draw.bands = bands_at.unwrap_or(0);
         entry.draw.tables = tables_at.unwrap_or(0);
@@ -268,7 +279,9 @@ impl Renderer {
                 continue;
             };
             entry.stale &= !bit;
-            let Some(block) = entry.block() else { continue };
+            let Some(block) = entry.block(&self.settings) else {
+                continue;
+            };
             to.write_block(number, &block)?;
             let placed: Vec<InstanceBlock> = entry
                 .object
@@ -284,7 +297,7 @@ impl Renderer {
                 let all: Vec<SolidBlock> = self
                     .order
                     .iter()
-                    .filter_map(|&n| self.entries[n as usize].as_ref()?.block())
+                    .filter_map(|&n| self.entries[n as usize].as_ref()?.block(&self.settings))
                     .collect();
                 to.write_shadows(&all)?;
             }
@@ -296,7 +309,7 @@ impl Renderer {
                         continue;
                     };
                     if let (Some(Work::Beams(copies)), Some(mut block)) =
-                        (&entry.draw.work, entry.block())
+                        (&entry.draw.work, entry.block(&self.settings))
                     {
                         for tiles in copies {
                             let Some(number) = tiles.block else { continue };
@@ -317,11 +330,19 @@ impl Renderer {
 
 impl Entry {
     /// What shaders read of it; none before it is prepared.
-    fn block(&self) -> Option<SolidBlock> {
+    fn block(&self, settings: &SearchSettings) -> Option<SolidBlock> {
         let p = self.prepared.as_ref()?;
         let length = p.arc.as_ref().map_or(1.0, |a| a.length);
         let (instances, map) = (&self.instances, p.shadow_map);
-        let mut block = solid_block(&self.object, &p.facts, length, instances, map, p.solver);
+        let mut block = solid_block(
+            &self.object,
+            &p.facts,
+            length,
+            instances,
+            map,
+            p.solver,
+            settings,
+        );
         block.hull[0] = self.draw.bands;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {

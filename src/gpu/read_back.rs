@@ -32,6 +32,7 @@ pub(crate) fn frame(
                 ];
             }
         }
+        Planes::Depth { .. } => {}
         Planes::All => {
             let [color, normal, shading, albedo, words] = planes else {
                 return Ok(frame);

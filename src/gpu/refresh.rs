@@ -10,13 +10,13 @@ use crate::maps::envelope::SLACK;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{Object, Shadow};
 use crate::settings::Solver;
-use crate::shader::Variant;
 use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
+use crate::shader::{Met, Variant, is_beveled};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The search of what has no surface of its own: it reads the map alone.
-const FALLBACK: Solver = Solver::Live;
+pub(super) const FALLBACK: Solver = Solver::Live;
 
 /// What is known of a changed object before the device is touched.
 struct Resolved {
@@ -63,10 +63,10 @@ impl Renderer {
 
     fn take_over(&mut self, changed: &[u32]) -> Result<()> {
         let resolved = self.resolve(changed)?;
-        let falls_back = self.falls_back(&resolved);
-        if falls_back != self.all_fall_back {
-            self.all_fall_back = falls_back;
-            // Each is drawn by another search from now on.
+        let (falls_back, met) = (self.falls_back(&resolved), self.shadows_meet());
+        if falls_back != self.all_fall_back || met != self.met {
+            (self.all_fall_back, self.met) = (falls_back, met);
+            // Each is drawn by another code from now on.
             if changed.len() < self.order.len() {
                 let all = self.order.clone();
                 return self.take_over(&all);
@@ -197,6 +197,18 @@ impl Renderer {
             && (resolved.iter().any(|r| fails(&r.surface)) || self.order.iter().any(of_old))
     }
 
+    /// What shadows' rays may meet; nothing where there are none.
+    fn shadows_meet(&self) -> Met {
+        if self.lighting.shadow == Shadow::Off {
+            return Met::default();
+        }
+        let objects = || self.ordered().map(Entry::latest);
+        Met {
+            repeated: objects().any(|o| o.repeat != [1; 3]),
+            beveled: objects().any(is_beveled),
+        }
+    }
+
     fn solver_of(&self, surface: Option<&Arc<OffsetSurface>>) -> Solver {
         let fails = surface.is_some_and(|s| s.failure().is_some());
         if fails || (self.all_fall_back && surface.is_some()) {
@@ -300,7 +312,9 @@ impl Renderer {
             None
         };
         let wrapped = self.wrapped(object, solver, &solid, map.as_deref(), surface.as_ref())?;
-        let variant = Variant::new(&self.settings, solver, &self.lighting, object);
+        let planes = self.output.planes();
+        let (settings, lighting) = (&self.settings, &self.lighting);
+        let variant = Variant::new(settings, planes, solver, lighting, object, self.met);
         let shadow_map = map.as_ref().and_then(|map| {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)

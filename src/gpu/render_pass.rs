@@ -9,6 +9,7 @@ use ash::vk;
 pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
     match planes {
         Planes::Color => &[vk::Format::R8G8B8A8_SRGB],
+        Planes::Depth { .. } => &[],
         Planes::All => &[vk::Format::R32G32B32A32_SFLOAT; 4],
     }
 }

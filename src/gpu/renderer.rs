@@ -17,8 +17,8 @@ use super::uploads::Uploads;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::scene::{Lighting, Object, Offset, Placement};
-use crate::settings::{SearchSettings, Solver};
-use crate::shader::Variant;
+use crate::settings::{Planes, SearchSettings, Solver};
+use crate::shader::{Kind, Met, Variant};
 use ash::vk;
 use range_alloc::RangeAllocator;
 use std::any::Any;
@@ -58,6 +58,8 @@ pub struct Renderer {
     pub(super) unplanned: Vec<u32>,
     /// Whether every entry is drawn by the fallback, as one has no surface and shadows meet all by one search.
     pub(super) all_fall_back: bool,
+    /// What shadows' rays may meet.
+    pub(super) met: Met,
     pub(super) view: Option<View>,
     /// Instances of all entries, those free among them.
     pub(super) instances: RangeAllocator<u32>,
@@ -129,7 +131,7 @@ pub(super) struct Draw {
     /// The pipeline that lists tiles, where the work is of beams.
     pub list: vk::Pipeline,
     /// What the pipeline was compiled for.
-    pub key: Option<(Variant, super::pipelines::Kind)>,
+    pub key: Option<(Variant, Kind)>,
     pub tables_offset: u32,
     /// Vectors with which bands, tables begin.
     pub bands: u32,
@@ -164,6 +166,17 @@ impl Renderer {
                 pass.samples
             )));
         }
+        if matches!(output.planes(), Planes::Depth { .. }) {
+            let exact = matches!(
+                settings.solver,
+                Solver::Hull | Solver::Quadric | Solver::Live
+            );
+            if !exact || matches!(output, Output::Compute(_)) {
+                let message =
+                    "depth alone is drawn in a pass, by hull, quadric or live; give one of them";
+                return Err(usage(message.into()));
+            }
+        }
         let device = device.shared.clone();
         let mut uploads = Uploads::default();
         Ok(Self {
@@ -183,6 +196,7 @@ impl Renderer {
             changed: Vec::new(),
             unplanned: Vec::new(),
             all_fall_back: false,
+            met: Met::default(),
             view: None,
             instances: RangeAllocator::new(0..64),
             version: 1,

@@ -147,7 +147,7 @@ impl Target {
             let half = 4 * u64::from(self.width) * u64::from(self.height);
             let second = match self.planes {
                 Planes::Color => super::srgb::pack_srgb(background),
-                Planes::All => 0,
+                Planes::Depth { .. } | Planes::All => 0,
             };
             buffer_barrier(
                 &self.device,
@@ -336,6 +336,7 @@ fn clear_values(planes: Planes, background: [f32; 4]) -> Vec<vk::ClearColorValue
     let color = |float32| vk::ClearColorValue { float32 };
     match planes {
         Planes::Color => vec![color(background)],
+        Planes::Depth { .. } => Vec::new(),
         Planes::All => vec![
             color(background),
             color([0.0, 0.0, 0.0, f32::INFINITY]),

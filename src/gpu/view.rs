@@ -21,7 +21,8 @@ pub struct Viewport {
 /// An eye, the ray of every pixel, and the depth of every point.
 ///
 /// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j dir_y)`. Its direction is not
-/// normalised: `t` is the depth along `forward`, and the depth buffer holds `depth[0] + depth[1] / t`.
+/// normalised: `t` is the depth along `forward`, and the depth buffer holds `depth[0] + depth[1] / t`. A parallel view has
+/// rays `eye + i dir_x + j dir_y + t dir_00` instead, and depths `depth[0] + depth[1] t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub(crate) eye: DVec3,
@@ -35,6 +36,7 @@ pub struct View {
     pub(crate) near: f64,
     pub(crate) order: DepthOrder,
     pub(crate) viewport: Viewport,
+    pub(crate) parallel: bool,
 }
 
 impl View {
@@ -74,6 +76,7 @@ impl View {
             depth: [constant, factor],
             near,
             order: DepthOrder::Normal,
+            parallel: false,
             viewport: Viewport {
                 x: 0.0,
                 y: 0.0,
@@ -87,8 +90,8 @@ impl View {
     /// point to clip space. Jitter, off-centre frusta, infinite and reversed depth are what the projection says.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for a projection that is not of perspective, whose near plane is not at right angles to the view, or
-    /// that mirrors the picture; for an empty viewport; for numbers that are not finite.
+    /// [`Stage::Scene`] for a projection whose near plane is not at right angles to the view, or that mirrors the picture; for an
+    /// empty viewport; for numbers that are not finite.
     pub fn from_matrices(
         view: DMat4,
         projection: DMat4,
@@ -103,6 +106,10 @@ impl View {
             ));
         }
         let inverse = clip_from_world.inverse();
+        let w_row = clip_from_world.transpose().w_axis;
+        if w_row.truncate().length() < 1e-12 * w_row.w.abs() {
+            return Self::parallel(clip_from_world, viewport, order);
+        }
         let eye = view.inverse().w_axis;
         let eye = eye.truncate() / eye.w;
         let rows = clip_from_world.transpose();
@@ -155,6 +162,49 @@ impl View {
             near,
             order,
             viewport,
+            parallel: false,
+        })
+    }
+
+    /// The view of parallel rays that begin in the near plane; `t` counts from there.
+    fn parallel(clip_from_world: DMat4, viewport: Viewport, order: DepthOrder) -> Result<Self> {
+        let inverse = clip_from_world.inverse();
+        let (near_value, sense) = match order {
+            DepthOrder::Normal => (0.0, 1.0),
+            DepthOrder::Reversed => (1.0, -1.0),
+        };
+        let point = |x: f64, y: f64| {
+            let ndc_x = 2.0 * (x - viewport.x) / viewport.width - 1.0;
+            let ndc_y = 2.0 * (y - viewport.y) / viewport.height - 1.0;
+            let p = inverse * DVec4::new(ndc_x, ndc_y, near_value, 1.0);
+            p.truncate() / p.w
+        };
+        let eye = point(0.5, 0.5);
+        let (dir_x, dir_y) = (point(1.5, 0.5) - eye, point(0.5, 1.5) - eye);
+        let rows = clip_from_world.transpose();
+        let (z_row, w) = (rows.z_axis.truncate() / rows.w_axis.w, rows.w_axis.w);
+        let slope = z_row.length();
+        let forward = z_row * (sense / slope);
+        let turned = dir_x.cross(dir_y).dot(forward);
+        let level = dir_x.dot(forward).abs() + dir_y.dot(forward).abs();
+        let finite = eye.is_finite() && forward.is_finite() && w != 0.0;
+        if !finite || turned <= 0.0 || level > 1e-6 * (dir_x.length() + dir_y.length()) {
+            return Err(wrong(
+                "the parallel projection is oblique, mirrors, or is none; give one at right angles to the view, for this depth order",
+            ));
+        }
+        Ok(Self {
+            eye,
+            dir_00: forward,
+            dir_x,
+            dir_y,
+            forward,
+            clip_from_world,
+            depth: [near_value, sense * slope],
+            near: 0.0,
+            order,
+            viewport,
+            parallel: true,
         })
     }
 
@@ -179,14 +229,22 @@ impl View {
     /// The depth that a point at `t` has in the depth buffer.
     #[must_use]
     pub fn depth_at(&self, t: f64) -> f64 {
-        self.depth[0] + self.depth[1] / t
+        if self.parallel {
+            self.depth[0] + self.depth[1] * t
+        } else {
+            self.depth[0] + self.depth[1] / t
+        }
     }
 
     /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth along the view.
     pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
         let from_eye = world - self.eye;
         let depth = from_eye.dot(self.forward);
-        let beside = from_eye / depth - self.dir_00;
+        let beside = if self.parallel {
+            from_eye
+        } else {
+            from_eye / depth - self.dir_00
+        };
         let along = |d: DVec3| beside.dot(d) / d.length_squared() + 0.5;
         (DVec2::new(along(self.dir_x), along(self.dir_y)), depth)
     }

@@ -1,149 +1,333 @@
-//! The variant: everything a pipeline is specialised for, so that it holds one search and nothing else.
+//! The variant: everything a pipeline is made for, so that it holds one search and nothing that it does not use.
+//!
+//! What a parameter moves is data: no value of an offset, a light, a camera or a bound on steps makes another variant. What is left
+//! depends on an object's technique, and [`Variant::reachable`] lists all that can follow from it.
 
 use super::generated as g;
+use super::list::{Dispatch, Entry, Features, Module, Output, Search};
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
-use crate::settings::{SearchSettings, Solver};
+use crate::settings::{Planes, SearchSettings, Solver};
 
-/// The values of the specialisation constants of `variant.glsl`; also the key of a pipeline.
+/// What a pipeline draws with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Shape boxes, rasterised.
+    Box,
+    /// Hulls of pieces, rasterised.
+    Hull,
+    /// Convex hulls, in which fragments search as in boxes.
+    ConvexHull,
+    /// Pixels of the compute stage.
+    Compute,
+    /// The list of tiles that beams choose.
+    Beam,
+}
+
+/// What a shadow's ray may meet, which the code of the object that it left must do for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Met {
+    /// An object with replicas.
+    pub repeated: bool,
+    /// One with a bevel.
+    pub beveled: bool,
+}
+
+/// A module, and the values of its specialisation constants; with a [`Kind`] the key of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
-    /// One of `SOLVER_*`.
-    pub solver: u32,
-    /// One of `FORMAT_*`.
-    pub map_format: u32,
-    /// Bound of the search's loop.
-    pub max_steps: u32,
-    /// One of `OFFSET_*`.
-    pub offset: u32,
+    /// Which search finds hits.
+    pub search: Search,
+    /// What a solid may have besides its shape.
+    pub features: Features,
+    /// What is stored.
+    pub output: Output,
+    /// Of the compute stage.
+    pub dispatch: Dispatch,
     /// 1 where the box holds several replicas.
     pub cells: u32,
-    /// One of `PROJECTION_*`.
-    pub projection: u32,
+    /// One of `SHADOW_*`.
+    pub shadow: u32,
     /// 1 where colours come from a map.
     pub color_map: u32,
     /// One of `BUMP_*`.
     pub bump: u32,
-    /// One of `SHADOW_*`.
-    pub shadow: u32,
-    /// Number of lights.
-    pub lights: u32,
-    /// 1 where the batch's pieces fit into a uniform buffer.
-    pub own_tables: u32,
-    /// 1 where the batch is one instance.
-    pub single: u32,
-    /// 1 where beams say which tiles to trace and from where, or the fragments of a convex hull.
-    pub ahead: u32,
-    /// 0 where nothing was drawn before.
+    /// One of `PROJECTION_*`.
+    pub projection: u32,
+    /// One of `REFINEMENT_*`.
+    pub refinement: u32,
+    /// 0 where nothing was drawn before, of the compute stage.
     pub depth_test: u32,
-    /// 0 where nothing will be drawn after.
+    /// 0 where nothing will be drawn after, of the compute stage.
     pub depth_keep: u32,
-    /// Pieces of a hull's largest cell.
-    pub tests: u32,
+    /// 1 where there may be more than two lights.
+    pub more_lights: u32,
 }
 
 impl Variant {
-    /// The variant that draws `object` by `solver`.
+    /// The list of tiles.
+    pub const BEAM: Self = Self {
+        search: Search::None,
+        features: Features::Plain,
+        output: Output::Color,
+        dispatch: Dispatch::Rectangle,
+        cells: 0,
+        shadow: g::SHADOW_OFF,
+        color_map: 0,
+        bump: g::BUMP_OFF,
+        projection: g::PROJECTION_CYLINDRICAL,
+        refinement: g::REFINEMENT_NONE,
+        depth_test: 1,
+        depth_keep: 1,
+        more_lights: 0,
+    };
+
+    /// The variant that draws `object` by the search `solver`, which is that of the settings or stands in for it. Tables are taken to
+    /// fit into a uniform buffer; in compute the object is the only one and has one copy.
     #[must_use]
     pub fn new(
         settings: &SearchSettings,
+        planes: Planes,
         solver: Solver,
         lighting: &Lighting,
         object: &Object,
+        met: Met,
     ) -> Self {
-        let beveled = is_beveled(object);
-        // A ray towards a light meets every solid of the scene by the code of the one that it left: that code must do for all of
-        // them. The general forms are right for plain solids too.
-        let general = lighting.shadow != Shadow::Off;
         let texturing = &object.texturing;
-        Self {
-            solver: match solver {
-                Solver::Circle => g::SOLVER_CIRCLE,
-                Solver::Cone => g::SOLVER_CONE,
-                Solver::Relaxed => g::SOLVER_RELAXED,
-                Solver::Live => g::SOLVER_LIVE,
-                Solver::Quadric | Solver::Hull => g::SOLVER_QUADRIC,
-                Solver::Linear => g::SOLVER_LINEAR,
-                Solver::Relief => g::SOLVER_RELIEF,
-                Solver::Secant => g::SOLVER_SECANT,
-            },
-            map_format: match settings.map_format {
-                MapFormat::Rgba8 => g::FORMAT_RGBA8,
-                MapFormat::R16 | MapFormat::R32 => g::FORMAT_SIGNED,
-            },
-            max_steps: settings
-                .max_steps
-                .unwrap_or_else(|| solver.default_steps(beveled))
-                .max(1),
-            offset: if general {
-                g::OFFSET_BEVELED
-            } else {
-                offset_of(object)
-            },
-            cells: u32::from(general || object.repeat != [1; 3]),
+        let casts = lighting.shadow != Shadow::Off;
+        let cells = u32::from(object.repeat != [1; 3] || (casts && met.repeated));
+        let shadow = match lighting.shadow {
+            Shadow::Off => g::SHADOW_OFF,
+            Shadow::Hard => g::SHADOW_HARD,
+            Shadow::Soft => g::SHADOW_SOFT,
+        };
+        let color_map = u32::from(texturing.color_map.is_some());
+        let bump = match texturing.bump_form {
+            _ if texturing.displacement_map.is_none() => g::BUMP_OFF,
+            BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
+            BumpForm::Papers => g::BUMP_PAPERS,
+        };
+        let textured = color_map != 0 || bump != g::BUMP_OFF;
+        let features = if cells != 0 || shadow != g::SHADOW_OFF {
+            Features::Full
+        } else if textured {
+            Features::Textured
+        } else {
+            Features::Plain
+        };
+        let output = match planes {
+            Planes::Color | Planes::Depth { .. } => Output::Color,
+            Planes::All => Output::Planes,
+        };
+        let shaded = Self {
+            search: search(
+                settings,
+                solver,
+                is_beveled(object) || (casts && met.beveled),
+            ),
+            features,
+            output,
+            dispatch: Dispatch::Rectangle,
+            cells,
+            shadow,
+            color_map,
+            bump,
             projection: match texturing.projection {
+                // Nothing reads coordinates.
+                _ if !textured && output == Output::Color => g::PROJECTION_CYLINDRICAL,
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
                 Projection::Spherical => g::PROJECTION_SPHERICAL,
                 Projection::Arc => g::PROJECTION_ARC,
             },
-            color_map: u32::from(texturing.color_map.is_some()),
-            bump: match texturing.bump_form {
-                _ if texturing.displacement_map.is_none() || texturing.bump == 0.0 => g::BUMP_OFF,
-                BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
-                BumpForm::Papers => g::BUMP_PAPERS,
+            refinement: match solver {
+                Solver::Relief => g::REFINEMENT_HALVINGS,
+                Solver::Secant => g::REFINEMENT_SECANTS,
+                _ => g::REFINEMENT_NONE,
             },
-            lights: u32::try_from(lighting.lights.len()).unwrap_or(g::MAX_LIGHTS),
-            own_tables: 0,
-            single: 0,
-            ahead: 0,
             depth_test: 1,
             depth_keep: 1,
-            tests: g::HULL_TESTS,
-            shadow: match lighting.shadow {
-                Shadow::Off => g::SHADOW_OFF,
-                Shadow::Hard => g::SHADOW_HARD,
-                Shadow::Soft => g::SHADOW_SOFT,
+            // With shadows all are in one loop.
+            more_lights: u32::from(lighting.lights.len() > 2 && !casts),
+        };
+        match planes {
+            Planes::Depth { parallel } => shaded.depth_only(parallel),
+            _ => shaded,
+        }
+    }
+
+    /// The same in compute: how pixels are gone through, and whether depths are compared, as there are several dispatches.
+    #[must_use]
+    pub fn dispatched(self, dispatch: Dispatch, several: bool) -> Self {
+        Self {
+            dispatch,
+            depth_test: u32::from(several),
+            depth_keep: u32::from(several),
+            ..self
+        }
+    }
+
+    /// The same where the search's tables fit into a uniform buffer, or do not.
+    #[must_use]
+    pub fn with_tables(self, fit: bool) -> Self {
+        Self {
+            search: self.search.of_tables(fit),
+            ..self
+        }
+    }
+
+    /// The same in fragments of shells, which solve their pieces without tables.
+    #[must_use]
+    pub fn in_shell(self) -> Self {
+        self.with_tables(true)
+    }
+
+    /// Depth alone, as a shadow map wants it; `ortho`: along parallel rays. Of boxes and hulls.
+    #[must_use]
+    fn depth_only(self, ortho: bool) -> Self {
+        Self {
+            features: if self.cells == 0 {
+                Features::Plain
+            } else {
+                Features::Full
             },
+            output: if ortho {
+                Output::DepthOrtho
+            } else {
+                Output::Depth
+            },
+            cells: self.cells,
+            dispatch: Dispatch::Rectangle,
+            refinement: self.refinement,
+            search: self.search,
+            ..Self::BEAM
+        }
+    }
+
+    /// Every pipeline that an object drawn by this variant may come to be drawn by when parameters, lights, camera or placements
+    /// move; the one that it most likely is drawn by comes first. `compute`: none in a pass; else whether there are several
+    /// dispatches, and whether the object has several copies. `fallback`: what stands in where a contour does not close.
+    #[must_use]
+    pub fn reachable(
+        self,
+        solver: Solver,
+        wraps: bool,
+        compute: Option<[bool; 2]>,
+        fallback: Option<Self>,
+    ) -> Vec<(Self, Kind)> {
+        // The other form of searches that have two.
+        let other = |search| match search {
+            Search::Live => Some(Search::LiveBeveled),
+            Search::LiveBeveled if solver == Solver::Live => Some(Search::Live),
+            _ => None,
+        };
+        let twin = other(self.search).map(|search| Self { search, ..self });
+        let searched: Vec<Self> = std::iter::once(self).chain(twin).chain(fallback).collect();
+        let on_map = |v: &Self| matches!(v.search, Search::Live | Search::LiveBeveled);
+        let mut all = Vec::new();
+        if let Some([several, copies]) = compute {
+            for variant in searched {
+                let held =
+                    on_map(&variant) || (solver == Solver::Hull && variant.search.takes_beams());
+                if wraps && held {
+                    let beams = variant.dispatched(Dispatch::Beams, several || copies);
+                    all.extend([(beams, Kind::Compute), (Self::BEAM, Kind::Beam)]);
+                }
+                let dispatch = if copies {
+                    Dispatch::Bins
+                } else {
+                    Dispatch::Rectangle
+                };
+                all.push((variant.dispatched(dispatch, several), Kind::Compute));
+            }
+        } else {
+            if wraps && solver == Solver::Hull {
+                all.push((self.in_shell(), Kind::Hull));
+            }
+            for variant in searched {
+                if wraps && on_map(&variant) {
+                    all.push((variant, Kind::ConvexHull));
+                }
+                all.push((variant, Kind::Box));
+            }
+        }
+        if self.shadow == g::SHADOW_OFF {
+            let lit = all.iter().filter(|(_, kind)| *kind != Kind::Beam);
+            let more_lights = 1 - self.more_lights;
+            let more: Vec<_> = lit
+                .map(|&(v, kind)| (Self { more_lights, ..v }, kind))
+                .collect();
+            all.extend(more);
+        }
+        all
+    }
+
+    /// The module of the vertices that it is drawn with; none of the compute stage.
+    #[must_use]
+    pub fn vertices(&self, kind: Kind) -> Option<Module> {
+        let entry = match kind {
+            Kind::Box => Entry::BoxVertex,
+            Kind::Hull => Entry::HullVertex,
+            Kind::ConvexHull => Entry::ConvexHullVertex,
+            Kind::Compute | Kind::Beam => return None,
+        };
+        Some(self.module(kind).vertices(entry))
+    }
+
+    /// The module of its fragments, or of its compute invocations.
+    #[must_use]
+    pub const fn module(&self, kind: Kind) -> Module {
+        let entry = match kind {
+            Kind::Beam => return Module::plain(Entry::Beam),
+            Kind::Box | Kind::ConvexHull => Entry::Box,
+            Kind::Hull => Entry::Hull,
+            Kind::Compute => Entry::Trace,
+        };
+        Module {
+            entry,
+            search: self.search,
+            features: self.features,
+            output: self.output,
+            dispatch: self.dispatch,
         }
     }
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 16] {
+    pub fn constants(&self) -> [(u32, u32); 9] {
         [
-            (g::SOLVER_ID, self.solver),
-            (g::MAP_FORMAT_ID, self.map_format),
-            (g::MAX_STEPS_ID, self.max_steps),
-            (g::OFFSET_ID, self.offset),
             (g::CELLS_ID, self.cells),
-            (g::PROJECTION_ID, self.projection),
+            (g::SHADOW_ID, self.shadow),
             (g::COLOR_MAP_ID, self.color_map),
             (g::BUMP_ID, self.bump),
-            (g::SHADOW_ID, self.shadow),
-            (g::LIGHTS_ID, self.lights),
-            (g::OWN_TABLES_ID, self.own_tables),
-            (g::SINGLE_ID, self.single),
-            (g::AHEAD_ID, self.ahead),
+            (g::PROJECTION_ID, self.projection),
+            (g::REFINEMENT_ID, self.refinement),
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
-            (g::TESTS_ID, self.tests),
+            (g::MORE_LIGHTS_ID, self.more_lights),
         ]
     }
 }
 
-fn is_beveled(object: &Object) -> bool {
-    object.offset.bevel != 0.0 && object.offset.chamfer > 0.0
+/// The code of a search.
+fn search(settings: &SearchSettings, solver: Solver, beveled: bool) -> Search {
+    let papers = settings.map_format == MapFormat::Rgba8;
+    match solver {
+        Solver::Circle if papers => Search::CircleRgba8,
+        Solver::Circle => Search::Circle,
+        Solver::Live if papers => Search::LiveRgba8,
+        // Where it stands in for another search there is one form of it, the general one.
+        Solver::Live if beveled || settings.solver != Solver::Live => Search::LiveBeveled,
+        Solver::Live => Search::Live,
+        Solver::Linear | Solver::Relief | Solver::Secant if papers => Search::LinearRgba8,
+        Solver::Linear | Solver::Relief | Solver::Secant => Search::Linear,
+        Solver::Quadric | Solver::Hull => Search::Quadric,
+        Solver::Cone => Search::Cone,
+        Solver::Relaxed => Search::Relaxed,
+    }
 }
 
-/// The least general form of `w` that `object` has; each is a case of the next.
-fn offset_of(object: &Object) -> u32 {
-    const { assert!(g::OFFSET_NONE < g::OFFSET_EXTENDED && g::OFFSET_EXTENDED < g::OFFSET_BEVELED) };
-    if is_beveled(object) {
-        g::OFFSET_BEVELED
-    } else if object.offset.extend != 0.0 {
-        g::OFFSET_EXTENDED
-    } else {
-        g::OFFSET_NONE
-    }
+/// Whether an object's steps must allow for a bevel.
+pub(crate) fn is_beveled(object: &Object) -> bool {
+    object.offset.bevel != 0.0 && object.offset.chamfer > 0.0
 }

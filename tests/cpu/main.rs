@@ -14,4 +14,3 @@ mod pieces;
 mod profiles;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod scenes;
-mod shaders;

@@ -243,7 +243,11 @@ fn meshes_meet_solids_where_they_should() {
         } else {
             from
         };
-        let to = if inside { middle } else { to };
+        let to = if inside {
+            DVec3::new(0.3, -0.6, 0.5)
+        } else {
+            to
+        };
         let mut stage = Stage::new(&host, options).unwrap();
         let mut renderer = renderer(&device, &stage);
         renderer.set_lighting(&lighting).unwrap();
@@ -302,7 +306,7 @@ fn meshes_meet_solids_where_they_should() {
             off += usize::from(!near);
         }
         println!("reversed {reversed}, dynamic {dynamic}: {hits:?}, depth {worst:e}");
-        assert!(hits[1] > 2000 && (hits[2] > 1000 || inside), "{hits:?}");
+        assert!(hits[1] > 2000 && hits[2] > 1000, "{hits:?}");
         assert_eq!(off, 0, "reversed {reversed}, dynamic {dynamic}");
         // One part in 2^20, as a host's own rasterised depths.
         assert!(worst <= 2f64.powi(-20), "{worst:e}");

@@ -51,15 +51,13 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         let wanted = draw(&scene, &live);
         let hits = (0..wanted.pixels()).filter(|&i| wanted.hits(i)).count();
         assert!(hits > 3000, "{hits}");
-        let differ = (0..wanted.pixels())
-            .filter(|&i| wanted.pixel(i) != drawn.frame.pixel(i))
-            .count();
-        if shadow == Shadow::Off {
-            // The ball keeps its own search.
-            assert!(differ > 1000 && differ < hits, "{differ} of {hits}");
-        } else {
-            assert_eq!(wanted.first_difference(&drawn.frame), None);
-        }
+        // As the map's own search draws it, but for roundings; the ball keeps its search.
+        let far = |&i: &usize| {
+            let (a, b) = (wanted.distance[i], drawn.frame.distance[i]);
+            a != b && !((a - b).abs() < 1e-3)
+        };
+        let far = (0..wanted.pixels()).filter(far).count();
+        assert!(far <= 10, "{far} of {hits}");
     }
     // Once, however often it is drawn.
     let settings = Settings::default();

@@ -3,7 +3,7 @@
 use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::Stage;
 use revmap::frame::Frame;
-use revmap::gpu::{DrawPath, Offscreen};
+use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Object, Scene, Shadow};
@@ -217,4 +217,48 @@ fn only_what_has_changed_is_cut() {
         assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }
     device().check().unwrap();
+}
+
+/// Parameters, lights and the eye move; every pipeline that they lead to was there from the beginning.
+#[test]
+fn no_update_compiles_a_pipeline() {
+    // Of its own: other tests compile on theirs.
+    let device = Device::open_validated(None).unwrap();
+    type Move = (&'static str, fn(&mut Scene));
+    let moves: [Move; 10] = [
+        ("extend", |s| s.objects[0].offset.extend = 0.01),
+        ("extend more", |s| s.objects[0].offset.extend = 0.02),
+        ("bevel", |s| s.objects[0].offset.bevel = 0.05),
+        ("chamfer", |s| s.objects[0].offset.chamfer = 0.4),
+        ("no bevel", |s| s.objects[0].offset.bevel = 0.0),
+        ("two lights", |s| s.lights.push(s.lights[0])),
+        ("five lights", |s| s.lights = vec![s.lights[0]; 5]),
+        ("no light", |s| s.lights.clear()),
+        ("far", |s| s.camera.eye *= 9.0),
+        ("the eye in the solid", |s| {
+            s.camera.eye = glam::DVec3::new(0.05, 0.0, 0.5);
+        }),
+    ];
+    for stage in STAGES {
+        for solver in [Solver::Hull, Solver::Quadric, Solver::Live, Solver::Circle] {
+            let settings = Settings {
+                solver,
+                hull_from: 150,
+                ..settings(stage)
+            };
+            let mut scene = vase();
+            let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
+            renderer.prewarm().unwrap();
+            let compiled = device.pipelines_compiled();
+            assert!(compiled > 0);
+            for (name, change) in moves {
+                change(&mut scene);
+                renderer.update(&scene).unwrap();
+                renderer.draw().unwrap();
+                let now = device.pipelines_compiled();
+                assert_eq!(now, compiled, "{stage:?} {solver}: {name}");
+            }
+        }
+    }
+    device.check().unwrap();
 }

@@ -122,8 +122,9 @@ impl Animate {
         let settings = self.drawing.settings(Planes::Color);
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
+        renderer.prewarm()?;
         let mut rows = Vec::new();
-        let (mut compiled, mut rebuilt) = (0, 0);
+        let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
             let scene = self.scene_at(file, varied, n)?;
             let start = Instant::now();
@@ -187,7 +188,7 @@ impl Animate {
         all.sort_by(f64::total_cmp);
         let (median, most) = (all[all.len() / 2], all[all.len() - 1]);
         let late: u64 = settled.iter().map(|r| r.compiled).sum();
-        let compiled: u64 = rows.iter().map(|r| r.compiled).sum();
+        let compiled = device.pipelines_compiled();
         let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
         output::result(&format!(
             "{} frames: median {median:.2} ms, slowest after the tenth {most:.2} ms ({:.2} of the median); {compiled} pipelines compiled, {late} of them after the tenth; {rebuilt} surfaces made",

@@ -92,6 +92,17 @@ impl MethodRenderer {
         }
     }
 
+    /// As [`Offscreen::prewarm`]; of a mesh nothing.
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn prewarm(&mut self) -> Result<()> {
+        match self {
+            Self::Search(offscreen) => offscreen.prewarm(),
+            Self::Mesh(_) => Ok(()),
+        }
+    }
+
     /// Draws one frame and waits for it.
     ///
     /// # Errors

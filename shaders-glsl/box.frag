@@ -1,0 +1,20 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Traces a fragment of a shape box, or of a convex hull.
+#include "stage/box_fragment.glsl"
+#include "stage/outputs.glsl"
+
+layout(depth_greater) out float gl_FragDepth;
+
+void main()
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    Hit hit;
+    bool found = trace_box(pixel, hit);
+    count_steps(pixel, hit);
+    if (!found) {
+        discard;
+    }
+    store(pixel, hit);
+    gl_FragDepth = depth_of(hit.t);
+}

@@ -1,0 +1,97 @@
+// What the CPU tells the GPU: once a frame, once a batch, once an instance. Mirrored by src/gpu/blocks.rs;
+// a test compares the offsets.
+#ifndef BLOCKS_GLSL
+#define BLOCKS_GLSL
+#include "core/variant.glsl"
+
+struct Light {
+    vec4 towards; // unit, from the surface to the light
+    vec4 color;   // linear RGB
+};
+
+struct Frame {
+    mat4 clip_from_world;
+    vec4 eye;     // world; w: depth of the near plane
+    vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel's size at unit depth
+    vec4 dir_x;   // its change from column to column; w: depth = w + dir_y.w / t
+    vec4 dir_y;   // its change from row to row
+    vec4 forward; // unit; w: sense of depth, 1 where it grows away from the eye, -1 where it falls
+    vec4 ambient; // linear RGB; w: depth value of the near plane
+    uvec4 size;   // width, height, number of lights, bins across
+    Light lights[MAX_LIGHTS];
+};
+
+layout(set = 0, binding = 0, std140) uniform FrameBlock {
+    Frame frame_block;
+};
+
+// What is traced and seen at present. Software drivers read a uniform buffer lane by lane in fragments and wherever lanes may
+// have left, and only at a compute shader's very beginning all at once. So entry files take over its members, one by one,
+// before anything else; those that nothing reads cost nothing. What fragments need most comes to them in flat varyings.
+Frame frame; // without the lights
+
+struct Instance {
+    vec4 position_sx; // of the middle of the box's lower face; scale along x
+    vec4 rotation;    // unit quaternion, x y z w
+    vec4 scale_yz;    // scale along y and z
+};
+
+// A batch: instances that share shape, look and variant.
+struct Solid {
+    vec4 map;        // columns, rows, texel h in object units, factor from stored to object units
+    vec4 bounds;     // R; clip radius about the axis; clip z, low and high
+    vec4 offset;     // e, b, c; bound of the search's steps
+    vec4 axis;       // x, y in object units from the middle of the box; 1 / length of the outline; arc length at z = 0 over that
+    vec4 albedo;     // linear RGB
+    vec4 specular;   // strength, shininess
+    vec4 texturing;  // repetitions along xi and eta; bump depth a
+    uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
+    uvec4 instances; // first, number, index of the shape map among those of shadows
+    uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
+                     // of the cone search's: where they begin, rows, bits of the largest radius
+    uvec4 hull;      // first band; first vector of the nodes that beams are asked against
+    Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
+};
+
+layout(set = 0, binding = 1, std140) uniform BatchBlock {
+    Solid batch_solid;
+};
+
+layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
+    Instance instances[];
+};
+
+// The batch's, or one that may throw a shadow on it.
+Solid solid;
+
+void take_frame()
+{
+    frame.clip_from_world = frame_block.clip_from_world;
+    frame.eye = frame_block.eye;
+    frame.dir_00 = frame_block.dir_00;
+    frame.dir_x = frame_block.dir_x;
+    frame.dir_y = frame_block.dir_y;
+    frame.forward = frame_block.forward;
+    frame.ambient = frame_block.ambient;
+    frame.size = frame_block.size;
+}
+
+void take_solid()
+{
+    solid.map = batch_solid.map;
+    solid.bounds = batch_solid.bounds;
+    solid.offset = batch_solid.offset;
+    solid.axis = batch_solid.axis;
+    solid.albedo = batch_solid.albedo;
+    solid.specular = batch_solid.specular;
+    solid.texturing = batch_solid.texturing;
+    solid.cells = batch_solid.cells;
+    solid.instances = batch_solid.instances;
+    solid.pieces = batch_solid.pieces;
+    solid.hull = batch_solid.hull;
+    solid.single.position_sx = batch_solid.single.position_sx;
+    solid.single.rotation = batch_solid.single.rotation;
+    solid.single.scale_yz = batch_solid.single.scale_yz;
+}
+
+#endif

@@ -1,0 +1,14 @@
+// What a search finds.
+#ifndef HIT_GLSL
+#define HIT_GLSL
+
+struct Hit {
+    float t;
+    vec3 normal; // object space, outward, of any length
+    vec3 point;  // object units about the axis of the replica that was hit
+    vec3 sense;  // -1 where that replica is reflected
+    uint steps;  // look-ups of the search
+    bool exhausted; // the search ran out of steps
+};
+
+#endif

@@ -1,0 +1,35 @@
+// What shading needs of the instance and of the first two lights, in the instance's turned space: object axes, world lengths.
+// There normals need no rotation.
+#ifndef LOOK_GLSL
+#define LOOK_GLSL
+#include "core/placement.glsl"
+
+struct Look {
+    vec4 rotation; // the instance's
+    vec4 scale_shininess;
+    vec4 albedo_strength;
+    vec3 ambient;
+    Light light_0; // in that space; black where there is none
+    Light light_1;
+};
+
+Light light_seen(vec4 rotation, uint n)
+{
+    Light light = frame_block.lights[n];
+    light.towards.xyz = rotate(conjugate(rotation), light.towards.xyz);
+    return light;
+}
+
+Look look_of(Instance i)
+{
+    Look look;
+    look.rotation = i.rotation;
+    look.scale_shininess = vec4(scale_of(i), solid.specular.y);
+    look.albedo_strength = vec4(solid.albedo.rgb, solid.specular.x);
+    look.ambient = frame.ambient.rgb;
+    look.light_0 = light_seen(i.rotation, 0u);
+    look.light_1 = light_seen(i.rotation, 1u);
+    return look;
+}
+
+#endif

@@ -1,0 +1,135 @@
+// The ray seen in the half-plane: with the axis as origin, r(s)^2 = a s^2 + 2 b s + c and z(s) = z0 + s vz, a branch of a
+// hyperbola. `s` counts from where the ray enters what is searched, which keeps the cancellation in r^2 small.
+#ifndef MERIDIAN_GLSL
+#define MERIDIAN_GLSL
+#include "core/blocks.glsl"
+
+const uint FACE_X = 0u;
+const uint FACE_Y = 1u;
+const uint FACE_Z = 2u;
+const uint FACE_NONE = 3u; // the eye itself, or the clipping cylinder
+
+struct Meridian {
+    vec3 o; // point at s = 0, relative to the axis
+    vec3 v; // direction per unit of s (and of t)
+    float a, b, c;
+    float inverse_speed; // object units per unit of s, inverted
+    float t_start;       // t = t_start + s
+    float s_end;         // where the ray leaves what is searched
+    uint face_in;        // what it enters through
+    uint face_out;       // and leaves through
+    bool from_eye;       // the ray starts within the box
+};
+
+vec2 point_rz(Meridian m, float s)
+{
+    float rr = (m.a * s + 2.0 * m.b) * s + m.c;
+    return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
+}
+
+// Clips the ray to the box, the solid's height and the cylinder about it. False: it meets none of that.
+bool clip_ray(vec3 eye, vec3 v, out Meridian m)
+{
+    float R = solid.bounds.x;
+    vec3 low = vec3(-R - solid.axis.xy, solid.bounds.z);
+    vec3 high = vec3(R - solid.axis.xy, solid.bounds.w);
+    // A zero component gives infinities of the right sign, except on a face itself, where 0 * inf must not win.
+    vec3 inverse = 1.0 / v;
+    vec3 t_low = (low - eye) * inverse;
+    vec3 t_high = (high - eye) * inverse;
+    vec3 near = min(t_low, t_high);
+    vec3 far = max(t_low, t_high);
+    bvec3 still = equal(v, vec3(0.0));
+    near = mix(near, vec3(-1e30), still);
+    far = mix(far, vec3(1e30), still);
+    bvec3 beside = bvec3(uvec3(still) * (uvec3(lessThan(eye, low)) + uvec3(greaterThan(eye, high))));
+    if (any(beside)) {
+        return false;
+    }
+
+    float t_in = max(near.x, max(near.y, near.z));
+    float t_out = min(far.x, min(far.y, far.z));
+    m.face_in = t_in == near.z ? FACE_Z : t_in == near.x ? FACE_X : FACE_Y;
+    m.face_out = t_out == far.z ? FACE_Z : t_out == far.x ? FACE_X : FACE_Y;
+    m.from_eye = t_in <= 0.0;
+    if (t_in <= 0.0) {
+        t_in = 0.0;
+        m.face_in = FACE_NONE;
+    }
+    if (t_in > t_out) {
+        return false;
+    }
+
+    m.v = v;
+    m.a = dot(v.xy, v.xy);
+    vec3 o = eye + t_in * v;
+    float b = dot(o.xy, v.xy);
+    float c = dot(o.xy, o.xy);
+    float radius2 = solid.bounds.y * solid.bounds.y;
+    float s_end = t_out - t_in;
+    float enter = 0.0;
+    if (m.a > 0.0) {
+        float inside = b * b - m.a * (c - radius2);
+        if (inside <= 0.0) {
+            return false;
+        }
+        float root = sqrt(inside);
+        enter = (-b - root) / m.a;
+        float leave = (-b + root) / m.a;
+        if (enter > 0.0) {
+            m.face_in = FACE_NONE;
+        }
+        enter = max(enter, 0.0);
+        if (leave < s_end) {
+            m.face_out = FACE_NONE;
+            s_end = leave;
+        }
+        if (enter > s_end) {
+            return false;
+        }
+    } else if (c > radius2) {
+        return false;
+    }
+
+    m.t_start = t_in + enter;
+    m.o = o + enter * v;
+    m.b = dot(m.o.xy, v.xy);
+    m.c = dot(m.o.xy, m.o.xy);
+    m.s_end = s_end - enter;
+    m.inverse_speed = inversesqrt(dot(v, v));
+    return true;
+}
+
+const vec2 EVERYWHERE = vec2(-1e30, 1e30);
+
+// Takes the ray from span.x to span.y where that is less. False: nothing is left of it.
+bool narrow(inout Meridian m, vec2 span)
+{
+    m.s_end = min(m.s_end, span.y - m.t_start);
+    float later = span.x - m.t_start;
+    if (later > 0.0) {
+        m.o += later * m.v;
+        m.b = dot(m.o.xy, m.v.xy);
+        m.c = dot(m.o.xy, m.o.xy);
+        m.t_start = span.x;
+        m.s_end -= later;
+        m.face_in = FACE_NONE;
+        m.from_eye = false;
+    }
+    return m.s_end >= 0.0;
+}
+
+vec3 face_normal(uint face, vec3 v, float sense)
+{
+    vec3 n = vec3(0.0);
+    if (face == FACE_X) {
+        n.x = sense * sign(v.x);
+    } else if (face == FACE_Y) {
+        n.y = sense * sign(v.y);
+    } else {
+        n.z = sense * sign(v.z);
+    }
+    return n;
+}
+
+#endif

@@ -1,0 +1,117 @@
+// From a hit to what is stored of it. Blinn-Phong, linear light.
+#ifndef SHADE_GLSL
+#define SHADE_GLSL
+#include "core/hit.glsl"
+#include "core/look.glsl"
+#include "core/pixel_ray.glsl"
+#include "core/texturing.glsl"
+#include "core/shadow.glsl"
+
+struct Shaded {
+    vec4 color;          // linear RGBA
+    vec3 normal;         // world, without bump
+    vec3 shading_normal; // world, as shaded: bumped, and turned to the viewer
+    vec3 albedo;
+    vec2 uv;
+    float distance; // along the ray, world units
+};
+
+// One root and one division, where `normalize` is a root and three: software drivers take it at its word.
+vec3 unit(vec3 v)
+{
+    return v * inversesqrt(dot(v, v));
+}
+
+// Of one light, in the turned space.
+vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
+{
+    vec3 middle = light.towards.xyz + view;
+    float aligned = dot(n, middle) * inversesqrt(max(dot(middle, middle), 1e-20));
+    float highlight = pow(max(aligned, 0.0), look.scale_shininess.w);
+    float facing = dot(n, light.towards.xyz);
+    vec3 reflected = light.color.rgb * (albedo * facing + look.albedo_strength.w * highlight);
+    return facing > 0.0 ? reflected : vec3(0.0);
+}
+
+// What a light that shines on the hit adds. `n` and `view` in the turned space, `point` in the world.
+vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point)
+{
+    vec3 color = blinn_phong(look, light, n, view, albedo);
+#if SHADOWED
+    if (SHADOW != SHADOW_OFF && color != vec3(0.0)) {
+        bool faces = dot(turned, light.towards.xyz) > 0.0;
+        color *= faces ? light_reaching(point, rotate(look.rotation, light.towards.xyz)) : 0.0;
+    }
+#endif
+    return color;
+}
+
+Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
+{
+    Shaded s;
+    vec3 scale = look.scale_shininess.xyz;
+    vec3 v = ray_direction(rays, pixel);
+    vec3 dir = v * scale;
+    float square = dot(dir, dir);
+    float inverse_length = inversesqrt(square);
+    vec3 view = dir * -inverse_length;
+    // The normal over the scale, times the product of all three.
+    vec3 turned = unit(hit.normal * (scale.yzx * scale.zxy));
+    s.distance = hit.t * (square * inverse_length);
+    s.normal = rotate(look.rotation, turned);
+    s.albedo = look.albedo_strength.rgb;
+    s.uv = vec2(0.0);
+    vec3 shaded = turned;
+#if TEXTURED || OUTPUT == OUTPUT_PLANES
+    // In the replica's own space: reflected and shrunk to its cell.
+    vec3 count = vec3(solid.cells.xyz);
+    vec3 n = unit(CELLS == 0u ? hit.normal : hit.normal * hit.sense / count);
+    Coordinates c = texture_coordinates(hit.point, n);
+    s.uv = c.uv;
+#endif
+#if TEXTURED
+    if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
+        vec3 normal = unit(hit.normal);
+        vec3 right = footprint(v, rays.dir_x, normal, hit.t);
+        vec3 down = footprint(v, rays.dir_y, normal, hit.t);
+        if (CELLS != 0u) {
+            right *= hit.sense * count;
+            down *= hit.sense * count;
+        }
+        if (COLOR_MAP != 0u) {
+            s.albedo = sample_repeated(color_map, c, right, down).rgb;
+        }
+        if (BUMP != BUMP_OFF) {
+            vec3 tilted = bumped(n, hit.point, c, right, down);
+            tilted = normalize((CELLS == 0u ? tilted : tilted * hit.sense * count) / scale);
+            shaded = solid.texturing.z == 0.0 ? turned : tilted;
+        }
+    }
+#endif
+    // Seen from within, the surface's back is lit as a surface of its own.
+    float facing = dot(turned, view) < 0.0 ? -1.0 : 1.0;
+    vec3 lit = facing * shaded;
+    s.shading_normal = rotate(look.rotation, lit);
+    vec3 color = s.albedo * look.ambient;
+    vec3 point = vec3(0.0);
+#if SHADOWED
+    // A shadow's ray starts a texel off the surface, or it would meet the surface itself.
+    float lift = 1.5 * solid.map.z * length(scale);
+    point = frame.eye.xyz + rotate(look.rotation, hit.t * dir + facing * lift * turned);
+#endif
+    // Two in a straight line: a loop costs software drivers a sixth of a frame or more, though none go through it. Shadows are
+    // so long that all lights share one loop.
+    if (SHADOW == SHADOW_OFF) {
+        color += blinn_phong(look, look.light_0, lit, view, s.albedo);
+        color += blinn_phong(look, look.light_1, lit, view, s.albedo);
+    }
+    if (SHADOW != SHADOW_OFF || MORE_LIGHTS != 0u) {
+        for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
+            color += lit_by(look, light_seen(look.rotation, n), lit, facing * turned, view, s.albedo, point);
+        }
+    }
+    s.color = vec4(color, 1.0);
+    return s;
+}
+
+#endif

@@ -1,0 +1,116 @@
+// The shape map: signed distance d(r, z) to the profile, bilinear between texels, and its gradient.
+// Texel (i, j) is at r = (i + 1/2) h, z = 1 - (j + 1/2) h.
+#ifndef SHAPE_MAP_GLSL
+#define SHAPE_MAP_GLSL
+#include "core/blocks.glsl"
+
+layout(set = 1, binding = 0) uniform sampler2D shape_map;
+#if SHADOWED
+layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
+int shadow_map; // of the solid that is traced, where it is one that may throw a shadow
+bool casts = false; // whether it is
+#endif
+
+vec4 gather_map(vec2 at)
+{
+#if SHADOWED
+    if (casts) {
+        return textureGather(shadow_maps[shadow_map], at);
+    }
+#endif
+    return textureGather(shape_map, at);
+}
+
+vec4 filter_map(vec2 at)
+{
+#if SHADOWED
+    if (casts) {
+        return textureLod(shadow_maps[shadow_map], at, 0.0);
+    }
+#endif
+    return textureLod(shape_map, at, 0.0);
+}
+
+// The four texels around a point and the point's place among them. The gather is aimed at the corner that the four share: no
+// rounding of coordinates can pick others, and the weights stay full floats where a sampler has 8 bits.
+struct Cell {
+    vec4 d;     // stored: (i, j+1), (i+1, j+1), (i+1, j), (i, j)
+    vec2 place; // 0 to 1; beyond the outermost texels' centres, extrapolated by half a texel
+};
+
+Cell shape_cell(vec2 rz)
+{
+    vec2 size = solid.map.xy;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) * solid.map.y - 0.5;
+    vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
+    Cell cell;
+    cell.d = gather_map((base + 1.0) * (1.0 / size)) * solid.map.w;
+    // By the solid's symmetry the texel beyond the axis equals the first.
+    cell.place = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
+    cell.place = clamp(cell.place, vec2(0.0, -0.5), vec2(1.5));
+    return cell;
+}
+
+float cell_distance(Cell cell)
+{
+    vec2 across = mix(vec2(cell.d.w, cell.d.x), vec2(cell.d.z, cell.d.y), cell.place.x);
+    return mix(across.x, across.y, cell.place.y);
+}
+
+// d(d)/d(r, z) of the bilinear cell; its length is about 1.
+vec2 cell_gradient(Cell cell)
+{
+    float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.place.y);
+    float dj = mix(cell.d.x - cell.d.w, cell.d.y - cell.d.z, cell.place.x);
+    return vec2(dr, -dj) * solid.map.y;
+}
+
+vec2 papers_coordinates(vec2 rz)
+{
+    return vec2(rz.x, 1.0 - rz.y) / (solid.map.xy * solid.map.z);
+}
+
+float map_distance(vec2 rz)
+{
+    if (RGBA8 != 0) {
+        return filter_map(papers_coordinates(rz)).b * solid.map.w;
+    }
+    return cell_distance(shape_cell(rz));
+}
+
+// Where the outline has a corner, a cell blends the directions of both its sides, and the blend is shorter than 1. Then the
+// tangents of both sides are continued from beyond the corner, and `along`, the ray's direction in the half-plane, decides: a
+// convex corner's side is the one entered last, a hollow corner's the one entered first.
+vec2 creased_gradient(vec2 rz, vec2 along)
+{
+    vec2 g = cell_gradient(shape_cell(rz));
+    float len = length(g);
+    if (len > 0.99) {
+        return g;
+    }
+    vec2 aside = vec2(-g.y, g.x) * (1.5 * solid.map.z / max(len, 1e-3));
+    Cell left = shape_cell(rz + aside);
+    Cell right = shape_cell(rz - aside);
+    vec2 g_left = cell_gradient(left);
+    vec2 g_right = cell_gradient(right);
+    float d_left = cell_distance(left) - dot(g_left, aside);
+    float d_right = cell_distance(right) + dot(g_right, aside);
+    float v_left = dot(g_left, along);
+    float v_right = dot(g_right, along);
+    if (v_left >= 0.0 || v_right >= 0.0) {
+        return v_left < v_right ? g_left : g_right;
+    }
+    bool convex = dot(g_left - g_right, aside) > 0.0;
+    return (-d_left / v_left > -d_right / v_right) == convex ? g_left : g_right;
+}
+
+// Not normalised.
+vec2 map_gradient(vec2 rz, vec2 along)
+{
+    if (RGBA8 != 0) {
+        return filter_map(papers_coordinates(rz)).rg * 2.0 - 1.0;
+    }
+    return creased_gradient(rz, along);
+}
+
+#endif

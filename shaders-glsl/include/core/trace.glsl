@@ -1,0 +1,139 @@
+// One ray against one solid: clip, search, close. The only tracer; both stages call it.
+#ifndef TRACE_GLSL
+#define TRACE_GLSL
+#include "core/hit.glsl"
+#include "core/pixel_ray.glsl"
+#if SEARCH == SEARCH_CIRCLE
+#include "search/circle.glsl"
+#elif SEARCH == SEARCH_LIVE
+#include "search/live.glsl"
+#elif SEARCH == SEARCH_LINEAR
+#include "search/linear.glsl"
+#elif SEARCH == SEARCH_QUADRIC
+#include "search/quadric.glsl"
+#elif SEARCH == SEARCH_CONE
+#include "search/cone.glsl"
+#elif SEARCH == SEARCH_RELAXED
+#include "search/relaxed.glsl"
+#endif
+
+// Whether rays are known to meet nothing before and after some t. A stage that knows says so before it includes this file.
+#ifndef SPANS
+#define SPANS false
+#endif
+
+#if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_BEAMS
+// Of a ray that is known to begin outside of the solid, none of which the box cuts: pieces alone, between two t.
+bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
+{
+    float t_in = span.x;
+    float t_out = span.y;
+    // Above the ceiling and below the floor another sheet of a quadric may pass the guard.
+    float per_z = 1.0 / (abs(v.z) > 1e-20 ? v.z : 1e-20);
+    float low = (solid.bounds.z - eye.z) * per_z;
+    float high = (solid.bounds.w - eye.z) * per_z;
+    t_in = max(t_in, min(low, high));
+    t_out = min(t_out, max(low, high));
+    Meridian m;
+    m.v = v;
+    m.o = eye + t_in * v;
+    m.a = dot(v.xy, v.xy);
+    m.b = dot(m.o.xy, v.xy);
+    m.c = dot(m.o.xy, m.o.xy);
+    m.inverse_speed = inversesqrt(dot(v, v));
+    m.t_start = t_in;
+    m.s_end = t_out - t_in;
+    float s = 0.0;
+    vec4 quadric;
+    hit.steps = 0u;
+    uint end = search_quadric(m, 1.0, s, hit.steps, quadric);
+    hit.t = t_in + s;
+    hit.normal = quadric_normal(m, s, quadric);
+    hit.point = m.o + s * v;
+    hit.sense = vec3(1.0);
+    hit.exhausted = false;
+    return end == FOUND;
+}
+#endif
+
+// Whether the ray begins in the solid; `f` is F there, of searches on the map.
+bool begins_within(Meridian m, inout uint steps, out float f)
+{
+    f = 0.0;
+#if SEARCH == SEARCH_QUADRIC
+    // Floor and ceiling are pieces. Through the sides one enters the solid only where it reaches past them.
+    float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
+    bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
+    return (m.from_eye || open_side) && starts_within(m);
+#elif READS_TABLES
+    return starts_within_cones(m);
+#else
+    f = field(point_rz(m, 0.0));
+    ++steps;
+    return f <= 0.0;
+#endif
+}
+
+// The first hit after `s`; `quadric`, of tables, is what was hit.
+uint search_any(Meridian m, float side, float f, inout float s, inout uint steps, out vec4 quadric)
+{
+    quadric = vec4(0.0);
+#if SEARCH == SEARCH_QUADRIC
+    return search_quadric(m, side, s, steps, quadric);
+#elif SEARCH == SEARCH_CONE
+    return search_cone(m, side, s, steps, quadric);
+#elif SEARCH == SEARCH_RELAXED
+    if (side > 0.0) {
+        return search_relaxed(m, s, steps, quadric);
+    }
+    return search_cone(m, side, s, steps, quadric); // relaxed cones are for rays from outside
+#else
+    return search(m, side, max(side * f, 0.0), pixel_width(m.t_start), s, steps);
+#endif
+}
+
+// Look-ups are counted in `hit.steps` even when nothing is met. `span`: two t, before and after which nothing of the solid is.
+bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
+{
+    Meridian m;
+    if (!clip_ray(eye, v, m)) {
+        return false;
+    }
+    if (SPANS && !narrow(m, span)) {
+        return false;
+    }
+    float s = 0.0;
+    float f;
+    bool within = begins_within(m, hit.steps, f);
+    if (within && m.face_in != FACE_NONE) {
+        // The box cuts the solid, and the cut is closed.
+        hit.t = m.t_start;
+        hit.normal = face_normal(m.face_in, v, -1.0);
+        hit.point = m.o;
+        return true;
+    }
+    // From within the solid its boundary is seen from behind; unsigned distances know no inside.
+    float side = within && m.from_eye && RGBA8 == 0 ? -1.0 : 1.0;
+    vec4 quadric;
+    uint end = search_any(m, side, f, s, hit.steps, quadric);
+    if (end == LEFT && side < 0.0 && m.face_out != FACE_NONE) {
+        hit.t = m.t_start + m.s_end;
+        hit.normal = face_normal(m.face_out, v, 1.0);
+        hit.point = m.o + m.s_end * v;
+        return true;
+    }
+    hit.exhausted = hit.exhausted || end >= EXHAUSTED;
+    if (end != FOUND && end != NEARLY) {
+        return false;
+    }
+    hit.t = m.t_start + s;
+#if READS_TABLES
+    hit.normal = quadric_normal(m, s, quadric);
+#else
+    hit.normal = surface_normal(m, s, side);
+#endif
+    hit.point = m.o + s * v;
+    return true;
+}
+
+#endif

@@ -1,0 +1,114 @@
+// What a module is compiled for, and the numbers that the CPU must know. build.rs defines the macros for each entry of
+// src/shader/list.rs, and generates the same numbers for Rust from this file.
+#ifndef VARIANT_GLSL
+#define VARIANT_GLSL
+
+#define SEARCH_NONE 0    // vertices, lists of tiles
+#define SEARCH_CIRCLE 1  // the papers' loop
+#define SEARCH_LIVE 2    // steps that are safe to a texel and a last secant, on the map alone
+#define SEARCH_QUADRIC 3 // exact pieces of quadrics, rebuilt when parameters change
+#define SEARCH_LINEAR 4  // equal steps, then nothing, halvings or secants
+#define SEARCH_CONE 5    // empty cones on each row, for solids that are single-valued in z
+#define SEARCH_RELAXED 6 // the same, relaxed, and halvings
+
+#define READS_MAP (SEARCH == SEARCH_CIRCLE || SEARCH == SEARCH_LIVE || SEARCH == SEARCH_LINEAR)
+#define READS_TABLES (SEARCH == SEARCH_QUADRIC || SEARCH == SEARCH_CONE || SEARCH == SEARCH_RELAXED)
+#define TAKES_STEPS (READS_MAP || SEARCH == SEARCH_RELAXED) // so many of them at most
+
+#define OUTPUT_COLOR 0
+#define OUTPUT_PLANES 1 // every plane of a frame
+#define OUTPUT_DEPTH 2  // no shading at all
+
+#define DISPATCH_RECTANGLE 0 // compute: one instance, every pixel of its rectangle
+#define DISPATCH_BINS 1      // several instances, listed for each square of the screen
+#define DISPATCH_BEAMS 2     // one instance; tiles, and where their rays begin and end, come from beam.comp
+
+// What build.rs leaves out is 0.
+#ifndef SEARCH
+#define SEARCH SEARCH_NONE
+#endif
+#ifndef RGBA8
+#define RGBA8 0 // 1: the papers' texture of unsigned distance; else one channel of signed distance
+#endif
+#ifndef BEVELED
+#define BEVELED 0 // 1: steps allow for a bevel
+#endif
+#ifndef OWN_TABLES
+#define OWN_TABLES 0 // 1: the batch's tables fit into a uniform buffer
+#endif
+#ifndef TEXTURED
+#define TEXTURED 0 // 1: colours or bumps may come from maps
+#endif
+#ifndef REPEATED
+#define REPEATED 0 // 1: the box may hold several replicas
+#endif
+#ifndef SHADOWED
+#define SHADOWED 0 // 1: solids may throw shadows
+#endif
+#ifndef OUTPUT
+#define OUTPUT OUTPUT_COLOR
+#endif
+#ifndef DISPATCH
+#define DISPATCH DISPATCH_RECTANGLE
+#endif
+#ifndef ORTHO
+#define ORTHO 0 // 1: rays are parallel
+#endif
+
+// Small differences remain specialisation constants.
+#if REPEATED
+layout(constant_id = 0) const uint CELLS = 0u; // 1: the box holds several replicas
+#else
+const uint CELLS = 0u;
+#endif
+#if SHADOWED
+layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
+#else
+const uint SHADOW = 0u;
+#endif
+#if TEXTURED
+layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
+layout(constant_id = 3) const uint BUMP = 0u; // one of BUMP_*
+#endif
+#if TEXTURED || OUTPUT == OUTPUT_PLANES
+layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
+#endif
+layout(constant_id = 5) const uint REFINEMENT = 0u; // of the linear search: one of REFINEMENT_*
+layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
+layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
+layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
+
+const uint REFINEMENT_NONE = 0u;
+const uint REFINEMENT_HALVINGS = 1u;
+const uint REFINEMENT_SECANTS = 2u;
+
+const uint PROJECTION_PLANAR = 1u;
+const uint PROJECTION_CYLINDRICAL = 2u;
+const uint PROJECTION_SPHERICAL = 3u;
+const uint PROJECTION_ARC = 4u;
+
+const uint BUMP_OFF = 0u;
+const uint BUMP_SURFACE_GRADIENT = 1u;
+const uint BUMP_PAPERS = 2u;
+
+const uint SHADOW_OFF = 0u;
+const uint SHADOW_HARD = 1u;
+const uint SHADOW_SOFT = 2u;
+
+const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
+
+const uint MAX_LIGHTS = 8u;
+const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
+const uint PIECE_ROWS = 256u; // of a solid's tables: a power of 4
+const uint PIECE_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
+const uint BEAM_NODES = 64u; // of one of its levels
+const uint BEAM_FIRST_NODE = 256u; // where that begins
+const uint HULL_SIDES = 12u; // corners of a hull's rings
+const uint HULL_TESTS = 8u; // most pieces of a hull's cell
+const uint BAND_VECTORS = 17u; // of a band: its rings, then the cell's quadrics and guards
+const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
+const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
+const uint BIN_PIXELS = 32u; // side of a compute bin
+const uint GROUP_PIXELS = 8u; // side of a compute workgroup
+
+#endif

@@ -1,0 +1,53 @@
+// A fragment of a hull: the pieces of its own cell, in a straight line. What a cell is, and why it loses no ray: src/pieces/hull.rs,
+// whose `trace` is this file's twin.
+#ifndef HULL_GLSL
+#define HULL_GLSL
+#include "stage/hull_varyings.glsl"
+#include "stage/fragment.glsl"
+#include "core/hit.glsl"
+#include "search/quadric.glsl"
+
+const float HULL_FLOOR = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
+
+bool trace_hull(uvec2 pixel, out Hit hit)
+{
+    take_over();
+    float base = ray_eye.w;
+    PixelRays rays = varying_rays();
+    vec3 v = ray_direction(rays, pixel);
+    Meridian m;
+    m.v = v;
+    m.o = ray_origin(rays, pixel) + base * v;
+    m.a = dot(v.xy, v.xy);
+    m.b = dot(m.o.xy, v.xy);
+    m.c = dot(m.o.xy, m.o.xy);
+    float best = 3e38;
+    vec4 quadric = vec4(0.0);
+    for (uint k = 0u; k < HULL_TESTS; ++k) {
+        vec4 guard = hull_guard[k];
+        float root = entering_root(m, hull_quadric[k], 1.0);
+        float z = m.o.z + root * m.v.z;
+        float place = guard.x * z + guard.y * square_at(m, root);
+        bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + HULL_FLOOR && root > -base;
+        if (valid && root < best) {
+            best = root;
+            quadric = hull_quadric[k];
+        }
+    }
+    hit.t = base + best;
+    hit.normal = quadric_normal(m, best, quadric);
+    hit.point = m.o + best * v;
+    hit.sense = vec3(1.0);
+    hit.steps = HULL_TESTS;
+    hit.exhausted = false;
+    return best < 2e38;
+}
+
+// Its own triangle is nowhere behind the surface it wraps, but for rounding.
+float hull_depth(float t)
+{
+    float sense = ray_dir_00.w;
+    return sense * max(sense * depth_of(t), sense * gl_FragCoord.z);
+}
+
+#endif

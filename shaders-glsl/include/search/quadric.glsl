@@ -1,0 +1,123 @@
+// The quadric search: the solid's boundary as pieces of quadrics of revolution, dealt out to rows of equal height, under a 4-ary tree
+// of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a piece; rows are met in the order of t. Layout and walk are
+// those of src/pieces/rows.rs and walk.rs, which is this file's twin on the CPU.
+//
+// Exact but for rounding: no step, no threshold, nothing to run out of.
+#ifndef SEARCH_QUADRIC_GLSL
+#define SEARCH_QUADRIC_GLSL
+#include "core/surface.glsl"
+#include "core/piece_tables.glsl"
+
+// The root at which G falls from out to in; NaN or out of range where there is none.
+float entering_root(Meridian m, vec4 q, float side)
+{
+    float al = side * (q.x * m.a + q.w * m.v.z * m.v.z);
+    float be = side * (q.x * m.b + (0.5 * q.z + q.w * m.o.z) * m.v.z);
+    float ga = side * (q.x * m.c + (q.y + m.o.z * (q.z + m.o.z * q.w)));
+    float root = sqrt(be * be - al * ga);
+    bool towards = be <= 0.0;
+    return (towards ? ga : -(be + root)) / (towards ? root - be : al);
+}
+
+float square_at(Meridian m, float s)
+{
+    return m.c + s * (2.0 * m.b + s * m.a);
+}
+
+// Whether the start of the ray is in the solid: by the number of pieces beyond it, away from the axis.
+bool starts_within(Meridian m)
+{
+    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(PIECE_ROWS));
+    uint run = piece_word(PIECE_NODES + min(row, PIECE_ROWS - 1u));
+    uint beyond = 0u;
+    for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
+        uint record = (run >> RUN_BITS) + n;
+        vec4 q = piece_vector(solid.pieces.y + 2u * record);
+        vec2 range = uintBitsToFloat(piece_tables[solid.pieces.x + solid.pieces.z + record].xy);
+        float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
+        beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
+    }
+    return (beyond & 1u) != 0u;
+}
+
+// FOUND or LEFT; `hit_quadric` is the piece that was hit.
+uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
+{
+    const int rows = int(PIECE_ROWS);
+    float n = float(rows);
+    bool up = m.v.z >= 0.0;
+    float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
+    float nearest = -m.b / max(m.a, 1e-30);
+    // The start is known to a few roundings of the distance from the eye: a face of the box that is the solid's own must not be passed there.
+    float slack = 4e-6 * m.inverse_speed + 4e-7 * m.t_start;
+    const int top = 3;
+    int level = DISPATCH == DISPATCH_BEAMS ? 1 : top;
+    int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
+    float t = 0.0;
+    float most = square_at(m, 0.0);
+    float best = 3e38;
+    hit_quadric = vec4(0.0);
+    for (;;) {
+        // Through the tree to the next row whose pieces the ray may meet.
+        uint run = 0u;
+        int border;
+        float leave;
+        float most_out;
+        for (;;) {
+            int node = row >> (2 * level);
+            border = (up ? node + 1 : node) << (2 * level);
+            leave = max(min((float(border) / n - m.o.z) * per_z, m.s_end), t);
+            most_out = square_at(m, leave);
+            float least = square_at(m, clamp(nearest, t, leave));
+            int base = level < 2 ? (level == 0 ? 0 : 256) : (level == 2 ? 320 : 336);
+            vec2 extent = node_extent(piece_word(uint(base + node)));
+            ++steps;
+            bool meets = max(most, most_out) >= extent.x && least <= extent.y;
+            if (meets && level == 0) {
+                run = piece_word(PIECE_NODES + uint(row));
+                break;
+            }
+            if (meets) {
+                --level;
+                continue;
+            }
+            row = up ? border : border - 1;
+            if (leave >= m.s_end || row < 0 || row >= rows) {
+                break;
+            }
+            t = leave;
+            most = most_out;
+            level = min(findLSB(border) >> 1, top);
+        }
+        uint first = solid.pieces.y + 2u * (run >> RUN_BITS);
+        for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
+            vec4 q = piece_vector(first + 2u * k);
+            vec4 guard = piece_vector(first + 2u * k + 1u);
+            ++steps;
+            float root = entering_root(m, q, side);
+            float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
+            if (place >= guard.z && place <= guard.w && root >= -slack && root < best && root <= m.s_end + slack) {
+                best = root;
+                hit_quadric = q;
+            }
+        }
+        row = run == 0u ? row : (up ? border : border - 1);
+        if (best <= leave || leave >= m.s_end || row < 0 || row >= rows) {
+            break;
+        }
+        t = leave;
+        most = most_out;
+        level = min(findLSB(border) >> 1, top);
+    }
+    s = best;
+    return best < 2e38 ? FOUND : LEFT;
+}
+
+// Outward normal in object space, of any length.
+vec3 quadric_normal(Meridian m, float s, vec4 q)
+{
+    vec3 p = m.o + s * m.v;
+    return vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z);
+}
+
+#endif

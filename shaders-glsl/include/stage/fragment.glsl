@@ -1,0 +1,38 @@
+// The fragments' half of varyings.glsl.
+#ifndef FRAGMENT_GLSL
+#define FRAGMENT_GLSL
+#include "stage/varyings.glsl"
+
+// To be called first.
+void take_over()
+{
+    take_frame();
+    take_solid();
+    frame.dir_00.w = ray_dir_00.w;
+    frame.dir_x.w = ray_dir_x.w;
+    frame.dir_y.w = ray_dir_y.w;
+}
+
+PixelRays varying_rays()
+{
+    vec3 eye = ray_eye.xyz;
+    return PixelRays(eye, ray_dir_00.xyz, ray_dir_x.xyz, ray_dir_y.xyz);
+}
+
+#if OUTPUT != OUTPUT_DEPTH
+Look varying_look()
+{
+    Look look;
+    look.rotation = look_rotation;
+    look.scale_shininess = look_scale_shininess;
+    look.albedo_strength = look_albedo_strength;
+    look.ambient = look_ambient;
+    look.light_0.towards.xyz = look_light_0.xyz;
+    look.light_0.color.rgb = vec3(look_light_0.w, look_colors.xy);
+    look.light_1.towards.xyz = look_light_1.xyz;
+    look.light_1.color.rgb = vec3(look_light_1.w, look_colors.zw);
+    return look;
+}
+#endif
+
+#endif

@@ -1,0 +1,41 @@
+// What a fragment stores of a hit: nothing but depth, its colour, or every plane.
+#ifndef OUTPUTS_GLSL
+#define OUTPUTS_GLSL
+#include "stage/fragment.glsl"
+#include "core/hit.glsl"
+#if OUTPUT != OUTPUT_DEPTH
+#include "core/shade.glsl"
+layout(location = 0) out vec4 color;
+#endif
+#if OUTPUT == OUTPUT_PLANES
+#include "stage/pixel_words.glsl"
+layout(location = 1) out vec4 normal_distance;
+layout(location = 2) out vec4 shading_normal_u;
+layout(location = 3) out vec4 albedo_v;
+#endif
+
+// Look-ups are counted whether anything was hit or not.
+void count_steps(uvec2 pixel, Hit hit)
+{
+#if OUTPUT == OUTPUT_PLANES
+    atomicAdd(pixel_words[second_word(pixel)], hit.steps);
+    if (hit.exhausted) {
+        atomicOr(pixel_words[second_word(pixel)], EXHAUSTED_BIT);
+    }
+#endif
+}
+
+void store(uvec2 pixel, Hit hit)
+{
+#if OUTPUT != OUTPUT_DEPTH
+    Shaded s = shade(varying_look(), varying_rays(), pixel, hit);
+    color = s.color;
+#endif
+#if OUTPUT == OUTPUT_PLANES
+    normal_distance = vec4(s.normal, s.distance);
+    shading_normal_u = vec4(s.shading_normal, s.uv.x);
+    albedo_v = vec4(s.albedo, s.uv.y);
+#endif
+}
+
+#endif

@@ -1,0 +1,35 @@
+// The vertices' half of varyings.glsl.
+#ifndef VERTEX_GLSL
+#define VERTEX_GLSL
+#define VARYING out
+#include "stage/varyings.glsl"
+
+// To be called first; the instance of this vertex.
+Instance begin()
+{
+    take_frame();
+    take_solid();
+    return instances[gl_InstanceIndex];
+}
+
+// `base`, `scale`: the fourth components of the eye and of the first direction.
+void hand_over(Instance i, float base, float scale)
+{
+    PixelRays rays = pixel_rays(i);
+    ray_eye = vec4(rays.eye, base);
+    ray_dir_00 = vec4(rays.dir_00, scale);
+    ray_dir_x = vec4(rays.dir_x, frame.dir_x.w);
+    ray_dir_y = vec4(rays.dir_y, frame.dir_y.w);
+#if OUTPUT != OUTPUT_DEPTH
+    Look look = look_of(i);
+    look_rotation = look.rotation;
+    look_scale_shininess = look.scale_shininess;
+    look_albedo_strength = look.albedo_strength;
+    look_ambient = look.ambient;
+    look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
+    look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
+    look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);
+#endif
+}
+
+#endif

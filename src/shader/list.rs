@@ -1,0 +1,351 @@
+//! The list of SPIR-V modules: every entry file with every set of macros that some pipeline needs. `build.rs` compiles this list, and
+//! pipelines look modules up in it; so it names GLSL macros, and depends on nothing.
+
+/// An entry file of `shaders-glsl/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Entry {
+    /// Corners of shape boxes.
+    BoxVertex,
+    /// Corners of convex hulls.
+    ConvexHullVertex,
+    /// Corners of the shells of a solid's pieces.
+    HullVertex,
+    /// Lists of tiles.
+    Beam,
+    /// Fragments of shape boxes and convex hulls.
+    Box,
+    /// Fragments of shells.
+    Hull,
+    /// Pixels of the compute stage.
+    Trace,
+}
+
+impl Entry {
+    /// Its file.
+    #[must_use]
+    pub const fn file(self) -> &'static str {
+        match self {
+            Self::BoxVertex => "box.vert",
+            Self::ConvexHullVertex => "convex_hull.vert",
+            Self::HullVertex => "hull.vert",
+            Self::Beam => "beam.comp",
+            Self::Box => "box.frag",
+            Self::Hull => "hull.frag",
+            Self::Trace => "trace.comp",
+        }
+    }
+}
+
+/// The code that finds where rays meet a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Search {
+    /// None: vertices, lists of tiles.
+    None,
+    /// The papers' loop.
+    Circle,
+    /// The same on the papers' texture.
+    CircleRgba8,
+    /// The search for live parameters.
+    Live,
+    /// The same with steps that allow for a bevel.
+    LiveBeveled,
+    /// That on the papers' texture.
+    LiveRgba8,
+    /// Equal steps.
+    Linear,
+    /// The same on the papers' texture.
+    LinearRgba8,
+    /// Pieces of quadrics in a tree. Fragments of shells solve theirs without it, and shadows on them with it.
+    Quadric,
+    /// The same, in tables that do not fit into a uniform buffer.
+    QuadricLarge,
+    /// Rows of cones.
+    Cone,
+    /// The same, in a table that does not fit into a uniform buffer.
+    ConeLarge,
+    /// Rows of relaxed cones.
+    Relaxed,
+    /// The same, in a table that does not fit into a uniform buffer.
+    RelaxedLarge,
+}
+
+impl Search {
+    /// The same search of tables that fit into a uniform buffer, or do not.
+    #[must_use]
+    pub const fn of_tables(self, fit: bool) -> Self {
+        match (self, fit) {
+            (Self::Quadric | Self::QuadricLarge, true) => Self::Quadric,
+            (Self::Quadric | Self::QuadricLarge, false) => Self::QuadricLarge,
+            (Self::Cone | Self::ConeLarge, true) => Self::Cone,
+            (Self::Cone | Self::ConeLarge, false) => Self::ConeLarge,
+            (Self::Relaxed | Self::RelaxedLarge, true) => Self::Relaxed,
+            (Self::Relaxed | Self::RelaxedLarge, false) => Self::RelaxedLarge,
+            (other, _) => other,
+        }
+    }
+
+    /// Whether it is the search for live parameters on a map of signed distances, to which convex hulls belong.
+    #[must_use]
+    pub const fn is_live(self) -> bool {
+        matches!(self, Self::Live | Self::LiveBeveled)
+    }
+
+    /// Whether [`Dispatch::Beams`] is for it.
+    #[must_use]
+    pub const fn takes_beams(self) -> bool {
+        self.is_live() || matches!(self, Self::Quadric | Self::QuadricLarge)
+    }
+}
+
+/// What a solid may have besides its shape; each holds what stands before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Features {
+    /// One colour, one solid in its box, no shadows.
+    Plain,
+    /// Maps of colour and bumps.
+    Textured,
+    /// Replicas and shadows.
+    Full,
+}
+
+/// What is stored of a hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Output {
+    /// Colour.
+    Color,
+    /// Every plane of a frame.
+    Planes,
+    /// Depth alone.
+    Depth,
+    /// Depth alone, along parallel rays.
+    DepthOrtho,
+}
+
+/// How the compute stage goes through pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Dispatch {
+    /// The rectangle of one instance.
+    Rectangle,
+    /// Squares of the screen, each with a list of instances.
+    Bins,
+    /// Tiles of one instance that beams have listed.
+    Beams,
+}
+
+/// One module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Module {
+    /// The entry file.
+    pub entry: Entry,
+    /// Which search it holds.
+    pub search: Search,
+    /// What else.
+    pub features: Features,
+    /// What it stores.
+    pub output: Output,
+    /// Of the compute stage.
+    pub dispatch: Dispatch,
+}
+
+impl Module {
+    /// A module without choices.
+    #[must_use]
+    pub const fn plain(entry: Entry) -> Self {
+        Self {
+            entry,
+            search: Search::None,
+            features: Features::Plain,
+            output: Output::Color,
+            dispatch: Dispatch::Rectangle,
+        }
+    }
+
+    /// The module of the list that does what this one would, with as little else as possible; `listed` says what is in the list.
+    #[must_use]
+    pub fn covered_by(self, listed: impl Fn(&Self) -> bool) -> Option<Self> {
+        [Features::Plain, Features::Textured, Features::Full]
+            .into_iter()
+            .filter(|features| *features >= self.features)
+            .flat_map(|features| {
+                [self.search, self.search.of_tables(false)].map(|search| Self {
+                    search,
+                    features,
+                    ..self
+                })
+            })
+            .find(listed)
+    }
+
+    /// The module of vertices `entry` that hand these fragments what they take, and nothing else.
+    #[must_use]
+    pub fn vertices(&self, entry: Entry) -> Self {
+        use Search as S;
+        let search = match self.search {
+            _ if entry == Entry::HullVertex => S::None,
+            S::Quadric | S::QuadricLarge | S::Cone | S::ConeLarge => S::Quadric,
+            S::Relaxed | S::RelaxedLarge => S::Relaxed,
+            _ => S::Live,
+        };
+        let shaded = matches!(self.output, Output::Color | Output::Planes);
+        Self {
+            search,
+            output: if shaded { Output::Color } else { Output::Depth },
+            ..Self::plain(entry)
+        }
+    }
+
+    /// The macros that the GLSL is compiled with; what is left out is 0 there. `build.rs` alone asks.
+    #[must_use]
+    #[allow(dead_code)]
+    pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
+        let mut all = match self.search {
+            Search::None => vec![],
+            Search::Circle => vec![("SEARCH", "SEARCH_CIRCLE")],
+            Search::CircleRgba8 => vec![("SEARCH", "SEARCH_CIRCLE"), ("RGBA8", "1")],
+            Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
+            Search::LiveBeveled => vec![("SEARCH", "SEARCH_LIVE"), ("BEVELED", "1")],
+            Search::LiveRgba8 => {
+                vec![("SEARCH", "SEARCH_LIVE"), ("BEVELED", "1"), ("RGBA8", "1")]
+            }
+            Search::Linear => vec![("SEARCH", "SEARCH_LINEAR")],
+            Search::LinearRgba8 => vec![("SEARCH", "SEARCH_LINEAR"), ("RGBA8", "1")],
+            Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC"), ("OWN_TABLES", "1")],
+            Search::QuadricLarge => vec![("SEARCH", "SEARCH_QUADRIC")],
+            Search::Cone => vec![("SEARCH", "SEARCH_CONE"), ("OWN_TABLES", "1")],
+            Search::ConeLarge => vec![("SEARCH", "SEARCH_CONE")],
+            Search::Relaxed => vec![("SEARCH", "SEARCH_RELAXED"), ("OWN_TABLES", "1")],
+            Search::RelaxedLarge => vec![("SEARCH", "SEARCH_RELAXED")],
+        };
+        if self.features >= Features::Textured {
+            all.push(("TEXTURED", "1"));
+        }
+        if self.features == Features::Full {
+            all.push(("REPEATED", "1"));
+            if self.output <= Output::Planes {
+                all.push(("SHADOWED", "1"));
+            }
+        }
+        match self.output {
+            Output::Color => {}
+            Output::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
+            Output::Depth => all.push(("OUTPUT", "OUTPUT_DEPTH")),
+            Output::DepthOrtho => all.extend([("OUTPUT", "OUTPUT_DEPTH"), ("ORTHO", "1")]),
+        }
+        match self.dispatch {
+            Dispatch::Rectangle => {}
+            Dispatch::Bins => all.push(("DISPATCH", "DISPATCH_BINS")),
+            Dispatch::Beams => all.push(("DISPATCH", "DISPATCH_BEAMS")),
+        }
+        all
+    }
+
+    /// Its name: the entry file, then what tells it from others of that file.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let mut name = self.entry.file().to_owned();
+        let mut add = |part: &dyn std::fmt::Debug| {
+            name.push('.');
+            name.push_str(&format!("{part:?}").to_lowercase());
+        };
+        if self.entry == Entry::Beam {
+            return name;
+        }
+        if self.search != Search::None {
+            add(&self.search);
+        }
+        add(&self.features);
+        add(&self.output);
+        if self.entry == Entry::Trace {
+            add(&self.dispatch);
+        }
+        name
+    }
+}
+
+/// Searches that boxes and the compute stage are drawn by.
+const SEARCHES: [Search; 13] = [
+    Search::Circle,
+    Search::CircleRgba8,
+    Search::Live,
+    Search::LiveBeveled,
+    Search::LiveRgba8,
+    Search::Linear,
+    Search::LinearRgba8,
+    Search::Quadric,
+    Search::QuadricLarge,
+    Search::Cone,
+    Search::ConeLarge,
+    Search::Relaxed,
+    Search::RelaxedLarge,
+];
+
+/// Whether boxes and the compute stage have a module of these. Searches that are there to be compared with, and rare cases, are drawn
+/// by more general modules where they are not drawn plain.
+fn has(search: Search, features: Features, output: Output, dispatch: Dispatch) -> bool {
+    use Search as S;
+    let main = matches!(search, S::Live | S::LiveBeveled | S::Quadric);
+    if dispatch == Dispatch::Beams && !search.takes_beams() {
+        return false;
+    }
+    match (output, features) {
+        (Output::Color, Features::Plain) => true,
+        (Output::Color, Features::Textured) => main,
+        (Output::Planes, Features::Plain) => main || matches!(search, S::Circle | S::CircleRgba8),
+        (Output::Planes, Features::Textured) => false,
+        (Output::Color | Output::Planes, Features::Full) => !matches!(search, S::Cone | S::Relaxed),
+        (Output::Depth | Output::DepthOrtho, features) => {
+            features != Features::Textured && (main || search == S::QuadricLarge)
+        }
+    }
+}
+
+/// Every module, in order.
+#[must_use]
+pub fn modules() -> Vec<Module> {
+    use Output as O;
+    let mut all = vec![Module::plain(Entry::Beam)];
+    for output in [O::Color, O::Depth] {
+        let vertex = |entry, search| Module {
+            search,
+            output,
+            ..Module::plain(entry)
+        };
+        all.push(vertex(Entry::BoxVertex, Search::Live));
+        all.push(vertex(Entry::BoxVertex, Search::Quadric));
+        all.push(vertex(Entry::ConvexHullVertex, Search::Live));
+        all.push(vertex(Entry::HullVertex, Search::None));
+    }
+    all.push(Module {
+        search: Search::Relaxed,
+        ..Module::plain(Entry::BoxVertex)
+    });
+    for output in [O::Color, O::Planes, O::Depth, O::DepthOrtho] {
+        let shaded = matches!(output, O::Color | O::Planes);
+        for features in [Features::Plain, Features::Textured, Features::Full] {
+            let fragment = |entry, search| Module {
+                entry,
+                search,
+                features,
+                output,
+                dispatch: Dispatch::Rectangle,
+            };
+            for search in SEARCHES {
+                if has(search, features, output, Dispatch::Rectangle) {
+                    all.push(fragment(Entry::Box, search));
+                }
+                for dispatch in [Dispatch::Rectangle, Dispatch::Bins, Dispatch::Beams] {
+                    if shaded && has(search, features, output, dispatch) {
+                        all.push(Module {
+                            dispatch,
+                            ..fragment(Entry::Trace, search)
+                        });
+                    }
+                }
+            }
+            if shaded || features == Features::Plain {
+                all.push(fragment(Entry::Hull, Search::Quadric));
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,339 @@
+//! What Rust and GLSL say of the same bytes agrees: block layouts, specialisation constants, the list of modules, and the SPIR-V that
+//! is kept for builds without shaderc.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::gpu::blocks::{FrameBlock, InstanceBlock, LightBlock, ShadowBlock, SolidBlock};
+use crate::pieces::{ROWS, Tables};
+use crate::profile::Profile;
+use crate::scene::{Lighting, Object};
+use crate::settings::{Planes, SearchSettings, Solver};
+use crate::shader::list::{Entry, modules};
+use crate::shader::module::unpacked;
+use crate::shader::{Kind, Met, Module, Variant, depth_less, generated as g, words};
+use std::collections::{BTreeMap, BTreeSet};
+use std::mem::{offset_of, size_of};
+use std::sync::Arc;
+
+/// How many modules there are.
+const MODULES: usize = 181;
+
+/// Opcodes and decorations of the SPIR-V specification that matter here.
+mod op {
+    pub const NAME: u32 = 5;
+    pub const MEMBER_NAME: u32 = 6;
+    pub const DECORATE: u32 = 71;
+    pub const MEMBER_DECORATE: u32 = 72;
+    pub const SPEC_ID: u32 = 1;
+    pub const OFFSET: u32 = 35;
+}
+
+fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {
+    let mut all = Vec::new();
+    let mut rest = &words[5..];
+    while let Some(first) = rest.first() {
+        let (this, next) = rest.split_at((first >> 16) as usize);
+        all.push((first & 0xffff, &this[1..]));
+        rest = next;
+    }
+    all
+}
+
+fn text(words: &[u32]) -> String {
+    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+    let end = bytes.iter().position(|b| *b == 0).unwrap();
+    String::from_utf8(bytes[..end].to_vec()).unwrap()
+}
+
+/// Offsets of the members of the struct called `name`, by member.
+fn offsets(words: &[u32], name: &str) -> BTreeMap<String, u32> {
+    let all = instructions(words);
+    let id = all
+        .iter()
+        .filter(|(code, w)| *code == op::NAME && text(&w[1..]) == name)
+        .map(|(_, w)| w[0])
+        // A struct used in and out of a block is two types; the one with offsets counts.
+        .find(|id| {
+            all.iter()
+                .any(|(code, w)| *code == op::MEMBER_DECORATE && w[0] == *id && w[2] == op::OFFSET)
+        })
+        .unwrap_or_else(|| panic!("no struct {name}"));
+    let names: BTreeMap<u32, String> = all
+        .iter()
+        .filter(|(code, w)| *code == op::MEMBER_NAME && w[0] == id)
+        .map(|(_, w)| (w[1], text(&w[2..])))
+        .collect();
+    all.iter()
+        .filter(|(code, w)| *code == op::MEMBER_DECORATE && w[0] == id && w[2] == op::OFFSET)
+        .map(|(_, w)| (names[&w[1]].clone(), w[3]))
+        .collect()
+}
+
+/// Words that keep their names.
+fn layouts() -> Vec<u32> {
+    unpacked(g::LAYOUTS).unwrap()
+}
+
+macro_rules! assert_layout {
+    ($words:expr, $name:literal, $block:ty { $($field:ident),+ $(,)? }) => {
+        let rust: BTreeMap<String, u32> = [$((
+            stringify!($field).to_owned(),
+            u32::try_from(offset_of!($block, $field)).unwrap(),
+        )),+].into();
+        assert_eq!(offsets($words, $name), rust, $name);
+    };
+}
+
+#[test]
+fn blocks_have_the_same_layout_in_rust_and_glsl() {
+    let words = &layouts();
+    assert_layout!(
+        words,
+        "Frame",
+        FrameBlock {
+            clip_from_world,
+            eye,
+            dir_00,
+            dir_x,
+            dir_y,
+            forward,
+            ambient,
+            size,
+            lights
+        }
+    );
+    assert_layout!(words, "Light", LightBlock { towards, color });
+    assert_layout!(
+        words,
+        "Solid",
+        SolidBlock {
+            map,
+            bounds,
+            offset,
+            axis,
+            albedo,
+            specular,
+            texturing,
+            cells,
+            instances,
+            pieces,
+            hull,
+            single
+        }
+    );
+    assert_layout!(
+        words,
+        "ShadowBlock",
+        ShadowBlock {
+            shadow_batches,
+            shadow_solids
+        }
+    );
+    assert_layout!(
+        words,
+        "Instance",
+        InstanceBlock {
+            position_sx,
+            rotation,
+            scale_yz
+        }
+    );
+    assert_eq!(size_of::<InstanceBlock>(), 48);
+}
+
+/// The same comparison must fail when a member moves.
+#[test]
+#[should_panic(expected = "failed: Light")]
+fn a_moved_member_is_noticed() {
+    #[repr(C)]
+    struct Moved {
+        color: [f32; 4],
+        towards: [f32; 4],
+    }
+    assert_layout!(&layouts(), "Light", Moved { color, towards });
+}
+
+fn any(solver: Solver, planes: Planes) -> Variant {
+    let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
+    let object = Object::new("any", Arc::new(profile));
+    let settings = SearchSettings {
+        solver,
+        ..SearchSettings::default()
+    };
+    let lighting = Lighting::default();
+    Variant::new(
+        &settings,
+        planes,
+        solver,
+        &lighting,
+        &object,
+        Met::default(),
+    )
+}
+
+/// Identifiers of the specialisation constants that a module reads.
+fn constants_of(words: &[u32]) -> BTreeSet<u32> {
+    instructions(words)
+        .iter()
+        .filter(|(code, w)| *code == op::DECORATE && w[1] == op::SPEC_ID)
+        .map(|(_, w)| w[2])
+        .collect()
+}
+
+#[test]
+fn a_variant_sets_every_specialisation_constant() {
+    let set: BTreeSet<u32> = any(Solver::Hull, Planes::Color)
+        .constants()
+        .iter()
+        .map(|(id, _)| *id)
+        .collect();
+    let mut all = BTreeSet::new();
+    for module in modules() {
+        let used = constants_of(&words(&module).unwrap());
+        assert!(used.is_subset(&set), "{}: {used:?}", module.name());
+        if module.entry == Entry::Beam {
+            assert_eq!(used, BTreeSet::new(), "there is one list of tiles");
+        }
+        all.extend(used);
+    }
+    assert_eq!(all, set);
+}
+
+/// The list of modules is finite and known; whoever lengthens it sees by how much.
+#[test]
+fn modules_are_few_and_small() {
+    let all = modules();
+    let names: BTreeSet<String> = all.iter().map(Module::name).collect();
+    assert_eq!(names.len(), all.len());
+    assert_eq!(all.len(), MODULES);
+    for module in &all {
+        let bytes = 4 * words(module).unwrap().len();
+        let most = match module.features {
+            crate::shader::list::Features::Full => 80_000,
+            _ => 48_000,
+        };
+        assert!(bytes <= most, "{}: {bytes} bytes", module.name());
+    }
+}
+
+/// Locations of a module's inputs or outputs, by the SPIR-V number of the storage class.
+fn locations(words: &[u32], class: u32) -> BTreeSet<u32> {
+    const VARIABLE: u32 = 59;
+    const LOCATION: u32 = 30;
+    let all = instructions(words);
+    let of_class: BTreeSet<u32> = all
+        .iter()
+        .filter(|(code, w)| *code == VARIABLE && w[2] == class)
+        .map(|(_, w)| w[1])
+        .collect();
+    all.iter()
+        .filter(|(code, w)| *code == op::DECORATE && w[1] == LOCATION && of_class.contains(&w[0]))
+        .map(|(_, w)| w[2])
+        .collect()
+}
+
+/// Vertices hand over what their fragments take, and no more: validation layers take offence at more.
+#[test]
+fn vertices_hand_over_what_fragments_take() {
+    let mut count = 0;
+    for module in modules() {
+        let entries: &[Entry] = match module.entry {
+            Entry::Box if module.search.takes_beams() => {
+                &[Entry::BoxVertex, Entry::ConvexHullVertex]
+            }
+            Entry::Box => &[Entry::BoxVertex],
+            Entry::Hull => &[Entry::HullVertex],
+            _ => &[],
+        };
+        let taken = locations(&words(&module).unwrap(), 1);
+        for &entry in entries {
+            if entry == Entry::ConvexHullVertex && !module.search.is_live() {
+                continue;
+            }
+            let vertices = words(&module.vertices(entry)).unwrap();
+            assert_eq!(locations(&vertices, 3), taken, "{}", module.name());
+            count += 1;
+        }
+    }
+    assert!(count > 50);
+}
+
+/// Every pipeline that is drawn with has its modules.
+#[test]
+fn reachable_variants_have_modules() {
+    let compute = [false, true].map(|b| [false, true].map(|c| Some([b, c])));
+    for compute in compute.into_iter().flatten().chain([None]) {
+        for planes in [Planes::Color, Planes::All] {
+            for solver in Solver::ALL {
+                let fallback = Some(any(Solver::Live, planes));
+                let all = any(solver, planes).reachable(solver, true, compute, fallback);
+                for (variant, kind) in all {
+                    assert!(words(&variant.module(kind)).is_some(), "{variant:?}");
+                    assert!(variant.vertices(kind).is_none_or(|v| words(&v).is_some()));
+                }
+            }
+        }
+    }
+}
+
+/// Fragments that set a depth promise on which side of their triangle it is; for reversed depth on the other.
+#[test]
+fn depth_is_promised_greater_or_less() {
+    const EXECUTION_MODE: u32 = 16;
+    let promises = |words: &[u32]| -> Vec<u32> {
+        instructions(words)
+            .iter()
+            .filter(|(code, _)| *code == EXECUTION_MODE)
+            .map(|(_, w)| w[1])
+            .filter(|mode| [14, 15].contains(mode))
+            .collect()
+    };
+    let hull = any(Solver::Hull, Planes::Color);
+    let hull = words(&hull.in_shell().module(Kind::Hull)).unwrap();
+    let less = depth_less(&hull);
+    assert_eq!(promises(&hull), [14]);
+    assert_eq!(promises(&less), [15]);
+    let differing = hull.iter().zip(&less).filter(|(a, b)| a != b).count();
+    assert_eq!((hull.len(), differing), (less.len(), 1));
+}
+
+/// The tree over the rows of tables, as beams and searches count on it.
+#[test]
+fn tables_have_the_rows_and_nodes_of_the_shaders() {
+    let tables = Tables::new(&[], ROWS);
+    assert_eq!(ROWS, g::PIECE_ROWS);
+    assert_eq!(tables.nodes.len(), g::PIECE_NODES as usize);
+    let [rows, beams] = [0, 1].map(|level| tables.levels[level]);
+    assert_eq!((rows, beams), (0, g::BEAM_FIRST_NODE));
+    assert_eq!(tables.levels[2] - beams, g::BEAM_NODES);
+}
+
+/// What is kept was made from today's sources; and word for word, where the same compiler makes it here.
+#[test]
+fn kept_spirv_is_what_the_sources_give() {
+    let kept = |name: &str| {
+        let path = format!("{}/shaders-spirv/{name}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+    };
+    let kept_hashes = String::from_utf8(kept("sources.fnv")).unwrap();
+    let hashes: Vec<&str> = kept_hashes.lines().collect();
+    let same_compiler = hashes[1] == format!("{:#018x}", g::COMPILER_HASH);
+    assert_eq!(
+        hashes[0],
+        format!("{:#018x}", g::SOURCES_HASH),
+        "shaders-glsl/ changed; renew shaders-spirv/ with REVMAP_KEEP_SPIRV=1 cargo build"
+    );
+    if same_compiler {
+        for module in modules() {
+            let name = module.name();
+            let compiled = words(&module).unwrap();
+            let kept = unpacked(&kept(&format!("{name}.spv.z"))).unwrap();
+            assert!(
+                kept == compiled,
+                "{name}: kept words differ from the compiled"
+            );
+        }
+    }
+    let files = std::fs::read_dir(format!("{}/shaders-spirv", env!("CARGO_MANIFEST_DIR")));
+    let files = files.unwrap().count();
+    assert_eq!(files, modules().len() + 2, "files that nothing reads");
+}
