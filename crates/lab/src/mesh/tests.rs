@@ -1,11 +1,18 @@
 #![allow(clippy::unwrap_used)]
+use super::blocks::FrameBlock;
+use super::drawer::{MeshDrawer, MeshPipelines};
+use super::placed::SceneMeshes;
 use super::tessellation::Mesh;
+use crate::compare::{CompareOptions, compare};
 use glam::{DVec3, Vec3};
+use revmap::gpu::{Device, Offscreen};
 use revmap::pieces::{Contour, ContourSource};
 use revmap::profile::Profile;
-use revmap::scene::Offset;
+use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene};
+use revmap::settings::Settings;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
@@ -91,12 +98,14 @@ fn meshes_are_closed_and_hold_the_volume() {
     }
 }
 
-/// Straight walls are one frustum each, and creases stay sharp: the cup needs no more rings than its outline has sides.
+/// Straight walls are one frustum each, and creases stay sharp: the cup needs no more rings than
+/// its outline has sides.
 #[test]
 fn no_ring_is_wasted_and_no_corner_lost() {
     let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 24, 100);
     assert_eq!(mesh.rings, 5);
-    // All but the two poles have a vertex on either side of the crease, and nothing is kept that no triangle names.
+    // All but the two poles have a vertex on either side of the crease, and nothing is kept that no
+    // triangle names.
     assert_eq!(mesh.vertices.len(), 4 * 2 * 24 + 2);
     let coarse = Mesh::new(&contour(&CUP, &Offset::default()), 24, 2);
     assert_eq!(coarse.rings, 5);
@@ -153,7 +162,8 @@ fn straight_walls_keep_their_normals() {
     assert_eq!(upright.count(), 2 * 16);
 }
 
-/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing on them.
+/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing
+/// on them.
 #[test]
 fn jags_are_no_corners() {
     let mut jagged = vec![[0.0, 0.1], [0.2, 0.1]];
@@ -163,4 +173,59 @@ fn jags_are_no_corners() {
     let mesh = Mesh::new(&contour(&jagged, &Offset::default()), 16, 8);
     assert!(mesh.rings <= 8, "{}", mesh.rings);
     assert!(is_closed(&mesh));
+}
+
+/// Tori by the default search before, behind and through a torus as a mesh: all share one depth
+/// buffer, and the picture is the reference's of all of them.
+#[test]
+fn meshes_and_searches_hide_each_other() {
+    let device = Device::open_validated(None).unwrap();
+    let profile = Arc::new(Profile::polygon(&ring(256), 0.5).unwrap());
+    let torus = |x: f64, color| {
+        let mut object = Object::new("torus", profile.clone());
+        object.placement = Placement {
+            position: DVec3::new(x, 0.1 * x, -0.2 * x),
+            ..Placement::default()
+        };
+        object.color = color;
+        object
+    };
+    let camera = Camera::new(DVec3::new(2.2, 0.4, 1.3), DVec3::new(0.0, 0.0, 0.5));
+    let mut all = Scene::new(camera);
+    let searched = [torus(0.45, [0.8, 0.1, 0.1]), torus(-0.45, [0.1, 0.8, 0.1])];
+    let meshed = torus(0.0, [0.1, 0.1, 0.8]);
+    all.objects = [searched.as_slice(), &[meshed.clone()]].concat();
+    let mut ours = all.clone();
+    ours.objects = searched.to_vec();
+    let mut theirs = all.clone();
+    theirs.objects = vec![meshed];
+
+    let settings = Settings {
+        width: 240,
+        height: 180,
+        ..Settings::default()
+    };
+    let frame = CameraFrame::new(&camera, settings.width, settings.height).unwrap();
+    let mut offscreen = Offscreen::new(&device, &ours, &settings).unwrap();
+    let pipelines = MeshPipelines::new(&device).unwrap();
+    let pass = (offscreen.render_pass(), settings.planes);
+    let mut drawer = MeshDrawer::new(&pipelines, pass).unwrap();
+    let placed = SceneMeshes::new(256, 512).place(&theirs, &frame).unwrap();
+    let block = FrameBlock::new(offscreen.view(), &frame, &all.lighting());
+    drawer.update(&block, all.lights.len(), &placed).unwrap();
+
+    let truth = revmap_reference::draw(&all, &settings, &|_, _| {}).unwrap();
+    let options = CompareOptions::default();
+    offscreen.draw().unwrap();
+    let alone = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
+    offscreen.draw_with(Some(&drawer)).unwrap();
+    let both = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
+    assert!(both.wrong() < 2e-3, "{both}");
+    assert!(both.depth.unwrap().p99 < 0.3, "{both}");
+    assert!(
+        alone.wrong() > 0.1 && alone.depth.unwrap().p99 > 10.0,
+        "{alone}"
+    );
+    drop((drawer, offscreen));
+    device.check().unwrap();
 }
