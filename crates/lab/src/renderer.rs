@@ -125,12 +125,12 @@ impl MethodRenderer {
         }
     }
 
-    /// As [`Offscreen::rebuild_count`]; none of a mesh.
+    /// As [`Offscreen::rebuild_count`], or how many meshes were made.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         match self {
             Self::Search(offscreen) => offscreen.rebuild_count(),
-            Self::Mesh(_) => 0,
+            Self::Mesh(mesh) => mesh.rebuild_count(),
         }
     }
 

@@ -398,7 +398,10 @@ fn updates_leave_nothing_behind() {
                 2 => drop(scene.objects.remove(0)),
                 _ => {}
             }
+            let before = mesh.rebuild_count();
             mesh.update(&scene).unwrap();
+            // The first offset is new; the second is that of another object, the third is gone.
+            assert_eq!(mesh.rebuild_count() - before, u64::from(n == 0));
             mesh.draw().unwrap();
             let fresh = draw(&scene, &settings);
             let kept = mesh.read().unwrap();

@@ -89,6 +89,12 @@ impl MeshOffscreen {
         self.offscreen.read()
     }
 
+    /// How many meshes were made so far.
+    #[must_use]
+    pub fn rebuild_count(&self) -> u64 {
+        self.meshes.made_count()
+    }
+
     /// Bytes of vertices and indices on the device.
     #[must_use]
     pub fn mesh_bytes(&self) -> u64 {

@@ -31,6 +31,7 @@ pub(super) struct SceneMeshes {
     rings: u32,
     sources: Vec<(Arc<Profile>, ContourSource)>,
     made: Vec<Made>,
+    made_count: u64,
 }
 
 #[derive(Clone)]
@@ -48,7 +49,13 @@ impl SceneMeshes {
             rings,
             sources: Vec::new(),
             made: Vec::new(),
+            made_count: 0,
         }
+    }
+
+    /// How many meshes were made so far.
+    pub fn made_count(&self) -> u64 {
+        self.made_count
     }
 
     /// The meshes of a checked scene, the nearest first. Only those whose profile or offset is new
@@ -108,6 +115,7 @@ impl SceneMeshes {
             mesh: Arc::new(Mesh::new(&contour, self.segments, self.rings)),
         };
         self.made.push(made.clone());
+        self.made_count += 1;
         Ok(made)
     }
 }

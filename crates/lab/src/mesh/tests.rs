@@ -194,7 +194,7 @@ fn meshes_and_searches_hide_each_other() {
     let mut all = Scene::new(camera);
     let searched = [torus(0.45, [0.8, 0.1, 0.1]), torus(-0.45, [0.1, 0.8, 0.1])];
     let meshed = torus(0.0, [0.1, 0.1, 0.8]);
-    all.objects = [searched.as_slice(), &[meshed.clone()]].concat();
+    all.objects = [searched.as_slice(), std::slice::from_ref(&meshed)].concat();
     let mut ours = all.clone();
     ours.objects = searched.to_vec();
     let mut theirs = all.clone();

@@ -33,7 +33,7 @@ pub fn meaning(method: Method) -> &'static str {
             "the default: the same pieces, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
         }
         Method::Mesh { .. } => {
-            "the rival: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
+            "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
         }
     }
 }

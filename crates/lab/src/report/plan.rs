@@ -63,7 +63,6 @@ impl Axes {
                                         map_source,
                                         map_format,
                                         planes: Planes::Color,
-                                        ..MethodSettings::default()
                                     });
                                 }
                             }
