@@ -1,4 +1,4 @@
-//! How long maps take to bake, on one core: `cargo bench --bench bake`. Our distance transform stands beside imageproc's.
+//! How long maps take to bake, on one core: `cargo bench --bench bake`.
 
 #![allow(clippy::unwrap_used)]
 
@@ -107,26 +107,11 @@ fn form(rows: u32) -> Vec<bool> {
 }
 
 #[divan::bench(args = [1024, 4096], sample_count = 10)]
-fn transform_ours_both_signs(bencher: Bencher, rows: usize) {
+fn distance_transform(bencher: Bencher, rows: usize) {
     let form = form(rows as u32);
     let around = Surroundings {
         left: false,
         others: true,
     };
     bencher.bench(|| squared_to_other(black_box(&form), rows, around));
-}
-
-#[divan::bench(args = [1024, 4096], sample_count = 10)]
-fn transform_imageproc_one_sign(bencher: Bencher, rows: u32) {
-    let form = form(rows);
-    let picture = image::GrayImage::from_fn(rows, rows, |x, y| {
-        image::Luma([if form[(y * rows + x) as usize] {
-            255
-        } else {
-            0
-        }])
-    });
-    bencher.bench(|| {
-        imageproc::distance_transform::euclidean_squared_distance_transform(black_box(&picture))
-    });
 }

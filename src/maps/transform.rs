@@ -231,23 +231,23 @@ mod tests {
             prop_assert_eq!(squared_to_other(&form, columns, around), brute_force(&form, columns, around));
         }
 
+        /// Of a few solid pixels in a large picture the nearest is looked for among them all.
         #[test]
-        fn equals_imageproc(
-            columns in 2u32..60,
-            rows in 2u32..60,
-            spots in prop::collection::vec((0u32..60, 0u32..60), 1..20),
+        fn the_nearest_of_a_few_spots_is_found(
+            columns in 2usize..60,
+            rows in 2usize..60,
+            spots in prop::collection::vec((0usize..60, 0usize..60), 1..20),
         ) {
-            use imageproc::distance_transform::euclidean_squared_distance_transform;
-            let mut picture = image::GrayImage::new(columns, rows);
-            for (x, y) in spots {
-                picture.put_pixel(x % columns, y % rows, image::Luma([255]));
+            let spots: Vec<_> = spots.iter().map(|(x, y)| (x % columns, y % rows)).collect();
+            let mut form = vec![false; columns * rows];
+            for (x, y) in &spots {
+                form[y * columns + x] = true;
             }
-            let theirs = euclidean_squared_distance_transform(&picture);
-            let form: Vec<bool> = picture.pixels().map(|p| p.0[0] > 0).collect();
-            let ours = squared_to_other(&form, columns as usize, OPEN);
-            for ((ours, theirs), solid) in ours.iter().zip(theirs.pixels()).zip(&form) {
-                if !solid {
-                    prop_assert_eq!(f64::from(*ours), theirs.0[0]);
+            for (k, ours) in squared_to_other(&form, columns, OPEN).into_iter().enumerate() {
+                let (x, y) = (k % columns, k / columns);
+                let to = |&(u, v): &(usize, usize)| u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2);
+                if !form[k] {
+                    prop_assert_eq!(Some(ours as usize), spots.iter().map(to).min());
                 }
             }
         }
