@@ -129,8 +129,8 @@ impl Textures {
             set: self.pool.take()?,
             color,
             slopes,
-            shape: shape,
-            arc: arc,
+            shape,
+            arc,
             shadows: shadows.clone(),
             pool: self.pool.clone(),
         });

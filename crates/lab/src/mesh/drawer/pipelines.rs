@@ -115,8 +115,9 @@ impl MeshPipelines {
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
         let (fragment, attachments) = match key.planes {
-            Planes::Color => (COLOR, 1),
             Planes::All => (PLANES, 4),
+            // An off-screen frame has at least colour.
+            Planes::Color | Planes::Depth { .. } => (COLOR, 1),
         };
         let (vertex, fragment) = (self.module(VERTEX)?, self.module(fragment)?);
         let stages = [
