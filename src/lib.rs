@@ -44,6 +44,44 @@
 //! # Ok::<(), revmap::Error>(())
 //! ```
 //!
+//! # In an engine
+//!
+//! A [`gpu::Renderer`] holds objects and records them into any command buffer: within a host's render pass or dynamic rendering,
+//! with the host's matrices and depth buffer, with several frames in flight.
+//!
+//! ```no_run
+//! # use revmap::{gpu::*, scene::*, settings::*};
+//! # fn main() -> revmap::Result<()> {
+//! # let (instance, physical, device): (ash::Instance, ash::vk::PhysicalDevice, ash::Device) = unimplemented!();
+//! # let (queue_family, features, cmd, slot, view, projection, viewport) = unimplemented!();
+//! # let (color, depth) = (ash::vk::Format::UNDEFINED, ash::vk::Format::UNDEFINED);
+//! # let (pawn, moved): (Object, Offset) = unimplemented!();
+//! // SAFETY: the handles belong together and outlive the borrow.
+//! let device = unsafe { Device::borrow(&HostDevice {
+//!     instance: &instance, physical, device: &device, queue_family, features,
+//!     queue: None, allocator: None, pipeline_cache: None,
+//! }) }?;
+//! let output = Output::Pass(PassFormats {
+//!     begun: PassKind::Dynamic { color: vec![color], depth, stencil: ash::vk::Format::UNDEFINED },
+//!     samples: 1, depth: DepthOrder::Reversed, planes: Planes::Color,
+//! });
+//! let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2)?;
+//! let pawn = renderer.add(pawn)?;
+//! renderer.prewarm()?.compile()?; // from here on no frame compiles a pipeline
+//!
+//! // In every frame:
+//! renderer.set_offset(pawn, moved)?;
+//! let view = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
+//! // SAFETY: `cmd` is recording, and the frame before in this slot is done.
+//! unsafe { renderer.prepare(cmd, slot, &view)? };
+//! // ... begin the pass, draw what is yours ...
+//! unsafe { renderer.record(cmd, slot) };
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! `examples/engine` is such a host, whole.
+//!
 //! # A tour
 //!
 //! Data flows one way, and each module knows only those before it:
@@ -55,8 +93,7 @@
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
-//! | [`shader`] | SPIR-V made from `shaders-glsl/`, and the variants that pipelines are specialised for |
-//! | [`gpu`] | device, renderer, timestamps |
+//! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
 //! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
 //! # Features

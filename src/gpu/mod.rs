@@ -51,6 +51,7 @@ pub use prewarm::Prewarm;
 pub use renderer::{ObjectId, Renderer};
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
 pub use requirements::Requirements;
+pub use target::ComputeTarget;
 pub use view::{View, Viewport};
 
 use crate::error::Result;

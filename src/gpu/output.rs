@@ -8,7 +8,7 @@ use ash::vk;
 pub enum Output {
     /// Fragments, in a render pass or dynamic rendering that the host begins.
     Pass(PassFormats),
-    /// Pixels that a compute shader traces, in a buffer of the renderer ([`ComputeTarget`](super::ComputeTarget)).
+    /// Pixels that a compute shader traces, into a [`ComputeTarget`](super::ComputeTarget).
     Compute(Planes),
 }
 

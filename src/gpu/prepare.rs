@@ -76,7 +76,7 @@ impl Renderer {
             );
         }
         if matches!(self.output, Output::Compute(_)) && self.target.is_none() {
-            return usage("compute has no target yet; set one".into());
+            return usage("compute has no target yet; give one to set_compute_target".into());
         }
         Ok(())
     }

@@ -63,7 +63,7 @@ impl Renderer {
     /// * `prepare` was called for `slot` since its last frame, and nothing was added or removed in between;
     /// * `cmd` is recording, outside of a pass; writes to the target before are made available to compute shaders;
     /// * the renderer lives, and `slot` is not prepared again, until the commands have run.
-    pub(crate) unsafe fn record_compute(&self, cmd: vk::CommandBuffer, slot: usize) {
+    pub unsafe fn record_compute(&self, cmd: vk::CommandBuffer, slot: usize) {
         let Some(slot) = self.frames.get(slot) else {
             return;
         };

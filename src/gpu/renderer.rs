@@ -434,7 +434,18 @@ impl Renderer {
             })
     }
 
-    /// Sets what shaders write to besides attachments.
+    /// Sets what compute writes to, from the next prepared frame on.
+    ///
+    /// # Safety
+    /// This call keeps the handles; [`Renderer::prepare`] binds them.
+    ///
+    /// The caller must see to it that
+    /// * they are of this device, as [`ComputeTarget`] describes them, and large enough for every view's viewport, which begins at 0;
+    /// * they live until another target is set and the frames that were recorded before are done.
+    pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) {
+        self.set_target(Some(target));
+    }
+
     pub(super) fn set_target(&mut self, target: Option<ComputeTarget>) {
         let generation = self.target.as_ref().map_or(0, |t| t.1) + 1;
         self.target = target.map(|target| (target, generation));

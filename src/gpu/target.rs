@@ -12,11 +12,15 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
-/// What compute shaders, and fragments of all planes, write to besides attachments.
-pub(crate) struct ComputeTarget {
-    /// Two words a pixel (`pixel_words.glsl`).
+/// What compute shaders write to, and fragments of all planes besides their attachments.
+#[derive(Clone, Debug)]
+pub struct ComputeTarget {
+    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all pixels, as bits of floats; then a
+    /// second word of each, which is the colour, packed as `R8G8B8A8_SRGB`, where colour alone is drawn, else a count of look-ups.
+    /// The host clears it before a frame, depths to 1.0 and colours to its background, or fills in what is already drawn.
     pub words: vk::Buffer,
-    /// Storage images of all planes; none where colour alone is drawn, or fragments draw.
+    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where colour alone is drawn, or fragments
+    /// draw.
     pub images: Vec<vk::ImageView>,
 }
 

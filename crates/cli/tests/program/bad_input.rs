@@ -222,11 +222,6 @@ fn baking_what_is_no_profile() {
             ["--map-rows", "1"],
         ),
         (
-            "bake half.png -o map.png --map-source exact",
-            1,
-            ["half.png", "exact"],
-        ),
-        (
             "bake half.png -o map.arc.png --projection planar",
             2,
             ["map.arc.png", "--projection"],
