@@ -1,6 +1,8 @@
 //! What tests share that need no device.
 
 #[cfg(feature = "drawing")]
+#[allow(dead_code)]
 pub mod rays;
 pub mod samples;
+#[allow(dead_code)] // some are for real profiles, which are drawings
 pub mod shapes;
