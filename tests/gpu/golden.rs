@@ -1,4 +1,4 @@
-//! A picture of each real profile, looked at and kept. `REVMAP_BLESS=1 cargo test --test golden` keeps new ones: look at them
+//! A picture of each real profile, looked at and kept. `REVMAP_BLESS=1 cargo test --test gpu golden` keeps new ones: look at them
 //! before they are committed. A picture that is missing fails.
 
 use crate::common::draw;

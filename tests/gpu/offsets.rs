@@ -98,7 +98,7 @@ fn the_conservative_rule_passes_nothing() {
     assert!(papers.passed > 0, "{papers:?}");
 }
 
-/// Writes the table of docs/offsets.md: `cargo test --release --test offsets -- --ignored`.
+/// Writes the table of docs/offsets.md: `cargo test --release --test gpu write_the_table -- --ignored`.
 #[test]
 #[ignore = "draws for minutes; writes the documentation's table"]
 fn write_the_table() {

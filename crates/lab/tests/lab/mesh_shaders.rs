@@ -2,8 +2,7 @@
 //! shaders. It was made from today's sources; where the same compiler is here, word for word.
 //!
 //! After a change to the GLSL:
-//! `REVMAP_KEEP_SPIRV=1 cargo test -p revmap-lab --features shaderc --test mesh_shaders`.
-#![allow(clippy::unwrap_used, clippy::panic)]
+//! `REVMAP_KEEP_SPIRV=1 cargo test -p revmap-lab --features shaderc mesh_shaders`.
 
 use std::path::{Path, PathBuf};
 

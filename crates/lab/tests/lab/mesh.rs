@@ -1,11 +1,7 @@
 //! The mesh baseline: that it is the same solid, as exact as its tessellation lets it be, shaded as
 //! the renderer shades, and that what it does not draw is refused. All under the validation layers.
-#![allow(clippy::unwrap_used)]
 
-#[path = "../../../tests/common/shapes.rs"]
-#[allow(dead_code)]
-mod shapes;
-
+use crate::shapes;
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::error::Stage;
 use revmap::frame::Frame;

@@ -1,0 +1,16 @@
+//! The benchmark with a stand-in for the device, and the mesh baseline on a real one.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+#[cfg(feature = "report")]
+mod benchmark;
+#[cfg(feature = "mesh")]
+mod mesh;
+mod mesh_shaders;
+#[cfg(feature = "report")]
+mod planted_faults;
+#[cfg(feature = "mesh")]
+#[path = "../../../../tests/common/shapes.rs"]
+#[allow(dead_code)]
+mod shapes;
+#[cfg(feature = "report")]
+mod stand_in;
