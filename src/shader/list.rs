@@ -43,8 +43,12 @@ pub enum Search {
     None,
     /// The papers' loop.
     Circle,
-    /// The same on the papers' texture.
+    /// The same where there may be a bevel.
+    CircleBeveled,
+    /// The papers' loop on the papers' texture.
     CircleRgba8,
+    /// The same where there may be a bevel.
+    CircleBeveledRgba8,
     /// The search for live parameters.
     Live,
     /// The same with steps that allow for a bevel.
@@ -70,6 +74,18 @@ pub enum Search {
 }
 
 impl Search {
+    /// The search that does this one's work and more: with a bevel, of tables of any size. `live` and `quadric` stay what they are.
+    #[must_use]
+    pub const fn general(self) -> Self {
+        match self {
+            Self::Circle => Self::CircleBeveled,
+            Self::CircleRgba8 => Self::CircleBeveledRgba8,
+            Self::Cone => Self::ConeLarge,
+            Self::Relaxed => Self::RelaxedLarge,
+            other => other,
+        }
+    }
+
     /// The same search of tables that fit into a uniform buffer, or do not.
     #[must_use]
     pub const fn of_tables(self, fit: bool) -> Self {
@@ -167,7 +183,7 @@ impl Module {
             .into_iter()
             .filter(|features| *features >= self.features)
             .flat_map(|features| {
-                [self.search, self.search.of_tables(false)].map(|search| Self {
+                [self.search, self.search.general()].map(|search| Self {
                     search,
                     features,
                     ..self
@@ -201,14 +217,28 @@ impl Module {
         let mut all = match self.search {
             Search::None => vec![],
             Search::Circle => vec![("SEARCH", "SEARCH_CIRCLE")],
+            Search::CircleBeveled => vec![("SEARCH", "SEARCH_CIRCLE"), ("BEVELED", "1")],
             Search::CircleRgba8 => vec![("SEARCH", "SEARCH_CIRCLE"), ("RGBA8", "1")],
+            Search::CircleBeveledRgba8 => {
+                vec![
+                    ("SEARCH", "SEARCH_CIRCLE"),
+                    ("BEVELED", "1"),
+                    ("RGBA8", "1"),
+                ]
+            }
             Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
             Search::LiveBeveled => vec![("SEARCH", "SEARCH_LIVE"), ("BEVELED", "1")],
             Search::LiveRgba8 => {
                 vec![("SEARCH", "SEARCH_LIVE"), ("BEVELED", "1"), ("RGBA8", "1")]
             }
-            Search::Linear => vec![("SEARCH", "SEARCH_LINEAR")],
-            Search::LinearRgba8 => vec![("SEARCH", "SEARCH_LINEAR"), ("RGBA8", "1")],
+            Search::Linear => vec![("SEARCH", "SEARCH_LINEAR"), ("BEVELED", "1")],
+            Search::LinearRgba8 => {
+                vec![
+                    ("SEARCH", "SEARCH_LINEAR"),
+                    ("BEVELED", "1"),
+                    ("RGBA8", "1"),
+                ]
+            }
             Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC"), ("OWN_TABLES", "1")],
             Search::QuadricLarge => vec![("SEARCH", "SEARCH_QUADRIC")],
             Search::Cone => vec![("SEARCH", "SEARCH_CONE"), ("OWN_TABLES", "1")],
@@ -263,9 +293,11 @@ impl Module {
 }
 
 /// Searches that boxes and the compute stage are drawn by.
-const SEARCHES: [Search; 13] = [
+const SEARCHES: [Search; 15] = [
     Search::Circle,
+    Search::CircleBeveled,
     Search::CircleRgba8,
+    Search::CircleBeveledRgba8,
     Search::Live,
     Search::LiveBeveled,
     Search::LiveRgba8,
@@ -292,7 +324,7 @@ fn has(search: Search, features: Features, output: Output, dispatch: Dispatch) -
         (Output::Color, Features::Textured) => main,
         (Output::Planes, Features::Plain) => main || matches!(search, S::Circle | S::CircleRgba8),
         (Output::Planes, Features::Textured) => false,
-        (Output::Color | Output::Planes, Features::Full) => !matches!(search, S::Cone | S::Relaxed),
+        (Output::Color | Output::Planes, Features::Full) => search == search.general(),
         (Output::Depth | Output::DepthOrtho, features) => {
             features != Features::Textured && (main || search == S::QuadricLarge)
         }

@@ -219,6 +219,10 @@ impl Variant {
         let other = |search| match search {
             Search::Live => Some(Search::LiveBeveled),
             Search::LiveBeveled if solver == Solver::Live => Some(Search::Live),
+            Search::Circle => Some(Search::CircleBeveled),
+            Search::CircleBeveled => Some(Search::Circle),
+            Search::CircleRgba8 => Some(Search::CircleBeveledRgba8),
+            Search::CircleBeveledRgba8 => Some(Search::CircleRgba8),
             _ => None,
         };
         let twin = other(self.search).map(|search| Self { search, ..self });
@@ -313,8 +317,12 @@ impl Variant {
 fn search(settings: &SearchSettings, solver: Solver, beveled: bool) -> Search {
     let papers = settings.map_format == MapFormat::Rgba8;
     match solver {
-        Solver::Circle if papers => Search::CircleRgba8,
-        Solver::Circle => Search::Circle,
+        Solver::Circle => match (papers, beveled) {
+            (true, true) => Search::CircleBeveledRgba8,
+            (true, false) => Search::CircleRgba8,
+            (false, true) => Search::CircleBeveled,
+            (false, false) => Search::Circle,
+        },
         Solver::Live if papers => Search::LiveRgba8,
         // Where it stands in for another search there is one form of it, the general one.
         Solver::Live if beveled || settings.solver != Solver::Live => Search::LiveBeveled,

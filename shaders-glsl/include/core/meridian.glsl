@@ -27,7 +27,8 @@ vec2 point_rz(Meridian m, float s)
     return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
 }
 
-// Clips the ray to the box, the solid's height and the cylinder about it. False: it meets none of that.
+// Clips the ray to the box, the solid's height and the cylinder about it. False: it meets none of that. One way out: software
+// drivers run both sides of a branch, and a return costs them a mask of lanes from there on.
 bool clip_ray(vec3 eye, vec3 v, out Meridian m)
 {
     float R = solid.bounds.x;
@@ -43,22 +44,14 @@ bool clip_ray(vec3 eye, vec3 v, out Meridian m)
     near = mix(near, vec3(-1e30), still);
     far = mix(far, vec3(1e30), still);
     bvec3 beside = bvec3(uvec3(still) * (uvec3(lessThan(eye, low)) + uvec3(greaterThan(eye, high))));
-    if (any(beside)) {
-        return false;
-    }
 
     float t_in = max(near.x, max(near.y, near.z));
     float t_out = min(far.x, min(far.y, far.z));
     m.face_in = t_in == near.z ? FACE_Z : t_in == near.x ? FACE_X : FACE_Y;
     m.face_out = t_out == far.z ? FACE_Z : t_out == far.x ? FACE_X : FACE_Y;
     m.from_eye = t_in <= 0.0;
-    if (t_in <= 0.0) {
-        t_in = 0.0;
-        m.face_in = FACE_NONE;
-    }
-    if (t_in > t_out) {
-        return false;
-    }
+    m.face_in = m.from_eye ? FACE_NONE : m.face_in;
+    t_in = max(t_in, 0.0);
 
     m.v = v;
     m.a = dot(v.xy, v.xy);
@@ -66,30 +59,16 @@ bool clip_ray(vec3 eye, vec3 v, out Meridian m)
     float b = dot(o.xy, v.xy);
     float c = dot(o.xy, o.xy);
     float radius2 = solid.bounds.y * solid.bounds.y;
+    float inside = b * b - m.a * (c - radius2);
+    float root = sqrt(max(inside, 0.0));
+    bool along_axis = !(m.a > 0.0);
+    float enter = along_axis ? 0.0 : (-b - root) / m.a;
+    float leave = along_axis ? 1e30 : (-b + root) / m.a;
     float s_end = t_out - t_in;
-    float enter = 0.0;
-    if (m.a > 0.0) {
-        float inside = b * b - m.a * (c - radius2);
-        if (inside <= 0.0) {
-            return false;
-        }
-        float root = sqrt(inside);
-        enter = (-b - root) / m.a;
-        float leave = (-b + root) / m.a;
-        if (enter > 0.0) {
-            m.face_in = FACE_NONE;
-        }
-        enter = max(enter, 0.0);
-        if (leave < s_end) {
-            m.face_out = FACE_NONE;
-            s_end = leave;
-        }
-        if (enter > s_end) {
-            return false;
-        }
-    } else if (c > radius2) {
-        return false;
-    }
+    m.face_in = enter > 0.0 ? FACE_NONE : m.face_in;
+    m.face_out = leave < s_end ? FACE_NONE : m.face_out;
+    enter = max(enter, 0.0);
+    s_end = min(s_end, leave);
 
     m.t_start = t_in + enter;
     m.o = o + enter * v;
@@ -97,7 +76,7 @@ bool clip_ray(vec3 eye, vec3 v, out Meridian m)
     m.c = dot(m.o.xy, m.o.xy);
     m.s_end = s_end - enter;
     m.inverse_speed = inversesqrt(dot(v, v));
-    return true;
+    return !any(beside) && t_in <= t_out && (along_axis ? c <= radius2 : inside > 0.0) && enter <= s_end;
 }
 
 const vec2 EVERYWHERE = vec2(-1e30, 1e30);
@@ -121,15 +100,7 @@ bool narrow(inout Meridian m, vec2 span)
 
 vec3 face_normal(uint face, vec3 v, float sense)
 {
-    vec3 n = vec3(0.0);
-    if (face == FACE_X) {
-        n.x = sense * sign(v.x);
-    } else if (face == FACE_Y) {
-        n.y = sense * sign(v.y);
-    } else {
-        n.z = sense * sign(v.z);
-    }
-    return n;
+    return sense * sign(v) * vec3(face == FACE_X, face == FACE_Y, face != FACE_X && face != FACE_Y);
 }
 
 #endif

@@ -6,13 +6,16 @@
 
 float offset_width(float z)
 {
+    if (BEVELED == 0) {
+        return solid.offset.x;
+    }
     return solid.offset.x + solid.offset.y * min(1.0 - z, solid.offset.z);
 }
 
 // dw/dz
 float offset_slope(float z)
 {
-    return 1.0 - z < solid.offset.z ? -solid.offset.y : 0.0;
+    return BEVELED != 0 && 1.0 - z < solid.offset.z ? -solid.offset.y : 0.0;
 }
 
 float field(vec2 rz)

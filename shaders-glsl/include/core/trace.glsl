@@ -83,15 +83,20 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 #elif SEARCH == SEARCH_CONE
     return search_cone(m, side, s, steps, quadric);
 #elif SEARCH == SEARCH_RELAXED
+    uint end;
     if (side > 0.0) {
-        return search_relaxed(m, s, steps, quadric);
+        end = search_relaxed(m, s, steps, quadric);
+    } else {
+        end = search_cone(m, side, s, steps, quadric); // relaxed cones are for rays from outside
     }
-    return search_cone(m, side, s, steps, quadric); // relaxed cones are for rays from outside
+    return end;
 #else
     return search(m, side, max(side * f, 0.0), pixel_width(m.t_start), s, steps);
 #endif
 }
 
+// Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
+//
 // Look-ups are counted in `hit.steps` even when nothing is met. `span`: two t, before and after which nothing of the solid is.
 bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
 {

@@ -31,7 +31,7 @@
 #define RGBA8 0 // 1: the papers' texture of unsigned distance; else one channel of signed distance
 #endif
 #ifndef BEVELED
-#define BEVELED 0 // 1: steps allow for a bevel
+#define BEVELED 0 // 1: there may be a bevel
 #endif
 #ifndef OWN_TABLES
 #define OWN_TABLES 0 // 1: the batch's tables fit into a uniform buffer

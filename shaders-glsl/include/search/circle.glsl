@@ -19,27 +19,29 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     float threshold = hit_threshold();
     float last = 0.0;
     bool found = false;
+    bool left = false;
     int halvings = 0; // of a step that has passed the surface, as only a bevel lets it
     int most = int(solid.offset.w);
     for (int i = 1; i < most || halvings > 0; ++i) {
-        bool passed = halvings > 0 || (solid.offset.y != 0.0 && f < 0.0);
+        bool passed = BEVELED != 0 && (halvings > 0 || (solid.offset.y != 0.0 && f < 0.0));
         found = passed || f < threshold;
         if (halvings == PAPERS_HALVINGS || (found && !passed)) {
             break;
         }
         // The papers step by the distance to the extended form, not to the beveled one.
-        float bevel = side * (offset_width(point_rz(m, s).y) - solid.offset.x);
+        float bevel = BEVELED != 0 ? side * (offset_width(point_rz(m, s).y) - solid.offset.x) : 0.0;
         last = passed ? 0.5 * last : max(f + bevel, threshold) * m.inverse_speed;
         s += passed && f < 0.0 ? -last : last;
         halvings += passed ? 1 : 0;
-        if (s > m.s_end && !passed) {
-            return LEFT;
+        left = s > m.s_end && !passed;
+        if (left) {
+            break;
         }
         f = side * field(point_rz(m, s));
         ++steps;
     }
     // Out of steps: the papers show what has come near.
-    return found ? FOUND : (f < solid.map.z ? NEARLY : EXHAUSTED);
+    return left ? LEFT : found ? FOUND : (f < solid.map.z ? NEARLY : EXHAUSTED);
 }
 
 #endif

@@ -60,6 +60,7 @@ uint search_cone(Meridian m, float side, inout float s, inout uint steps, out ve
     bool arrives = true;
     bool past = false; // the row's level face
     hit_quadric = vec4(0.0);
+    bool found = false;
     for (int i = 0; i <= 2 * rows; ++i) {
         vec4 cone = piece_vector(uint(row));
         ++steps;
@@ -77,20 +78,18 @@ uint search_cone(Meridian m, float side, inout float s, inout uint steps, out ve
         float depth = side * (g.x * g.x - rr);
         bool in_already = i > 0 && depth >= 0.0;
         float u = in_already ? 0.0 : cone_root(m.a, half_rate, rr, g.x, g.y * m.v.z, side);
-        if (u >= 0.0 && t + u <= leave) {
+        found = u >= 0.0 && t + u <= leave;
+        if (found) {
             s = t + u;
             bool face = in_already && depth > 2e-6;
             hit_quadric = face ? vec4(0.0, 0.0, up == (side > 0.0) ? -1.0 : 1.0, 0.0)
                                : vec4(1.0, 0.0, -2.0 * g.y * max(g.x + g.y * m.v.z * u, 1e-6), 0.0);
-            return FOUND;
+            break;
         }
         float next = leave;
         if (side > 0.0 && !level) {
             float leap = cone_root(m.a, half_rate, rr, g.x, (up ? cone.z : cone.w) * abs(m.v.z), 1.0);
             next = leap >= 0.0 ? max(t + leap, leave) : 3e38;
-        }
-        if (next >= m.s_end) {
-            return LEFT;
         }
         t = next;
         arrives = !level || past;
@@ -98,12 +97,12 @@ uint search_cone(Meridian m, float side, inout float s, inout uint steps, out ve
         if (arrives) {
             int reached = int(floor((m.o.z + t * m.v.z) * n));
             row = up ? max(row + 1, reached) : min(row - 1, reached);
-            if (row < 0 || row >= rows) {
-                return LEFT;
-            }
+        }
+        if (next >= m.s_end || row < 0 || row >= rows) {
+            break;
         }
     }
-    return LEFT;
+    return found ? FOUND : LEFT;
 }
 
 #endif

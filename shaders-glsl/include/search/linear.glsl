@@ -23,10 +23,7 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
         before = found ? before : s;
         f = found ? f : f_in;
     }
-    if (!found) {
-        return LEFT;
-    }
-    if (REFINEMENT == REFINEMENT_HALVINGS) {
+    if (found && REFINEMENT == REFINEMENT_HALVINGS) {
         for (uint i = 0u; i < RELIEF_HALVINGS; ++i) {
             float middle = 0.5 * (before + s);
             bool within = side * field(point_rz(m, middle)) <= 0.0;
@@ -34,7 +31,8 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
             s = within ? middle : s;
             before = within ? before : middle;
         }
-    } else if (REFINEMENT == REFINEMENT_SECANTS) {
+    }
+    if (found && REFINEMENT == REFINEMENT_SECANTS) {
         for (uint i = 0u; i < SECANTS; ++i) {
             float guess = mix(before, s, f / max(f - f_in, 1e-30));
             float f_guess = side * field(point_rz(m, guess));
@@ -47,7 +45,7 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
         }
         s = mix(before, s, f / max(f - f_in, 1e-30));
     }
-    return FOUND;
+    return found ? FOUND : LEFT;
 }
 
 #endif

@@ -5,7 +5,7 @@
 #define SEARCH_RELAXED_GLSL
 #include "search/cone.glsl"
 
-const uint HALVINGS_OF_CONES = 12u;
+const int HALVINGS_OF_CONES = 12;
 
 // The row at a height, and its radius and slope there.
 vec4 row_at(float z, out vec2 radius)
@@ -49,11 +49,9 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
         outside = beside_row(m, t, cone, radius);
         ++steps;
     }
-    hit_quadric = vec4(0.0);
-    if (outside >= 0.0) {
-        return t >= m.s_end ? LEFT : EXHAUSTED;
-    }
-    for (uint i = 0u; i < HALVINGS_OF_CONES; ++i) {
+    bool found = outside < 0.0;
+    int halvings = found ? HALVINGS_OF_CONES : 0;
+    for (int i = 0; i < halvings; ++i) {
         float middle = 0.5 * (before + t);
         bool within = beside_row(m, middle, cone, radius) < 0.0;
         t = within ? middle : t;
@@ -65,7 +63,7 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
     // Deeper within than a halving explains: through a level face.
     bool face = radius.x - sqrt(max(square_at(m, s), 0.0)) > 2.0 * (t - before) / m.inverse_speed + 1e-6;
     hit_quadric = face ? vec4(0.0, 0.0, up ? -1.0 : 1.0, 0.0) : vec4(1.0, 0.0, -2.0 * radius.y * max(radius.x, 1e-6), 0.0);
-    return FOUND;
+    return found ? FOUND : t >= m.s_end ? LEFT : EXHAUSTED;
 }
 
 #endif
