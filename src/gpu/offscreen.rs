@@ -192,12 +192,33 @@ impl Offscreen {
         result
     }
 
-    /// Compiles every pipeline that updates can come to need, as long as no object's technique changes ([`Renderer::prewarm`]).
+    /// Compiles every pipeline that updates can come to need, as long as no object's technique changes ([`Renderer::prewarm`]), and
+    /// has the driver run each on nothing, as some compile only then ([`Renderer::record_prewarm`]).
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]).
+    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
     pub fn prewarm(&mut self) -> Result<()> {
-        self.renderer.prewarm()?.compile()
+        self.check_whole()?;
+        self.renderer.prewarm()?.compile()?;
+        let compute = self.settings.stage == DrawStage::Compute;
+        let Self {
+            renderer, target, ..
+        } = self;
+        self.commands.record(|cmd| {
+            // SAFETY: as in `draw_with`.
+            unsafe {
+                renderer.prepare(cmd, 0, &self.view)?;
+                target.clear(cmd, self.background, renderer.compares_depths());
+                if compute {
+                    return renderer.record_prewarm(cmd, 0);
+                }
+                target.begin(cmd, self.pass, self.background);
+                renderer.record_prewarm(cmd, 0)?;
+                self.device.raw.cmd_end_render_pass(cmd);
+            }
+            Ok(())
+        })?;
+        self.commands.submit_and_wait()
     }
 
     /// Draws one frame and waits for it.

@@ -3,13 +3,12 @@
 use super::device::Shared;
 use super::output::Output;
 use super::refresh::FALLBACK;
-use super::renderer::Renderer;
-use super::surface::OffsetSurface;
+use super::renderer::{Entry, Renderer};
 use crate::error::Result;
-use crate::scene::Object;
 use crate::settings::Solver;
 use crate::shader::generated::PIECE_VECTORS;
 use crate::shader::{Kind, Variant};
+use ash::vk;
 use std::sync::Arc;
 
 /// Pipelines that a renderer may come to need. It may be sent to another thread, and compiled there while the renderer draws.
@@ -57,8 +56,7 @@ impl Renderer {
         self.refresh()?;
         let mut wanted = Vec::new();
         for entry in self.ordered() {
-            let surface = entry.prepared.as_ref().and_then(|p| p.surface.as_deref());
-            self.reachable(&entry.object, surface, &mut wanted);
+            self.reachable(entry, &mut wanted);
         }
         Ok(Prewarm {
             wanted,
@@ -68,12 +66,48 @@ impl Renderer {
         })
     }
 
-    fn reachable(
-        &self,
-        object: &Object,
-        surface: Option<&OffsetSurface>,
-        all: &mut Vec<(Variant, Kind)>,
-    ) {
+    /// Records draws of no pixel, or dispatches of no group, with every pipeline of [`Renderer::prewarm`]. Some drivers, all software
+    /// drivers among them, compile shaders at the first draw; they do it when these commands run.
+    ///
+    /// # Errors
+    /// As [`Prewarm::compile`], for pipelines that it has not compiled.
+    ///
+    /// # Safety
+    /// This call does what [`Renderer::record`] does in a pass, and [`Renderer::record_compute`] outside; in a pass it sets the
+    /// scissor, too, to nothing.
+    ///
+    /// The caller must see to what the same function asks for.
+    pub unsafe fn record_prewarm(&self, cmd: vk::CommandBuffer, slot: usize) -> Result<()> {
+        let Some(slot) = self.frames.get(slot) else {
+            return Ok(());
+        };
+        let pipelines = self.device.pipelines()?;
+        let raw = &self.device.raw;
+        if self.draws_hulls() {
+            // SAFETY: `cmd` is recording, and the scissor is dynamic.
+            unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
+        }
+        let mut wanted = Vec::new();
+        for (&number, entry) in self.order.iter().zip(self.ordered()) {
+            wanted.clear();
+            self.reachable(entry, &mut wanted);
+            for &(variant, kind) in &wanted {
+                let pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
+                self.bind(cmd, slot, entry, pipeline, number);
+                if self.draws_hulls() {
+                    // SAFETY: `cmd` is recording within a pass; all that is bound lives as long as the caller promised.
+                    unsafe { raw.cmd_draw(cmd, 3, 1, 0, entry.instances.start) };
+                } else {
+                    self.dispatch(cmd, [0, 0], [0, 0]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn reachable(&self, entry: &Entry, all: &mut Vec<(Variant, Kind)>) {
+        let object = &entry.object;
+        let surface = entry.prepared.as_ref().and_then(|p| p.surface.as_deref());
         let (settings, solver) = (&self.settings, self.settings.solver);
         let planes = self.output.planes();
         let of = |solver| Variant::new(settings, planes, solver, &self.lighting, object, self.met);

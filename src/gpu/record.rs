@@ -3,6 +3,7 @@
 use super::bins::Rectangle;
 use super::frame_slot::FrameSlot;
 use super::hulls;
+use super::output::Output;
 use super::plan::{Tiles, Work};
 use super::renderer::{Draw, Entry, Renderer};
 use super::usage::{Usage, buffer_barrier};
@@ -26,12 +27,11 @@ impl Renderer {
             return;
         };
         let raw = &self.device.raw;
-        let point = vk::PipelineBindPoint::GRAPHICS;
         for (&number, entry) in self.order.iter().zip(self.ordered()) {
             let Some(work) = &entry.draw.work else {
                 continue;
             };
-            self.bind(cmd, slot, entry, point, number);
+            self.bind(cmd, slot, entry, entry.draw.pipeline, number);
             let first = entry.instances.start;
             let count = entry.instances.end - first;
             // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the caller promised.
@@ -70,7 +70,6 @@ impl Renderer {
         let raw = &self.device.raw;
         let groups = BIN_PIXELS / GROUP_PIXELS;
         let most = self.device.limits.max_compute_work_group_count[1];
-        let point = vk::PipelineBindPoint::COMPUTE;
         let mut first = true;
         // What is next reads the depths that were written before.
         let mut after_the_last = || {
@@ -90,19 +89,25 @@ impl Renderer {
                 Some(Work::Beams(copies)) => {
                     for tiles in copies {
                         after_the_last();
-                        self.bind(cmd, slot, entry, point, tiles.block.unwrap_or(number));
+                        self.bind(
+                            cmd,
+                            slot,
+                            entry,
+                            entry.draw.pipeline,
+                            tiles.block.unwrap_or(number),
+                        );
                         self.record_beams(cmd, slot, &entry.draw, tiles);
                     }
                 }
                 Some(Work::Rectangle(Rectangle { low, high })) => {
                     after_the_last();
-                    self.bind(cmd, slot, entry, point, number);
+                    self.bind(cmd, slot, entry, entry.draw.pipeline, number);
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
                     self.dispatch(cmd, [0, low.0 | low.1 << 16], groups);
                 }
                 Some(Work::Bins(bins)) => {
                     after_the_last();
-                    self.bind(cmd, slot, entry, point, number);
+                    self.bind(cmd, slot, entry, entry.draw.pipeline, number);
                     for start in bins.clone().step_by(most.max(1) as usize) {
                         let count = (bins.end - start).min(most);
                         self.dispatch(cmd, [start, 0], [groups * groups, count]);
@@ -166,7 +171,7 @@ impl Renderer {
     }
 
     /// `pushed` as in `bins.glsl`.
-    fn dispatch(&self, cmd: vk::CommandBuffer, pushed: [u32; 2], groups: [u32; 2]) {
+    pub(super) fn dispatch(&self, cmd: vk::CommandBuffer, pushed: [u32; 2], groups: [u32; 2]) {
         let raw = &self.device.raw;
         // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as `self`.
         unsafe {
@@ -177,15 +182,19 @@ impl Renderer {
         }
     }
 
-    /// Binds an entry's pipeline and sets, and the block of this number.
-    fn bind(
+    /// Binds a pipeline, an entry's sets, and the block of this number.
+    pub(super) fn bind(
         &self,
         cmd: vk::CommandBuffer,
         slot: &FrameSlot,
         entry: &Entry,
-        point: vk::PipelineBindPoint,
+        pipeline: vk::Pipeline,
         block: u32,
     ) {
+        let point = match self.output {
+            Output::Pass(_) => vk::PipelineBindPoint::GRAPHICS,
+            Output::Compute(_) => vk::PipelineBindPoint::COMPUTE,
+        };
         let textures = entry.prepared.as_ref().map(|p| p.textures.set);
         let sets = [slot.set, textures.unwrap_or_default(), slot.target_set];
         // Planes go to a target's words; nothing else of a pass names one.
@@ -194,7 +203,7 @@ impl Renderer {
         let raw = &self.device.raw;
         // SAFETY: the sets fit the layout, and all they name lives as long as the caller of `record` promised.
         unsafe {
-            raw.cmd_bind_pipeline(cmd, point, entry.draw.pipeline);
+            raw.cmd_bind_pipeline(cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(cmd, point, self.layout(), 0, &sets[..count], &offsets);
         }
     }
