@@ -119,4 +119,7 @@ pub mod scene;
 pub mod settings;
 mod shader;
 
+#[cfg(all(test, not(any(feature = "drawing", feature = "exr", feature = "jpeg"))))]
+mod lean_tests;
+
 pub use error::{Error, Result};

@@ -250,11 +250,4 @@ mod tests {
             assert!(decode(half, Stage::Map, "JPEG").is_err());
         }
     }
-
-    #[cfg(not(feature = "jpeg"))]
-    #[test]
-    fn a_jpeg_is_refused_with_the_name_of_the_feature() {
-        let error = decode(b"\xff\xd8\xff\xe0", Stage::Map, "PNG").unwrap_err();
-        assert!(error.to_string().contains("`jpeg`"), "{error}");
-    }
 }

@@ -99,6 +99,7 @@ impl Renderer {
                     unsafe { raw.cmd_draw(cmd, 3, 1, 0, entry.instances.start) };
                 } else {
                     self.dispatch(cmd, [0, 0], [0, 0]);
+                    self.wait_for_writes(cmd);
                 }
             }
         }

@@ -67,21 +67,13 @@ impl Renderer {
         let Some(slot) = self.frames.get(slot) else {
             return;
         };
-        let raw = &self.device.raw;
         let groups = BIN_PIXELS / GROUP_PIXELS;
         let most = self.device.limits.max_compute_work_group_count[1];
         let mut first = true;
         // What is next reads the depths that were written before.
         let mut after_the_last = || {
             if !std::mem::take(&mut first) {
-                let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
-                let barrier = vk::MemoryBarrier::default()
-                    .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-                    .dst_access_mask(access);
-                let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
-                let none = vk::DependencyFlags::empty();
-                // SAFETY: `cmd` is recording, outside a render pass.
-                unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
+                self.wait_for_writes(cmd);
             }
         };
         for (&number, entry) in self.order.iter().zip(self.ordered()) {
@@ -168,6 +160,19 @@ impl Renderer {
             raw.cmd_bind_pipeline(cmd, point, draw.pipeline);
             raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
         }
+    }
+
+    /// Between two dispatches of which one reads, or writes again, what the other wrote.
+    pub(super) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
+        let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
+        let barrier = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(access);
+        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let none = vk::DependencyFlags::empty();
+        let raw = &self.device.raw;
+        // SAFETY: `cmd` is recording, outside a render pass.
+        unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
     }
 
     /// `pushed` as in `bins.glsl`.

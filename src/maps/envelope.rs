@@ -18,7 +18,7 @@ pub(crate) const SLACK: f64 = 4.0;
 const WAYS: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// By how much the convex hull's level faces stand off, object units: those of a solid that its box cuts lie in the box's own, and the rasteriser must
-/// not be the one to decide where these are. With lavapipe's 256ths of a pixel no picture of `tests/convex_hulls.rs` differs without it; devices may
+/// not be the one to decide where these are. With lavapipe's 256ths of a pixel no picture of `tests/gpu/hulls.rs` differs without it; devices may
 /// have 16ths.
 const OFF: f64 = 1e-3;
 

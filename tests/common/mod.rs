@@ -11,6 +11,7 @@ use revmap::gpu::{self, Device};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene};
 use revmap::settings::Settings;
+use revmap_lab::compare::{CompareOptions, Comparison, compare};
 use std::sync::{Arc, OnceLock};
 
 /// The device of this process's tests. Without a device or without the layers, tests fail.
@@ -29,6 +30,15 @@ pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
 /// Draws the reference.
 pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
     revmap_reference::draw(scene, settings, &|_, _| {}).unwrap()
+}
+
+/// How far a frame is from the truth, FLIP aside; depths in texels of a map of so many rows.
+pub fn errors(truth: &Frame, frame: &Frame, rows: u32) -> Comparison {
+    let options = CompareOptions {
+        texel: 1.0 / f64::from(rows),
+        pixels_per_degree: None,
+    };
+    compare(truth, frame, &options).unwrap()
 }
 
 /// One object of a polygon, seen from `eye`.

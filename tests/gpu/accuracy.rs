@@ -1,10 +1,9 @@
 //! Pictures against the reference in double precision, and from where cameras seldom stand.
 
-use crate::common::{assert_sound, draw, eye, placement, reference, scene_of, shapes};
+use crate::common::{assert_sound, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_lab::compare::{CompareOptions, compare};
 
 fn precise() -> Settings {
     Settings {
@@ -36,10 +35,6 @@ const LIMITS: [(&str, f64, f64, f64); 8] = [
 /// Circle tracing with enough steps on an exact map, from the side, oblique and steep, stretched and not.
 #[test]
 fn circle_tracing_on_an_exact_map_is_accurate() {
-    let options = CompareOptions {
-        texel: 1.0 / 1024.0,
-        ..CompareOptions::default()
-    };
     let mut failures = Vec::new();
     for ((name, profile), (_, wrong, p99, degrees)) in shapes::all().into_iter().zip(LIMITS) {
         for elevation in [0.0, 30.0, 65.0] {
@@ -48,7 +43,7 @@ fn circle_tracing_on_an_exact_map_is_accurate() {
                 scene.objects[0].placement = placement([0.0; 3], [0.0; 3], scale);
                 let truth = reference(&scene, &precise());
                 let frame = draw(&scene, &precise());
-                let c = compare(&truth, &frame, &options).unwrap();
+                let c = errors(&truth, &frame, 1024);
                 let (depth, normal) = (c.depth.unwrap(), c.normal.unwrap());
                 let what = format!(
                     "{name:6} at {elevation:2} degrees, scale {scale:?}: {:5} hits, {:2} missed, {:2} ghosts, depth p99 {:6.3} texels, normals {:5.2} degrees rms",
@@ -132,14 +127,10 @@ fn strange_viewpoints_give_right_pictures() {
         }
         scene.camera.fov_y = 70.0;
         let truth = reference(&scene, &precise());
-        let options = CompareOptions {
-            texel: 1.0 / 1024.0,
-            ..CompareOptions::default()
-        };
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
             let frame = draw(&scene, &Settings { stage, ..precise() });
             assert_sound(&frame, name);
-            let c = compare(&truth, &frame, &options).unwrap();
+            let c = errors(&truth, &frame, 1024);
             let (depth, normal) = (c.depth.unwrap(), c.normal.unwrap());
             println!(
                 "{name}, {stage:?}: {} hits, {} missed, {} ghosts, depth p99 {:.3}, normals {:.2}",

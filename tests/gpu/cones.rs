@@ -189,4 +189,5 @@ fn what_is_not_single_valued_is_refused() {
             "{text}"
         );
     }
+    device().check().unwrap();
 }

@@ -76,6 +76,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
             .notes
             .is_empty()
     );
+    drop(renderer);
+    device().check().unwrap();
 }
 
 /// A line on the axis has no surface to follow, and encloses nothing. Searches on the map draw nothing of it, others say that they cannot.
@@ -122,4 +124,5 @@ fn what_has_no_surface_is_drawn_from_the_map() {
             assert!(error.message.contains("no surface"), "{error}");
         }
     }
+    device().check().unwrap();
 }

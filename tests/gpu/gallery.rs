@@ -72,4 +72,5 @@ fn maps_are_as_small_as_the_papers_claim() {
             }
         }
     }
+    device().check().unwrap();
 }

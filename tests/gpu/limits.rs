@@ -139,4 +139,6 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
     let error = gpu::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("object.0.extend"));
     assert!(error.to_string().contains("rgba8"), "{error}");
+    drop(renderer);
+    device().check().unwrap();
 }

@@ -11,7 +11,6 @@ mod agreement_textures;
 mod bitmaps;
 mod bumps;
 mod cones;
-mod convex_hulls;
 mod embedding;
 mod exhausted;
 mod fallback;
@@ -19,7 +18,8 @@ mod fallback;
 mod gallery;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod golden;
-mod hull;
+mod hulls;
+mod hulls_of_pieces;
 mod limits;
 mod offsets;
 mod replicas;

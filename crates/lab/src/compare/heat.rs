@@ -1,6 +1,8 @@
 //! Where a drawn frame is wrong, as pictures.
 
-use super::{CompareOptions, check, depth_error, flip, normal_error, silhouette};
+use super::{
+    CompareOptions, PIXELS_PER_DEGREE, check, depth_error, flip, normal_error, silhouette,
+};
 use revmap::Result;
 use revmap::frame::{Frame, Picture, pixel_count};
 
@@ -65,7 +67,8 @@ pub fn heat_map(
         Heat::Normal => Box::new(|k| decades(normal_error(reference, frame, k), 1e-2)),
         Heat::Silhouette => Box::new(rims(reference, frame)),
         Heat::Flip => {
-            let map = flip::flip_map(reference, frame, options.pixels_per_degree);
+            let resolution = options.pixels_per_degree.unwrap_or(PIXELS_PER_DEGREE);
+            let map = flip::flip_map(reference, frame, resolution);
             Box::new(move |k| ramp(f64::from(map[k])))
         }
     };

@@ -14,22 +14,25 @@ use rayon::prelude::*;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Frame;
 
+/// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels, seen from 0.7 m.
+pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
+
 /// What the comparison must know beyond the two frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareOptions {
     /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the object's scale. Under a
     /// scale that differs along the axes take the smallest factor: the strictest reading. Default: 1/512.
     pub texel: f64,
-    /// Pixels of the display per degree of the viewer's sight, for FLIP. Default: the one its authors propose, 67.02
-    /// (a display 0.7 m wide of 3840 pixels, seen from 0.7 m).
-    pub pixels_per_degree: f64,
+    /// Pixels of the display per degree of the viewer's sight, for FLIP. Default: [`PIXELS_PER_DEGREE`], 67.02.
+    /// `None`: no FLIP, which takes longer than all the rest.
+    pub pixels_per_degree: Option<f64>,
 }
 
 impl Default for CompareOptions {
     fn default() -> Self {
         Self {
             texel: 1.0 / 512.0,
-            pixels_per_degree: 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0,
+            pixels_per_degree: Some(PIXELS_PER_DEGREE),
         }
     }
 }
@@ -62,8 +65,8 @@ pub struct Comparison {
     pub normal: Option<Spread>,
     /// Hausdorff distance of the silhouettes in pixels; `+inf` when only one frame hits anything.
     pub silhouette_hausdorff: f64,
-    /// Mean of FLIP over the picture, 0 (equal) to 1.
-    pub flip: f64,
+    /// Mean of FLIP over the picture, 0 (equal) to 1; `None` where it was not wanted.
+    pub flip: Option<f64>,
 }
 
 impl Comparison {
@@ -93,7 +96,10 @@ impl std::fmt::Display for Comparison {
             "silhouette  {:.3} pixels (Hausdorff)",
             self.silhouette_hausdorff
         )?;
-        write!(f, "flip        {:.6}", self.flip)
+        match self.flip {
+            Some(flip) => write!(f, "flip        {flip:.6}"),
+            None => write!(f, "flip        not computed"),
+        }
     }
 }
 
@@ -129,7 +135,7 @@ pub fn compare(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Re
 pub struct Reference<'a> {
     frame: &'a Frame,
     options: CompareOptions,
-    eye: flip::Eye,
+    eye: Option<flip::Eye>,
 }
 
 impl<'a> Reference<'a> {
@@ -142,7 +148,7 @@ impl<'a> Reference<'a> {
         Ok(Self {
             frame,
             options: *options,
-            eye: flip::Eye::on(frame, options.pixels_per_degree),
+            eye: (options.pixels_per_degree).map(|resolution| flip::Eye::on(frame, resolution)),
         })
     }
 
@@ -152,7 +158,12 @@ impl<'a> Reference<'a> {
     /// [`Stage::Frame`] when the frames differ in size.
     pub fn compare(&self, frame: &Frame) -> Result<Comparison> {
         check(self.frame, frame, &self.options)?;
-        Ok(measured(self.frame, frame, &self.options, &self.eye))
+        Ok(measured(
+            self.frame,
+            frame,
+            &self.options,
+            self.eye.as_ref(),
+        ))
     }
 }
 
@@ -160,7 +171,7 @@ fn measured(
     reference: &Frame,
     frame: &Frame,
     options: &CompareOptions,
-    eye: &flip::Eye,
+    eye: Option<&flip::Eye>,
 ) -> Comparison {
     let count = |f: &(dyn Fn(usize) -> bool + Sync)| {
         (0..reference.pixels())
@@ -178,7 +189,7 @@ fn measured(
         }),
         normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
         silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
-        flip: flip::mean(&eye.flip(frame)),
+        flip: eye.map(|eye| flip::mean(&eye.flip(frame))),
     }
 }
 
@@ -193,7 +204,10 @@ pub(super) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) 
     }
     for (name, value) in [
         ("texel", options.texel),
-        ("pixels per degree", options.pixels_per_degree),
+        (
+            "pixels per degree",
+            options.pixels_per_degree.unwrap_or(1.0),
+        ),
     ] {
         if !(value.is_finite() && value > 0.0) {
             return wrong(format!("{name} is {value}; give a positive number"));
@@ -293,7 +307,7 @@ mod tests {
         let c = against(|_, _| {});
         assert_eq!(
             (c.missed, c.ghost, c.silhouette_hausdorff, c.flip, c.wrong()),
-            (0, 0, 0.0, 0.0, 0.0)
+            (0, 0, 0.0, Some(0.0), 0.0)
         );
         let none = Some(Spread {
             rms: 0.0,

@@ -127,7 +127,7 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
             num(e.depth.map(|d| d.max)),
             num(e.normal.map(|n| n.rms)),
             num(Some(e.silhouette_hausdorff)),
-            num(Some(e.flip)),
+            num(e.flip),
         ]);
         record
     };

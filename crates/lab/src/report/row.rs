@@ -275,7 +275,7 @@ impl Row {
             num(e.depth.map(|d| d.max)),
             num(e.normal.map(|n| n.rms)),
             num(Some(e.silhouette_hausdorff)),
-            num(Some(e.flip)),
+            num(e.flip),
             device.into(),
             driver.into(),
         ]

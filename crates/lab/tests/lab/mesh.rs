@@ -89,7 +89,7 @@ fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement 
 fn errors(truth: &Frame, frame: &Frame) -> Comparison {
     let options = CompareOptions {
         texel: TEXEL,
-        ..CompareOptions::default()
+        pixels_per_degree: None,
     };
     compare(truth, frame, &options).unwrap()
 }

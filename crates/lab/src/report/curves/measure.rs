@@ -28,7 +28,7 @@ impl Measure {
             Self::Depth => row.errors.depth.map(|d| d.p99),
             Self::Wrong => Some(100.0 * row.errors.wrong()),
             Self::Normal => row.errors.normal.map(|n| n.rms),
-            Self::Flip => Some(row.errors.flip),
+            Self::Flip => row.errors.flip,
         }
     }
 

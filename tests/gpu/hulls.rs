@@ -1,0 +1,267 @@
+//! Where something tells rays where to begin, or which part of a solid they may meet: hulls in the fragment stage, beams in compute. They
+//! draw what the same search draws from the box's sides, in every case that they take and in every case that they leave to the box.
+
+use crate::common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
+use crate::common::{draw, errors, eye, placement, scene_of, shapes};
+use glam::DVec3;
+use revmap::gpu::DrawPath;
+use revmap::maps::MapFormat;
+use revmap::profile::Profile;
+use revmap::scene::{Offset, Scene, Shadow};
+use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_lab::compare::Spread;
+
+/// A search with its hulls and beams, and what draws the same from the box.
+pub struct Search {
+    pub solver: Solver,
+    from_box: Solver,
+    /// Share of the pixels hit, beyond 2, that may differ.
+    tolerated: f64,
+    /// Of the angles between normals that which is bounded, and its bound, degrees.
+    normals: (fn(&Spread) -> f64, f64),
+}
+
+/// The default: hulls of the exact boundary. What may differ: silhouettes of grazing rays, and at a crease either face's normal is right.
+///
+/// Measured on lavapipe 22.3.6, over all views of this file and of `hulls_of_pieces.rs`: 1 pixel, of 38,661 of the torus from its rim; normals
+/// 0.98 degrees rms on the many creases of the discs from below (fragments), 0.54 elsewhere. The bound on pixels is for other
+/// devices' roundings.
+pub const EXACT: Search = Search {
+    solver: Solver::Hull,
+    from_box: Solver::Quadric,
+    tolerated: 0.0005,
+    normals: (|spread| spread.rms, 1.0),
+};
+
+/// The search for live parameters: convex hulls. Rays that begin elsewhere take other steps, of which each may pass a chord of a texel.
+///
+/// Measured on lavapipe 22.3.6, over all views of this file: 2 pixels (`REVMAP_MEASURE=1` prints each view's); normals 0.04 degrees (p99) at
+/// most, on the glass that is thinned.
+const LIVE: Search = Search {
+    solver: Solver::Live,
+    from_box: Solver::Live,
+    tolerated: 0.0002,
+    normals: (|spread| spread.p99, 0.1),
+};
+
+/// However small the solid.
+pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
+    Settings {
+        width: 320,
+        height: 240,
+        hull_from: 0,
+        solver,
+        stage,
+        ..Settings::default()
+    }
+}
+
+impl Search {
+    /// Both stages against the box.
+    #[track_caller]
+    pub fn assert_same(&self, name: &str, scene: &Scene, ways: Ways) {
+        let from_box = Settings {
+            hull_from: u32::MAX,
+            ..settings(self.from_box, DrawStage::Fragment)
+        };
+        let boxes = draw(scene, &from_box);
+        for stage in STAGES {
+            let frame = draw_by(name, scene, &settings(self.solver, stage), ways);
+            let (hits, edge, far) = apart(&boxes, &frame);
+            let name = format!("{name}, {}, {stage:?}", self.solver);
+            assert!(hits > 500, "{name}: only {hits} pixels are hit");
+            let spread = errors(&boxes, &frame, 512).normal.unwrap();
+            if std::env::var_os("REVMAP_MEASURE").is_some() {
+                println!("{name}: {edge} + {far} of {hits}, normals {spread:?}");
+            }
+            assert!(
+                (edge + far) as f64 <= self.tolerated * hits as f64 + 2.0,
+                "{name}: of {hits} pixels {edge} are hit by one alone, {far} seen elsewhere"
+            );
+            let (of, most) = self.normals;
+            assert!(of(&spread) < most, "{name}: normals {spread:?}");
+        }
+    }
+}
+
+/// Undercuts, cavities, a torus, ridges: from below, level, above, and from straight above into what is open. Of the convex hull cavities
+/// and undercuts are a part, and searched as ever.
+#[test]
+fn every_shape_from_all_sides() {
+    for (name, profile) in shapes::all() {
+        for elevation in [-50.0, 0.0, 25.0, 60.0, 89.5] {
+            let scene = scene_of(profile.clone(), eye(elevation, 2.2));
+            for search in [EXACT, LIVE] {
+                search.assert_same(&format!("{name} at {elevation}"), &scene, WRAPPED);
+            }
+        }
+    }
+}
+
+/// A slider: the offset moves from frame to frame. It grows the hull, and may grow the solid past its box, which then cuts it.
+#[test]
+fn offsets_in_motion() {
+    let both = [(-0.02, 0.0, 1.0), (0.03, 0.0, 1.0), (0.01, 0.2, 0.4)];
+    for (search, own) in [(EXACT, (0.0, 0.12, 1.0)), (LIVE, (0.2, 0.0, 1.0))] {
+        for (name, profile) in shapes::all() {
+            for (extend, bevel, chamfer) in both.into_iter().chain([own]) {
+                let mut scene = scene_of(profile.clone(), eye(20.0, 2.3));
+                scene.objects[0].offset = Offset {
+                    extend,
+                    bevel,
+                    chamfer,
+                };
+                // A cone whose foot is moved out by the whole bevel reaches past its box, which no hull of pieces can.
+                let ways = match (name, bevel) {
+                    ("cone", 0.12) => BOXED,
+                    _ => WRAPPED,
+                };
+                search.assert_same(
+                    &format!("{name} with {extend} {bevel} {chamfer}"),
+                    &scene,
+                    ways,
+                );
+            }
+        }
+    }
+}
+
+/// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it. An eye close to a solid, but outside of all its shells, is
+/// none of them; beams of the convex hull take all.
+#[test]
+fn eyes_anywhere() {
+    const BEAMED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Beams]];
+    for (name, profile) in [
+        ("sphere", shapes::sphere()),
+        ("glass", shapes::glass()),
+        ("torus", shapes::torus()),
+    ] {
+        for (search, place, at) in [
+            (EXACT, "the middle", DVec3::new(0.02, 0.01, 0.5)),
+            (LIVE, "the middle", DVec3::new(0.02, 0.01, 0.5)),
+            (EXACT, "the axis", DVec3::new(0.0, 0.0, 0.9)),
+            (LIVE, "the axis", DVec3::new(0.0, 0.0, 0.9)),
+            (EXACT, "close to the surface", DVec3::new(0.505, 0.0, 0.5)),
+            (EXACT, "the rim", DVec3::new(0.3, 0.2, 0.98)),
+            (LIVE, "the box's edge", DVec3::new(0.47, 0.46, 0.5)),
+        ] {
+            let mut scene = scene_of(profile.clone(), at);
+            scene.camera.target = DVec3::new(-0.3, 0.1, 0.45);
+            let ways = match (search.solver, name, place) {
+                (_, _, "close to the surface" | "the rim" | "the box's edge") => WRAPPED,
+                (Solver::Hull, "torus", "the axis") => WRAPPED,
+                (Solver::Hull, ..) => BOXED,
+                _ => BEAMED,
+            };
+            search.assert_same(&format!("{name} from {place}"), &scene, ways);
+        }
+    }
+}
+
+/// What box and search do as before: a solid cut by its box; turned and flattened ones; copies that pass through one another; coarse
+/// maps, whose texels are as large as their solid's parts; shadows, whose rays begin on the solid.
+#[test]
+fn all_that_the_box_draws() {
+    let mut cut = scene_of(shapes::vase(), eye(25.0, 2.4));
+    cut.objects[0].axis = [0.8, 0.5];
+    let mut replicas = scene_of(shapes::vase(), eye(25.0, 2.4));
+    replicas.objects[0].repeat = [2, 2, 2];
+    EXACT.assert_same("cut by its box", &cut, BOXED);
+    EXACT.assert_same("replicas", &replicas, BOXED);
+    let mut all: Vec<(&str, Scene, Ways)> = Vec::new();
+    all.push(("cut by its box", cut, WRAPPED));
+    all.push(("replicas", replicas, BOXED));
+    let mut flat = scene_of(shapes::jewel(), eye(35.0, 2.6));
+    flat.objects[0].placement = placement([0.1, 0.2, 0.3], [0.7, -0.4, 1.1], [1.5, 0.5, 0.8]);
+    all.push(("flattened", flat, WRAPPED));
+    let mut copies = scene_of(shapes::torus(), eye(35.0, 2.6));
+    copies.objects[0].instances = (0..3)
+        .map(|k| {
+            let turn = 2.1 * f64::from(k);
+            let place = [0.25 * turn.cos(), 0.25 * turn.sin(), 0.1 * turn];
+            placement(place, [0.3 * turn, 0.2, turn], [1.0; 3])
+        })
+        .collect();
+    all.push(("copies", copies, WRAPPED));
+    let mut coarse = scene_of(shapes::glass(), eye(25.0, 2.4));
+    coarse.objects[0].map_rows = 24;
+    all.push(("coarse", coarse, WRAPPED));
+    for (name, shadow) in [
+        ("hard shadows", Shadow::Hard),
+        ("soft shadows", Shadow::Soft),
+    ] {
+        let mut lit = scene_of(shapes::vase(), eye(40.0, 2.4));
+        lit.shadow = shadow;
+        all.push((name, lit, WRAPPED));
+    }
+    // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the hull's margin, too.
+    let drum = Profile::polygon(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]], 0.5).unwrap();
+    let mut ceiling = scene_of(drum, eye(15.0, 2.2));
+    ceiling.objects[0].offset.extend = 0.15;
+    all.push(("cut by the ceiling", ceiling.clone(), WRAPPED));
+    ceiling.camera.eye.z = 1.08;
+    all.push(("along the ceiling", ceiling, WRAPPED));
+    // What grows into the box from outside is in no texel.
+    let points = [[0.0, -0.5], [0.4, -0.5], [0.4, -0.05], [0.0, -0.05]];
+    let mut below = scene_of(Profile::polygon(&points, 0.5).unwrap(), eye(25.0, 2.2));
+    below.objects[0].offset.extend = 0.15;
+    all.push(("from below its box", below, BOXED));
+    for (name, scene, ways) in all {
+        LIVE.assert_same(name, &scene, ways);
+    }
+}
+
+/// From afar roundings of `t` are as large as texels.
+#[test]
+fn from_afar() {
+    for distance in [20.0, 400.0] {
+        let mut scene = scene_of(shapes::vase(), eye(30.0, distance));
+        scene.camera.fov_y = 2.0 * (0.6f64 / distance).atan().to_degrees();
+        LIVE.assert_same(&format!("{distance} away"), &scene, WRAPPED);
+    }
+}
+
+/// Eight bits bound nothing, and settings may ask for boxes.
+#[test]
+fn where_there_is_none() {
+    let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));
+    for stage in STAGES {
+        let papers = Settings {
+            map_format: MapFormat::Rgba8,
+            ..settings(Solver::Live, stage)
+        };
+        draw_by("8 bits", &scene, &papers, BOXED);
+        for solver in [Solver::Live, Solver::Hull] {
+            let boxes = Settings {
+                hull_from: u32::MAX,
+                ..settings(solver, stage)
+            };
+            draw_by("boxes", &scene, &boxes, BOXED);
+        }
+    }
+    let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();
+    let small = scene_of(profile, eye(25.0, 40.0));
+    let small_enough = Settings {
+        hull_from: Settings::default().hull_from,
+        ..settings(Solver::Live, DrawStage::Fragment)
+    };
+    draw_by("small", &small, &small_enough, BOXED);
+}
+
+/// The comparison notices a solid that is a fiftieth larger, and rays that begin a twentieth of the solid's height too late.
+#[test]
+fn a_wrong_solid_is_noticed() {
+    let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));
+    for (search, extend) in [(EXACT, 0.01), (LIVE, -0.05)] {
+        let mut other = scene.clone();
+        other.objects[0].offset.extend = extend;
+        let from_box = Settings {
+            hull_from: u32::MAX,
+            ..settings(search.from_box, DrawStage::Fragment)
+        };
+        let hull = settings(search.solver, DrawStage::Fragment);
+        let frame = draw_by("another", &other, &hull, WRAPPED);
+        let (hits, edge, far) = apart(&draw(&scene, &from_box), &frame);
+        assert!(edge + far > hits / 2, "{edge} + {far} of {hits}");
+    }
+}

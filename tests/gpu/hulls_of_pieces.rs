@@ -1,0 +1,176 @@
+//! Hulls of pieces and their beams, the default: crowds in one depth buffer, copies, slivers, faces of the box, and the truth itself.
+
+use super::hulls::{EXACT, settings};
+use crate::common::ways::{BOXED, STAGES, WRAPPED, draw_by};
+use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
+use glam::DVec3;
+use revmap::gpu::{DrawPath, Offscreen};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Object, Scene};
+use revmap::settings::{DrawStage, Solver};
+use std::sync::Arc;
+
+/// Several objects, some copied, through one another in one depth buffer: hulls beside boxes.
+#[test]
+fn a_crowd_in_one_depth_buffer() {
+    let mut crowd = Scene::new(Camera::new(
+        DVec3::new(2.6, 1.9, 1.7),
+        DVec3::new(0.0, 0.0, 0.3),
+    ));
+    let mut ways = [Vec::new(), Vec::new()];
+    for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
+        let mut object = Object::new(name, Arc::new(profile));
+        let turn = n as f64 * 0.8;
+        let place = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
+        object.placement = placement(place, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
+        if n % 3 == 1 {
+            object.instances = vec![
+                object.placement,
+                placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]),
+            ];
+        }
+        // Copies too small for lists of tiles of their own.
+        if n == 4 {
+            object.instances = (0..7)
+                .map(|k| {
+                    let turn = 0.9 * f64::from(k);
+                    placement(
+                        [0.7 * turn.cos(), 0.7 * turn.sin(), 0.5],
+                        [0.0; 3],
+                        [0.1; 3],
+                    )
+                })
+                .collect();
+        }
+        if n % 3 == 2 {
+            object.repeat = [2, 1, 1];
+        }
+        crowd.objects.push(object);
+        let [fragment, compute] = [
+            [DrawPath::Hull, DrawPath::Beams],
+            [
+                DrawPath::Hull,
+                if n == 4 {
+                    DrawPath::Bins
+                } else {
+                    DrawPath::Beams
+                },
+            ],
+            [DrawPath::Box, DrawPath::Rectangle],
+        ][n % 3];
+        ways[0].push(fragment);
+        ways[1].push(compute);
+    }
+    EXACT.assert_same("crowd", &crowd, ways.each_ref().map(Vec::as_slice));
+}
+
+/// Copies of the only object of a scene hide one another too, in every frame anew; beyond 64 copies they share bins.
+#[test]
+fn copies_of_a_lone_object() {
+    let copies = |count: usize, size: f64| {
+        let mut scene = scene_of(shapes::torus(), eye(35.0, 2.6));
+        scene.objects[0].instances = (0..count)
+            .map(|k| {
+                let turn = 2.1 * k as f64;
+                let place = [0.25 * turn.cos(), 0.25 * turn.sin(), 0.15 * turn % 0.5];
+                placement(place, [0.3 * turn, 0.2, turn], [size; 3])
+            })
+            .collect();
+        scene
+    };
+    let few = copies(3, 1.0);
+    EXACT.assert_same("three", &few, WRAPPED);
+    EXACT.assert_same("64", &copies(64, 0.7), WRAPPED);
+    EXACT.assert_same(
+        "65",
+        &copies(65, 0.7),
+        [&[DrawPath::Hull], &[DrawPath::Bins]],
+    );
+    let mut beside = few.clone();
+    beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);
+    EXACT.assert_same("one beside the picture", &beside, WRAPPED);
+
+    // The depths of a frame are none of the next one's business.
+    for stage in STAGES {
+        let settings = settings(Solver::Hull, stage);
+        let mut renderer = Offscreen::new(device(), &few, &settings).unwrap();
+        renderer.draw().unwrap();
+        let mut far = few.clone();
+        far.camera.eye = eye(35.0, 4.0);
+        renderer.update(&far).unwrap();
+        renderer.draw().unwrap();
+        let fresh = draw(&far, &settings);
+        assert_eq!(
+            renderer.read().unwrap().distance,
+            fresh.distance,
+            "{stage:?}"
+        );
+    }
+    device().check().unwrap();
+}
+
+/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100 pixels. Measured: 0.0055 (vase) and 0.0004
+/// (jewel), and no wrong pixel.
+#[test]
+fn the_reference_is_met() {
+    for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
+        let scene = scene_of(profile, eye(25.0, 2.2));
+        for stage in STAGES {
+            let wanted = settings(Solver::Hull, stage);
+            let truth = reference(&scene, &wanted);
+            let frame = draw_by(name, &scene, &wanted, WRAPPED);
+            let found = errors(&truth, &frame, 512);
+            let p99 = found.depth.unwrap().p99;
+            assert!(p99 <= 0.02, "{name}, {stage:?}: p99 {p99}");
+            let wrong = found.missed + found.ghost;
+            assert!(wrong <= 2, "{name}, {stage:?}: {wrong} wrong pixels");
+        }
+    }
+}
+
+/// Nothing to wrap, and a sliver of a solid.
+#[test]
+fn slivers() {
+    let sliver = Profile::polygon(&[[0.0, 0.5], [0.45, 0.501], [0.0, 0.502]], 0.5).unwrap();
+    let scene = scene_of(sliver, eye(35.0, 2.0));
+    EXACT.assert_same("sliver", &scene, WRAPPED);
+}
+
+/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known worst. Measured: at most 1 wrong pixel. A
+/// walk of the tree without slack for that passes 423 of 36,056, a hull that takes no hit below the floor 276 of 15,044.
+#[test]
+fn faces_of_the_box_itself() {
+    let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]];
+    for (distance, flat) in [(5.0, 1.0), (100.0, 1.0), (20.0, 0.05), (100.0, 0.05)] {
+        let mut scene = scene_of(
+            Profile::polygon(&cylinder, 0.5).unwrap(),
+            eye(45.0, distance),
+        );
+        scene.camera.fov_y = 2.0 * (0.6f64 / distance).atan().to_degrees();
+        scene.camera.target = DVec3::new(0.0, 0.0, 0.5 * flat);
+        scene.objects[0].placement.scale = DVec3::new(1.0, 1.0, flat);
+        let truth = reference(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
+        for (solver, stage) in [
+            (Solver::Quadric, DrawStage::Fragment),
+            (Solver::Hull, DrawStage::Fragment),
+            (Solver::Hull, DrawStage::Compute),
+        ] {
+            let settings = settings(solver, stage);
+            let name = format!("{distance} away, scale {flat}: {solver}");
+            let ways = if solver == Solver::Hull {
+                WRAPPED
+            } else {
+                BOXED
+            };
+            let frame = draw_by(&name, &scene, &settings, ways);
+            let found = errors(&truth, &frame, 512);
+            let wrong = found.missed + found.ghost;
+            assert!(found.hits > 5000, "only {} pixels are hit", found.hits);
+            assert!(
+                wrong <= found.hits / 500,
+                "{name}, {stage:?}: {wrong} of {} wrong",
+                found.hits
+            );
+        }
+    }
+}
