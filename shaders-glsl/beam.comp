@@ -3,7 +3,7 @@
 // One invocation a tile of GROUP_PIXELS^2: lists the tiles whose rays may meet the solid, and between which t. The list's length becomes the
 // number of work groups of the dispatch that follows.
 #include "stage/beams.glsl"
-#include "core/piece_tables.glsl"
+#include "core/patch_tables.glsl"
 
 void main()
 {
@@ -31,7 +31,7 @@ void main()
     float end = -1e30;
     for (uint k = 0u; k < BEAM_NODES; ++k) {
         // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
-        float most = node_extent(piece_tables[solid.hull.y + (k >> 2)][k & 3u]).y;
+        float most = node_extent(patch_tables[solid.hull.y + (k >> 2)][k & 3u]).y;
         float radius = sqrt(max(most, 0.0)) + beam;
         float low = (float(k) / float(BEAM_NODES) - beam - o.z) * per_z;
         float high = (float(k + 1u) / float(BEAM_NODES) + beam - o.z) * per_z;

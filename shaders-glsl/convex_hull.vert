@@ -3,7 +3,7 @@
 // The convex hull of each instance, for searches on the map: fragments are where rays enter it.
 #include "stage/vertex.glsl"
 #include "stage/box_varyings.glsl"
-#include "stage/bands.glsl"
+#include "stage/frusta.glsl"
 
 void main()
 {

@@ -92,7 +92,7 @@
 //! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of height maps; colours; lengths along the profile |
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
-//! | [`pieces`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
 //! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
@@ -113,11 +113,11 @@ pub mod frame;
 pub mod gpu;
 pub mod maps;
 mod pictures;
-pub mod pieces;
 pub mod profile;
 pub mod scene;
 pub mod settings;
 mod shader;
+pub mod surface;
 
 #[cfg(all(test, not(any(feature = "drawing", feature = "exr", feature = "jpeg"))))]
 mod lean_tests;

@@ -33,9 +33,9 @@ pub enum Solver {
     /// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings back: as the papers list it. It passes
     /// surfaces.
     Relaxed,
-    /// Ours for speed: the boundary as pieces of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
+    /// Ours for speed: the boundary as patches of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
     Quadric,
-    /// The same pieces, found by what the stage does best: in the fragment stage the rasteriser finds them in shells of triangles, in compute
+    /// The same patches, found by what the stage does best: in the fragment stage the rasteriser finds them with proxy hulls, in compute
     /// tiles of pixels are first asked as a whole. Objects for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
     Hull,
 }
@@ -89,7 +89,7 @@ impl Solver {
     }
 
     /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
-    /// number, and pieces are solved without any.
+    /// number, and patches are solved without any.
     #[must_use]
     pub const fn may_run_out(self) -> bool {
         matches!(self, Self::Circle | Self::Relaxed | Self::Live)
@@ -172,9 +172,9 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
-    /// Pixels that an object's box covers for each band of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
+    /// Pixels that an object's box covers for each frustum of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
     /// [`Solver::Live`] the convex one: triangles cost the same however small they are. `u32::MAX`: boxes alone, and no beams either.
-    pub hull_from: u32,
+    pub proxy_min_pixels: u32,
 }
 
 /// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage and planes are its output's.
@@ -190,8 +190,8 @@ pub struct SearchSettings {
     pub map_source: Option<MapSource>,
     /// Storage of distances.
     pub map_format: MapFormat,
-    /// As [`Settings::hull_from`].
-    pub hull_from: u32,
+    /// As [`Settings::proxy_min_pixels`].
+    pub proxy_min_pixels: u32,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -202,7 +202,7 @@ impl From<&Settings> for SearchSettings {
             map_rows: settings.map_rows,
             map_source: settings.map_source,
             map_format: settings.map_format,
-            hull_from: settings.hull_from,
+            proxy_min_pixels: settings.proxy_min_pixels,
         }
     }
 }
@@ -225,7 +225,7 @@ impl Default for Settings {
             map_source: None,
             map_format: MapFormat::R32,
             planes: Planes::All,
-            hull_from: 150,
+            proxy_min_pixels: 150,
         }
     }
 }

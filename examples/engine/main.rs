@@ -80,8 +80,8 @@ fn main() -> Fallible<()> {
         ..Lighting::default()
     })?;
 
-    // Three pieces in the middle: one stands in the host's sphere.
-    let mut pieces = Vec::new();
+    // Three patches in the middle: one stands in the host's sphere.
+    let mut patches = Vec::new();
     for (name, y, color) in [
         ("pawn", 0.0, [0.75, 0.55, 0.3]),
         ("rook", -0.9, [0.6, 0.2, 0.15]),
@@ -92,7 +92,7 @@ fn main() -> Fallible<()> {
         let mut object = Object::new(name, profile);
         object.color = color;
         object.placement.position.y = y;
-        pieces.push(renderer.add(object)?);
+        patches.push(renderer.add(object)?);
     }
     // A row of small ones behind.
     let spindle = Profile::polygon(
@@ -107,7 +107,7 @@ fn main() -> Fallible<()> {
     for frame in 0..COUNT {
         let phase = f64::from(frame) / f64::from(COUNT) * std::f64::consts::TAU;
         let wave = |by: f64| 0.5 - 0.5 * (phase + by).cos();
-        for (n, id) in pieces.iter().enumerate() {
+        for (n, id) in patches.iter().enumerate() {
             let by = n as f64;
             let offset = Offset {
                 extend: 0.03 * wave(by),

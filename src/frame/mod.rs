@@ -1,6 +1,6 @@
 //! What was drawn, pixel by pixel: the planes of a frame, written as PNG and EXR.
 
-pub mod beside;
+pub mod atomic_file;
 #[cfg(feature = "exr")]
 mod openexr;
 mod png;

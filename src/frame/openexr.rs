@@ -1,6 +1,6 @@
 //! Frames as OpenEXR: every plane, in 32-bit floats, lossless.
 
-use super::beside::write_beside;
+use super::atomic_file::write_atomically;
 use super::{CHANNELS, Frame, pixel_count};
 use crate::error::{Error, Result, Stage};
 use exr::prelude::{
@@ -36,7 +36,7 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels),
     ));
-    write_beside(Stage::Frame, path.as_ref(), |writer| {
+    write_atomically(Stage::Frame, path.as_ref(), |writer| {
         image
             .write()
             .non_parallel()

@@ -1,7 +1,7 @@
 //! Frames as PNG: 8-bit sRGB RGBA, for eyes.
 
 use super::Frame;
-use super::beside::write_beside;
+use super::atomic_file::write_atomically;
 use crate::error::{Error, Result, Stage};
 use std::io::Write;
 use std::path::Path;
@@ -44,7 +44,7 @@ impl Picture {
     /// # Errors
     /// [`Stage::Frame`], naming the file, when it cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_beside(Stage::Frame, path.as_ref(), |writer| {
+        write_atomically(Stage::Frame, path.as_ref(), |writer| {
             self.encode_png(writer)
         })
     }

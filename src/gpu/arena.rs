@@ -1,11 +1,11 @@
-//! One storage buffer for the tables and bands of all surfaces: each stands at one place for as long as it lives.
+//! One storage buffer for the tables and frusta of all surfaces: each stands at one place for as long as it lives.
 
 use super::buffers::storage;
 use super::device::Shared;
 use super::memory::Buffer;
-use super::surface::{OffsetSurface, Part};
+use super::offset_surface::{OffsetSurface, Part};
 use crate::error::{Error, Result, Stage};
-use crate::shader::generated::PIECE_VECTORS;
+use crate::shader::generated::PATCH_VECTORS;
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, Weak};
@@ -151,6 +151,6 @@ fn full() -> Error {
 
 /// With a window's length behind the last unit: the window on the last tables is as long as on all others.
 fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
-    let vectors = u64::from(unit) * u64::from(units) + u64::from(PIECE_VECTORS);
+    let vectors = u64::from(unit) * u64::from(units) + u64::from(PATCH_VECTORS);
     storage(device, "tables", 16 * vectors)
 }

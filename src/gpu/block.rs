@@ -127,7 +127,7 @@ pub(crate) fn solid_block(
             shadow_map,
             0,
         ],
-        pieces: [0; 4],
+        patches: [0; 4],
         hull: [0; 4],
         single: object.placements().first().map(instance_block).unwrap_or_default(),
     }

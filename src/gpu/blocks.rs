@@ -73,8 +73,8 @@ pub struct SolidBlock {
     pub instances: [u32; 4],
     /// Of the quadric search's tables: where they begin, first record, first range, bits of the unit of `r^2`; of the cone search's: where
     /// they begin, rows, bits of the largest radius.
-    pub pieces: [u32; 4],
-    /// Of the hull: its first band; the first vector of the nodes that beams are asked against.
+    pub patches: [u32; 4],
+    /// Of the hull: its first frustum; the first vector of the nodes that beams are asked against.
     pub hull: [u32; 4],
     /// The batch's instance, where it has but one.
     pub single: InstanceBlock,

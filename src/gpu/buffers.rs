@@ -24,7 +24,7 @@ pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Bu
             ),
         ));
     }
-    // Pieces are read both ways; lists of tiles are made and counted on the device.
+    // Patches are read both ways; lists of tiles are made and counted on the device.
     use vk::BufferUsageFlags as B;
     let usage = B::STORAGE_BUFFER | B::UNIFORM_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
     Buffer::new(device, name, bytes, usage, MemoryLocation::CpuToGpu)

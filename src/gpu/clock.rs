@@ -1,4 +1,4 @@
-//! GPU timestamps around a piece of work.
+//! GPU timestamps around a patch of work.
 
 use super::call::Call;
 use super::device::Shared;

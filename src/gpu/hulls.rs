@@ -2,12 +2,12 @@
 
 use super::bins::{Rectangle, rectangle};
 use super::block::axis_offset;
-use super::surface::OffsetSurface;
+use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::maps::envelope::Envelope;
-use crate::pieces::{Hull, HullOptions, Piece, Record};
 use crate::scene::{Object, Placement};
-use crate::shader::generated::{BAND_VECTORS, HULL_SIDES, HULL_TESTS};
+use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL};
+use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -15,35 +15,35 @@ use std::ops::Range;
 const CLEARANCE: f64 = 1e-3;
 
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
-pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * HULL_TESTS);
+pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * PATCHES_PER_CELL);
 
-/// A hull, and its bands in the layout of `hull.vert`.
-pub(crate) struct ProxyHull {
-    pub hull: Hull,
+/// A hull, and its frusta in the layout of `hull.vert`.
+pub(crate) struct GpuProxyHull {
+    pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
 }
 
-impl ProxyHull {
-    pub fn new(pieces: &[Piece]) -> Self {
-        let options = HullOptions {
+impl GpuProxyHull {
+    pub fn new(patches: &[QuadricPatch]) -> Self {
+        let options = ProxyHullOptions {
             sides: HULL_SIDES,
-            tests: HULL_TESTS,
-            ..HullOptions::default()
+            patches_per_cell: PATCHES_PER_CELL,
+            ..ProxyHullOptions::default()
         };
-        let hull = Hull::new(pieces, &options);
-        let vectors = pack(&hull, pieces);
+        let hull = ProxyHull::new(patches, &options);
+        let vectors = pack(&hull, patches);
         Self { hull, vectors }
     }
 
     /// The convex hull of an envelope.
     pub fn convex(envelope: &Envelope) -> Self {
-        let hull = Hull::convex(&envelope.convex(), HULL_SIDES);
+        let hull = ProxyHull::convex(&envelope.convex(), HULL_SIDES);
         let vectors = pack(&hull, &[]);
         Self { hull, vectors }
     }
 }
 
-/// Whether the box shows no more than the boundary's pieces: it cuts nothing of the solid and holds no replicas. Rays that are searched
+/// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and holds no replicas. Rays that are searched
 /// as in the box may be cut by it.
 fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     if !surface.is_boundary() {
@@ -79,7 +79,7 @@ const SAMPLES: usize = 64;
 
 /// The hull of `object`, around its boundary or the envelope of its map, if it shows from this camera all that the box would (the eye is outside all shells,
 /// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
-pub(crate) fn bands(
+pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
     view: &View,
@@ -101,17 +101,17 @@ pub(crate) fn bands(
         .map(|copy| flat(seen_from(object, copy, view).0))
         .collect();
     // Parallel rays come from everywhere.
-    let bands = if eyes.len() == copies.len() && !view.parallel {
+    let frusta = if eyes.len() == copies.len() && !view.parallel {
         hull.seen_from(&eyes)
     } else {
-        std::iter::once(0..hull.bands.len() as u32).collect()
+        std::iter::once(0..hull.frusta.len() as u32).collect()
     };
-    let drawn: usize = bands.iter().map(ExactSizeIterator::len).sum();
+    let drawn: usize = frusta.iter().map(ExactSizeIterator::len).sum();
     if covered < u64::from(least_pixels) * (drawn * count) as u64 {
         return None;
     }
     let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view);
-    copies.iter().all(seen).then_some(bands)
+    copies.iter().all(seen).then_some(frusta)
 }
 
 /// A point as the half-plane has it.
@@ -120,7 +120,7 @@ fn flat(p: DVec3) -> DVec2 {
 }
 
 /// Whether a copy's shells are all in front of the near plane, and the eye in none of them.
-fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), view: &View) -> bool {
+fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View) -> bool {
     let aside = forward.truncate().length();
     let margin = CLEARANCE * forward.length();
     let ahead = hull.extents.iter().all(|&[_, r, low, high]| {
@@ -131,38 +131,40 @@ fn is_in_front(hull: &Hull, (eye, forward): (DVec3, DVec3), view: &View) -> bool
     ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }
 
-/// A hull's bands in the layout of `hull.vert`.
-fn pack(hull: &Hull, pieces: &[Piece]) -> Vec<[u32; 4]> {
-    let mut out = Vec::with_capacity(hull.bands.len() * BAND_VECTORS as usize);
+/// A hull's frusta in the layout of `hull.vert`.
+fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
+    let mut out = Vec::with_capacity(hull.frusta.len() * FRUSTUM_VECTORS as usize);
     // A guard that nothing passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0]];
-    for band in &hull.bands {
-        let [from, to] = [band.from, band.to];
+    for frustum in &hull.frusta {
+        let [from, to] = [frustum.from, frustum.to];
         out.push([from[0], from[1], to[0], to[1]].map(f32::to_bits));
-        let first = band.first as usize;
-        for k in 0..HULL_TESTS as usize {
-            let record = pieces.get(first + k).filter(|_| k < band.count as usize);
-            let vectors = record.map(|p| Record::new(p, first + k));
+        let first = frustum.first as usize;
+        for k in 0..PATCHES_PER_CELL as usize {
+            let record = patches
+                .get(first + k)
+                .filter(|_| k < frustum.count as usize);
+            let vectors = record.map(|p| GpuPatch::new(p, first + k));
             let vectors = vectors.map_or(none, |r| [r.quadric, r.guard]);
             out.extend(vectors.map(|v| v.map(f32::to_bits)));
         }
     }
-    debug_assert_eq!(out.len(), hull.bands.len() * BAND_VECTORS as usize);
+    debug_assert_eq!(out.len(), hull.frusta.len() * FRUSTUM_VECTORS as usize);
     out
 }
 
-/// How many corners the triangles of so many bands have.
-pub(crate) fn corners(bands: u32) -> u32 {
-    6 * HULL_SIDES * bands
+/// How many corners the triangles of so many frusta have.
+pub(crate) fn corners(frusta: u32) -> u32 {
+    6 * HULL_SIDES * frusta
 }
 
-/// Corners that every band's triangles join, in the numbering of `hull.vert`: `2 n` vertices a band, the rings one after the other.
-pub(crate) fn indices(bands: usize) -> Vec<u32> {
+/// Corners that every frustum's triangles join, in the numbering of `hull.vert`: `2 n` vertices a frustum, the rings one after the other.
+pub(crate) fn indices(frusta: usize) -> Vec<u32> {
     let n = HULL_SIDES;
-    (0..u32::try_from(bands).unwrap_or(0))
-        .flat_map(|band| {
+    (0..u32::try_from(frusta).unwrap_or(0))
+        .flat_map(|frustum| {
             (0..n).flat_map(move |side| {
-                let (a, b) = (band * 2 * n, band * 2 * n + n);
+                let (a, b) = (frustum * 2 * n, frustum * 2 * n + n);
                 let next = (side + 1) % n;
                 [a + side, a + next, b + next, a + side, b + next, b + side]
             })

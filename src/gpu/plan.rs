@@ -2,7 +2,7 @@
 
 use super::bins::{Bins, Rectangle, rectangle};
 use super::hulls;
-use super::surface::OffsetSurface;
+use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::GROUP_PIXELS;
@@ -37,7 +37,7 @@ pub enum DrawPath {
 pub(crate) enum Work {
     Nothing,
     Box,
-    /// Runs of the hull's bands that may be seen.
+    /// Runs of the hull's frusta that may be seen.
     Hull(Vec<Range<u32>>),
     /// In work groups.
     Rectangle(Rectangle),
@@ -77,7 +77,7 @@ impl Work {
 pub(crate) struct Planner<'a> {
     pub view: &'a View,
     pub limits: &'a vk::PhysicalDeviceLimits,
-    /// As [`SearchSettings::hull_from`](crate::settings::SearchSettings::hull_from).
+    /// As [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
     pub least_pixels: u32,
 }
 
@@ -91,7 +91,7 @@ impl Planner<'_> {
         };
         wrapped
             .filter(fits)
-            .and_then(|surface| hulls::bands(object, surface, self.view, self.least_pixels))
+            .and_then(|surface| hulls::frusta(object, surface, self.view, self.least_pixels))
             .map_or(Work::Box, Work::Hull)
     }
 

@@ -4,15 +4,15 @@ use super::block::{frame_block, instance_block, solid_block};
 use super::blocks::{InstanceBlock, SolidBlock};
 use super::buffers::{indices, write_slice};
 use super::hulls;
+use super::offset_surface::{OffsetSurface, Part};
 use super::output::Output;
 use super::plan::{Lists, Planner, Work};
 use super::renderer::{Entry, Renderer};
-use super::surface::{OffsetSurface, Part};
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::scene::Shadow;
 use crate::settings::{Planes, SearchSettings};
-use crate::shader::generated::PIECE_VECTORS;
+use crate::shader::generated::PATCH_VECTORS;
 use crate::shader::{Dispatch, Kind, Variant};
 use ash::vk;
 use rayon::prelude::*;
@@ -118,7 +118,7 @@ impl Renderer {
         let planner = Planner {
             view,
             limits: &self.device.limits,
-            least_pixels: self.settings.hull_from,
+            least_pixels: self.settings.proxy_min_pixels,
         };
         let entries = &self.entries;
         let plan = |number: &u32| {
@@ -140,7 +140,7 @@ impl Renderer {
         let planner = Planner {
             view,
             limits: &self.device.limits,
-            least_pixels: self.settings.hull_from,
+            least_pixels: self.settings.proxy_min_pixels,
         };
         let mut lists = Lists::default();
         let mut planned: Vec<Work> = numbers
@@ -180,14 +180,14 @@ impl Renderer {
             return Ok(());
         };
         let variant = prepared.variant;
-        let (mut bands, mut tables) = (None, prepared.surface.as_ref());
+        let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
         let large = |surface: Option<&Arc<OffsetSurface>>| {
-            surface.is_some_and(|s| s.tables().own > PIECE_VECTORS as usize)
+            surface.is_some_and(|s| s.tables().own > PATCH_VECTORS as usize)
         };
         let (kind, variant) = match &work {
             Work::Hull(_) => {
-                bands = prepared.wrapped.as_ref();
-                if bands.is_some_and(|s| s.is_boundary()) {
+                frusta = prepared.wrapped.as_ref();
+                if frusta.is_some_and(|s| s.is_boundary()) {
                     // A hull's own fragments read none of the tree; shadows' rays do.
                     tables = tables.filter(|_| casts);
                     (Kind::Hull, variant.in_shell())
@@ -223,9 +223,9 @@ impl Renderer {
             }),
             None => Ok(None),
         };
-        let bands_at = put(bands, Part::Bands)?;
+        let bands_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
-        let most = bands.map_or(0, |s| s.hull().hull.bands.len());
+        let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
             entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
@@ -235,7 +235,7 @@ impl Renderer {
             let pipelines = self.device.pipelines()?;
             entry.draw.list = pipelines.get(Variant::BEAM, Kind::Beam, &self.output, self.owner)?;
         }
-        entry.draw.bands = bands_at.unwrap_or(0);
+        entry.draw.frusta = bands_at.unwrap_or(0);
         entry.draw.tables = tables_at.unwrap_or(0);
         entry.draw.tables_offset = 16 * entry.draw.tables;
         entry.draw.work = Some(work);
@@ -246,12 +246,12 @@ impl Renderer {
         self.fit_corners(most)
     }
 
-    /// Sees to it that there are corners for hulls of so many bands.
-    fn fit_corners(&mut self, bands: usize) -> Result<()> {
-        let bytes = 4 * hulls::corners(u32::try_from(bands).unwrap_or(u32::MAX)) as usize;
+    /// Sees to it that there are corners for hulls of so many frusta.
+    fn fit_corners(&mut self, frusta: usize) -> Result<()> {
+        let bytes = 4 * hulls::corners(u32::try_from(frusta).unwrap_or(u32::MAX)) as usize;
         if self.corners.bytes < bytes as u64 {
-            let bands = bands.next_power_of_two();
-            let all = hulls::indices(bands);
+            let frusta = frusta.next_power_of_two();
+            let all = hulls::indices(frusta);
             let mut corners = indices(&self.device, 4 * all.len())?;
             write_slice(&mut corners, &all)?;
             let old = std::mem::replace(&mut self.corners, corners);
@@ -343,10 +343,10 @@ impl Entry {
             p.solver,
             settings,
         );
-        block.hull[0] = self.draw.bands;
+        block.hull[0] = self.draw.frusta;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {
-            block.pieces = surface.tables().block(self.draw.tables);
+            block.patches = surface.tables().block(self.draw.tables);
             block.hull[1] = surface.tables().beams(self.draw.tables);
         }
         Some(block)

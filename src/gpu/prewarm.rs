@@ -6,7 +6,7 @@ use super::refresh::FALLBACK;
 use super::renderer::{Entry, Renderer};
 use crate::error::Result;
 use crate::settings::Solver;
-use crate::shader::generated::PIECE_VECTORS;
+use crate::shader::generated::PATCH_VECTORS;
 use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::sync::Arc;
@@ -113,12 +113,12 @@ impl Renderer {
         let planes = self.output.planes();
         let of = |solver| Variant::new(settings, planes, solver, &self.lighting, object, self.met);
         let fallback = matches!(solver, Solver::Quadric | Solver::Hull).then(|| of(FALLBACK));
-        let wraps = settings.hull_from != u32::MAX && object.repeat == [1; 3];
+        let wraps = settings.proxy_min_pixels != u32::MAX && object.repeat == [1; 3];
         let (several, copies) = (self.order.len() > 1, object.placements().len() > 1);
         let compute = (!self.draws_hulls()).then_some([several, copies]);
         // An offset may move the size of tables across the limit.
         let own = surface.map_or(0, |s| s.tables().own);
-        let limit = PIECE_VECTORS as usize;
+        let limit = PATCH_VECTORS as usize;
         let fits = [own <= limit + limit / 2, own > limit - limit / 4];
         for (variant, kind) in of(solver).reachable(solver, wraps, compute, fallback) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {

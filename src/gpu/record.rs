@@ -37,10 +37,10 @@ impl Renderer {
             // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the caller promised.
             unsafe {
                 match work {
-                    Work::Hull(bands) => {
+                    Work::Hull(frusta) => {
                         let kind = vk::IndexType::UINT32;
                         raw.cmd_bind_index_buffer(cmd, self.corners.raw, 0, kind);
-                        for run in bands {
+                        for run in frusta {
                             let corners = hulls::corners(run.end - run.start);
                             let begin = hulls::corners(run.start);
                             raw.cmd_draw_indexed(cmd, corners, count, begin, 0, first);

@@ -1,9 +1,9 @@
 //! From an object's values to what the device needs of it. All that can fail comes first; then everything is taken over at once.
 
 use super::block::{check_format, largest_width};
+use super::offset_surface::{OffsetSurface, Part};
 use super::renderer::{Entry, Prepared, Renderer};
 use super::solid::{MapKey, ShapeTexture, Solid};
-use super::surface::{OffsetSurface, Part};
 use super::textures::{Bound, ShadowMaps};
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::SLACK;
@@ -134,7 +134,7 @@ impl Renderer {
                 let rows = self.settings.map_rows.unwrap_or(object.map_rows);
                 Some(solid.cones(&object.offset, rows, solver == Solver::Relaxed)?)
             } else {
-                Some(solid.pieces(&object.offset)?)
+                Some(solid.patches(&object.offset)?)
             };
             resolved.push(Resolved {
                 number,
@@ -150,7 +150,7 @@ impl Renderer {
         new.sort_unstable_by_key(|s| Arc::as_ptr(s));
         new.dedup_by_key(|s| Arc::as_ptr(s));
         let part = if solver == Solver::Hull && self.draws_hulls() {
-            Part::Bands
+            Part::Frusta
         } else {
             Part::Tables
         };
@@ -349,7 +349,7 @@ impl Renderer {
         map: Option<&ShapeTexture>,
         surface: Option<&Arc<OffsetSurface>>,
     ) -> Result<Option<Arc<OffsetSurface>>> {
-        if self.settings.hull_from == u32::MAX {
+        if self.settings.proxy_min_pixels == u32::MAX {
             return Ok(None);
         }
         match (solver, map) {

@@ -7,10 +7,10 @@ use super::buffers::indices;
 use super::device::{Device, Shared};
 use super::frame_slot::FrameSlot;
 use super::memory::Buffer;
+use super::offset_surface::OffsetSurface;
 use super::output::Output;
 use super::plan::{DrawPath, Work};
 use super::solid::{ArcTexture, MapFacts, ShapeTexture, Solid, SolidCache};
-use super::surface::OffsetSurface;
 use super::target::ComputeTarget;
 use super::textures::{ShadowMaps, TextureSet, Textures};
 use super::uploads::Uploads;
@@ -133,8 +133,8 @@ pub(super) struct Draw {
     /// What the pipeline was compiled for.
     pub key: Option<(Variant, Kind)>,
     pub tables_offset: u32,
-    /// Vectors with which bands, tables begin.
-    pub bands: u32,
+    /// Vectors with which frusta, tables begin.
+    pub frusta: u32,
     pub tables: u32,
 }
 

@@ -4,15 +4,15 @@
 
 use super::device::Shared;
 use super::memory::Image;
-use super::surface::{OffsetSurface, Recipe};
+use super::offset_surface::{OffsetSurface, Recipe};
 use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::Envelope;
 use crate::maps::{ArcLength, BakeOptions, Bounds, MapFormat, MapSource, ShapeMap};
-use crate::pieces::{Contour, ContourSource};
 use crate::profile::Profile;
 use crate::scene::{Object, Offset};
 use crate::settings::SearchSettings;
+use crate::surface::{Contour, ContourSource};
 use ash::vk;
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -69,7 +69,7 @@ impl<K: Hash + Eq, V> Kept<K, V> {
 #[derive(PartialEq, Eq, Hash)]
 enum SurfaceKey {
     /// Bits of the offset.
-    Pieces([u64; 3]),
+    Patches([u64; 3]),
     /// Likewise, rows, whether relaxed.
     Cones([u64; 3], u32, bool),
     /// The map, and bits of what its envelope is grown by.
@@ -137,9 +137,9 @@ impl Solid {
     }
 
     /// The boundary as quadrics; not made yet where it is new.
-    pub fn pieces(&self, offset: &Offset) -> Result<Arc<OffsetSurface>> {
-        self.surfaces.get(SurfaceKey::Pieces(bits(offset)), || {
-            let recipe = Recipe::Pieces(self.outlined.clone(), *offset);
+    pub fn patches(&self, offset: &Offset) -> Result<Arc<OffsetSurface>> {
+        self.surfaces.get(SurfaceKey::Patches(bits(offset)), || {
+            let recipe = Recipe::Patches(self.outlined.clone(), *offset);
             Ok(OffsetSurface::new(recipe))
         })
     }

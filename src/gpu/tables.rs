@@ -1,22 +1,22 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
 use crate::maps::envelope::Envelope;
-use crate::pieces::{Cones, Piece, Tables};
-use crate::shader::generated::{BEAM_FIRST_NODE, PIECE_ROWS};
+use crate::shader::generated::{BEAM_FIRST_NODE, PATCH_ROWS};
+use crate::surface::{Cones, QuadricPatch, Tables};
 
 /// A table that may stand anywhere in a buffer.
 pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
     /// How many of them the search itself reads, from the beginning on.
     pub own: usize,
-    /// What `Solid.pieces` of `blocks.glsl` holds behind the place where it begins.
+    /// What `Solid.patches` of `blocks.glsl` holds behind the place where it begins.
     facts: [u32; 3],
     /// The vector with which the nodes begin that beams are asked against.
     beam_nodes: u32,
 }
 
 impl GpuTables {
-    /// `Solid.pieces` of a table that begins with vector `begin` of the buffer.
+    /// `Solid.patches` of a table that begins with vector `begin` of the buffer.
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;
         [begin, a, b, c]
@@ -27,9 +27,9 @@ impl GpuTables {
         begin + self.beam_nodes
     }
 
-    /// The layout of `piece_tables.glsl`.
-    pub fn pieces(pieces: &[Piece]) -> Self {
-        let tables = Tables::new(pieces, PIECE_ROWS);
+    /// The layout of `patch_tables.glsl`.
+    pub fn patches(patches: &[QuadricPatch]) -> Self {
+        let tables = Tables::new(patches, PATCH_ROWS);
         let (mut words, unit) = nodes(&tables.nodes);
         words.extend(&tables.rows);
         let mut vectors = fours(&words);

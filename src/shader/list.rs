@@ -8,7 +8,7 @@ pub enum Entry {
     BoxVertex,
     /// Corners of convex hulls.
     ConvexHullVertex,
-    /// Corners of the shells of a solid's pieces.
+    /// Corners of the proxy hulls of a solid's patches.
     HullVertex,
     /// Lists of tiles.
     Beam,
@@ -59,7 +59,7 @@ pub enum Search {
     Linear,
     /// The same on the papers' texture.
     LinearRgba8,
-    /// Pieces of quadrics in a tree. Fragments of shells solve theirs without it, and shadows on them with it.
+    /// Patches of quadrics in a tree. Fragments of proxy hulls solve theirs without it, and shadows on them with it.
     Quadric,
     /// The same, in tables that do not fit into a uniform buffer.
     QuadricLarge,

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::gpu::blocks::{FrameBlock, InstanceBlock, LightBlock, ShadowBlock, SolidBlock};
-use crate::pieces::{ROWS, Tables};
 use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::list::{Entry, Features, Output, modules};
 use crate::shader::module::unpacked;
 use crate::shader::{Kind, Met, Module, Variant, depth_less, generated as g, words};
+use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
 use std::sync::Arc;
@@ -115,7 +115,7 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             texturing,
             cells,
             instances,
-            pieces,
+            patches,
             hull,
             single
         }
@@ -312,8 +312,8 @@ fn depth_is_promised_greater_or_less() {
 #[test]
 fn tables_have_the_rows_and_nodes_of_the_shaders() {
     let tables = Tables::new(&[], ROWS);
-    assert_eq!(ROWS, g::PIECE_ROWS);
-    assert_eq!(tables.nodes.len(), g::PIECE_NODES as usize);
+    assert_eq!(ROWS, g::PATCH_ROWS);
+    assert_eq!(tables.nodes.len(), g::PATCH_NODES as usize);
     let [rows, beams] = [0, 1].map(|level| tables.levels[level]);
     assert_eq!((rows, beams), (0, g::BEAM_FIRST_NODE));
     assert_eq!(tables.levels[2] - beams, g::BEAM_NODES);

@@ -14,7 +14,7 @@ use crate::settings::{Planes, SearchSettings, Solver};
 pub enum Kind {
     /// Shape boxes, rasterised.
     Box,
-    /// Hulls of pieces, rasterised.
+    /// Hulls of patches, rasterised.
     Hull,
     /// Convex hulls, in which fragments search as in boxes.
     ConvexHull,
@@ -176,7 +176,7 @@ impl Variant {
         }
     }
 
-    /// The same in fragments of shells, which solve their pieces without tables.
+    /// The same in fragments of proxy hulls, which solve their patches without tables.
     #[must_use]
     pub fn in_shell(self) -> Self {
         self.with_tables(true)

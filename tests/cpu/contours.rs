@@ -3,9 +3,9 @@
 use crate::common::samples;
 use glam::DVec2;
 use proptest::prelude::*;
-use revmap::pieces::{Contour, ContourSource, CutOptions, ROWS, Tables, cut};
 use revmap::profile::Outline;
 use revmap::scene::Offset;
+use revmap::surface::{Contour, ContourSource, FitOptions, ROWS, Tables, fit_patches};
 
 /// Twice the number of turns of the boundary round a point, the axis counted as boundary: 2 inside.
 fn turns(contour: &Contour, q: DVec2) -> f64 {
@@ -95,10 +95,10 @@ proptest! {
     }
 }
 
-/// Pieces hang together, look outwards, and stay as near to the contour as they promise.
+/// Patches hang together, look outwards, and stay as near to the contour as they promise.
 #[test]
-fn pieces_follow_their_chain() {
-    let options = CutOptions::default();
+fn patches_follow_their_chain() {
+    let options = FitOptions::default();
     for seed in 0..60 {
         let outline = samples::random(seed);
         let offset = Offset {
@@ -109,40 +109,40 @@ fn pieces_follow_their_chain() {
             .unwrap()
             .contour(&offset)
             .unwrap();
-        let pieces = cut(&contour, &options);
-        assert!(!pieces.is_empty());
-        for (k, piece) in pieces.iter().enumerate() {
-            assert!(piece.z[0] >= 0.0 && piece.z[1] <= 1.0 && piece.z[0] <= piece.z[1]);
-            match piece.next {
+        let patches = fit_patches(&contour, &options);
+        assert!(!patches.is_empty());
+        for (k, patch) in patches.iter().enumerate() {
+            assert!(patch.z[0] >= 0.0 && patch.z[1] <= 1.0 && patch.z[0] <= patch.z[1]);
+            match patch.next {
                 Some(next) => {
-                    assert_eq!(pieces[next as usize].start, piece.end);
-                    assert_eq!(pieces[next as usize].previous, Some(k as u32));
+                    assert_eq!(patches[next as usize].start, patch.end);
+                    assert_eq!(patches[next as usize].previous, Some(k as u32));
                 }
-                None => assert_eq!(piece.end.x, 0.0),
+                None => assert_eq!(patch.end.x, 0.0),
             }
-            let ([a, k0, k1, k2], middle) = (piece.quadric, 0.5 * (piece.z[0] + piece.z[1]));
+            let ([a, k0, k1, k2], middle) = (patch.quadric, 0.5 * (patch.z[0] + patch.z[1]));
             let value = |p: DVec2| a * p.x * p.x + k0 + p.y * (k1 + p.y * k2);
-            for p in [piece.start, piece.end] {
-                assert!(value(p).abs() < 1e-9 * (1.0 + k2.abs()), "{piece:?}");
-                assert!(piece.guards(p.x * p.x, p.y));
+            for p in [patch.start, patch.end] {
+                assert!(value(p).abs() < 1e-9 * (1.0 + k2.abs()), "{patch:?}");
+                assert!(patch.guards(p.x * p.x, p.y));
             }
-            let p = if piece.is_plane() {
-                (piece.start + piece.end) * 0.5
+            let p = if patch.is_plane() {
+                (patch.start + patch.end) * 0.5
             } else {
-                DVec2::new(piece.square_at(middle).max(0.0).sqrt(), middle)
+                DVec2::new(patch.square_at(middle).max(0.0).sqrt(), middle)
             };
             let f = self::value(&outline, &offset, p);
             let on_face = p.y == 0.0 || p.y == 1.0;
             // The chords of the contour's arcs lie a millionth inside.
             assert!(
                 on_face || f.abs() < options.tolerance + 1.5e-6,
-                "{f} {piece:?}"
+                "{f} {patch:?}"
             );
             if p.x > 1e-6 && !on_face {
-                let outward = piece.gradient(p).normalize() * 1e-4;
+                let outward = patch.gradient(p).normalize() * 1e-4;
                 let (out, inside) = (p + outward, p - outward);
                 let w = |q| self::value(&outline, &offset, q);
-                assert!(w(out) > w(inside), "{piece:?}");
+                assert!(w(out) > w(inside), "{patch:?}");
             }
         }
     }
@@ -150,23 +150,23 @@ fn pieces_follow_their_chain() {
 
 /// What rows and nodes claim contains what is there.
 #[test]
-fn rows_and_nodes_contain_their_pieces() {
+fn rows_and_nodes_contain_their_patches() {
     let contour = ContourSource::new(&samples::glass())
         .unwrap()
         .contour(&Offset::default())
         .unwrap();
-    let pieces = cut(&contour, &CutOptions::default());
+    let patches = fit_patches(&contour, &FitOptions::default());
     for rows in [1, 7, 64, 100, ROWS] {
-        let tables = Tables::new(&pieces, rows);
+        let tables = Tables::new(&patches, rows);
         let top = tables.levels.len() - 1;
         assert!(tables.nodes.len() - tables.levels[top] as usize <= 4);
-        for piece in &pieces {
+        for patch in &patches {
             for k in 0..=200 {
-                let p = if piece.is_plane() {
-                    piece.start.lerp(piece.end, f64::from(k) / 200.0)
+                let p = if patch.is_plane() {
+                    patch.start.lerp(patch.end, f64::from(k) / 200.0)
                 } else {
-                    let z = piece.z[0] + (piece.z[1] - piece.z[0]) * f64::from(k) / 200.0;
-                    DVec2::new(piece.square_at(z).max(0.0).sqrt(), z)
+                    let z = patch.z[0] + (patch.z[1] - patch.z[0]) * f64::from(k) / 200.0;
+                    DVec2::new(patch.square_at(z).max(0.0).sqrt(), z)
                 };
                 let row = ((p.y * f64::from(rows)) as usize).min(rows as usize - 1);
                 let square = (p.x * p.x) as f32;
@@ -176,7 +176,7 @@ fn rows_and_nodes_contain_their_pieces() {
                 }
                 let run = tables.rows[row];
                 let records = &tables.records[(run >> 12) as usize..][..(run & 0xfff) as usize];
-                let number = pieces.iter().position(|q| q == piece).unwrap() as f32;
+                let number = patches.iter().position(|q| q == patch).unwrap() as f32;
                 assert!(records.iter().any(|r| r.range[2] == number));
             }
         }

@@ -3,11 +3,12 @@
 use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
 use glam::{DVec2, DVec3};
-use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, ROWS, Record, Tables, cut, trace_pieces,
-};
 use revmap::profile::Profile;
 use revmap::scene::Offset;
+use revmap::surface::{
+    ContourSource, FitOptions, GpuPatch, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
+    trace_patches,
+};
 
 /// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no other.
 #[test]
@@ -22,19 +23,19 @@ fn hulls_lose_no_ray() {
         };
         for (name, profile) in profiles() {
             let source = ContourSource::new(&profile.outline).unwrap();
-            let pieces = cut(&source.contour(&offset).unwrap(), &CutOptions::default());
-            let tables = Tables::new(&pieces, ROWS);
-            let records: Vec<Record> = pieces
+            let patches = fit_patches(&source.contour(&offset).unwrap(), &FitOptions::default());
+            let tables = Tables::new(&patches, ROWS);
+            let records: Vec<GpuPatch> = patches
                 .iter()
                 .enumerate()
-                .map(|(k, p)| Record::new(p, k))
+                .map(|(k, p)| GpuPatch::new(p, k))
                 .collect();
             for tests in [1, 3] {
-                let hull = Hull::new(
-                    &pieces,
-                    &HullOptions {
-                        tests,
-                        ..HullOptions::default()
+                let hull = ProxyHull::new(
+                    &patches,
+                    &ProxyHullOptions {
+                        patches_per_cell: tests,
+                        ..ProxyHullOptions::default()
                     },
                 );
                 let (mut random, mut lost, mut hits, mut layers, mut wasted) =
@@ -47,7 +48,7 @@ fn hulls_lose_no_ray() {
                         DVec3::new(random.next() - 0.5, random.next() - 0.5, random.next());
                     let direction = (target - origin).normalize();
                     // As wide as the solid: the hull knows no side faces.
-                    let truth = trace_pieces(&tables, 2.0, DVec2::ZERO, origin, direction);
+                    let truth = trace_patches(&tables, 2.0, DVec2::ZERO, origin, direction);
                     let found = hull.trace(&records, origin, direction);
                     let same = match (truth, found.hit) {
                         (Some(a), Some((t, _))) => (a.t - f64::from(t)).abs() < 2e-4,
@@ -60,9 +61,9 @@ fn hulls_lose_no_ray() {
                     wasted += found.nodes * u32::from(truth.is_none());
                 }
                 let words = format!(
-                    "{name:8} {:4} pieces {:5} bands {:6} triangles, {tests} tests: {lost} of {hits} lost, {:.2} layers where hit, {:.2} elsewhere",
-                    pieces.len(),
-                    hull.bands.len(),
+                    "{name:8} {:4} patches {:5} bands {:6} triangles, {tests} patches_per_cell: {lost} of {hits} lost, {:.2} layers where hit, {:.2} elsewhere",
+                    patches.len(),
+                    hull.frusta.len(),
                     hull.vertices() / 3,
                     f64::from(layers) / hits as f64,
                     f64::from(wasted) / (count - hits) as f64,
@@ -161,14 +162,14 @@ fn what_a_hull_leaves_out_no_ray_meets() {
     for (name, profile, hollow) in profiles {
         let source = ContourSource::new(&profile.outline).unwrap();
         let contour = source.contour(&Offset::default()).unwrap();
-        let pieces = cut(&contour, &CutOptions::default());
-        let tables = Tables::new(&pieces, 64);
+        let patches = fit_patches(&contour, &FitOptions::default());
+        let tables = Tables::new(&patches, 64);
         // Small cells: as many as there can be are within the hollow.
-        let options = HullOptions {
-            tests: 1,
-            ..HullOptions::default()
+        let options = ProxyHullOptions {
+            patches_per_cell: 1,
+            ..ProxyHullOptions::default()
         };
-        let hull = Hull::new(&pieces, &options);
+        let hull = ProxyHull::new(&patches, &options);
         let (mut left_out, mut rays) = (0, 0);
         for _ in 0..60 {
             let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.57).sin_cos();
@@ -177,23 +178,23 @@ fn what_a_hull_leaves_out_no_ray_meets() {
             let flat = DVec2::new(eye.x.abs(), eye.z);
             let seen = hull.seen_from(&[flat]);
             let number_of = |band: usize| u32::try_from(band).unwrap();
-            for (k, band) in hull.bands.iter().enumerate() {
+            for (k, band) in hull.frusta.iter().enumerate() {
                 if seen.iter().any(|run| run.contains(&number_of(k))) {
                     continue;
                 }
                 left_out += 1;
-                let piece = &pieces[band.first as usize];
+                let patch = &patches[band.first as usize];
                 for _ in 0..4 {
                     let part = random.next();
-                    let z = piece.start.y + part * (piece.end.y - piece.start.y);
-                    let r = if piece.is_plane() {
-                        piece.start.x + part * (piece.end.x - piece.start.x)
+                    let z = patch.start.y + part * (patch.end.y - patch.start.y);
+                    let r = if patch.is_plane() {
+                        patch.start.x + part * (patch.end.x - patch.start.x)
                     } else {
-                        piece.square_at(z).max(0.0).sqrt()
+                        patch.square_at(z).max(0.0).sqrt()
                     };
                     let (y, x) = (random.next() * 6.3).sin_cos();
                     let way = DVec3::new(r * x, r * y, z) - eye;
-                    let met = trace_pieces(&tables, 2.0, DVec2::ZERO, eye, way.normalize());
+                    let met = trace_patches(&tables, 2.0, DVec2::ZERO, eye, way.normalize());
                     let t = met.map_or(f64::INFINITY, |hit| hit.t);
                     assert!(
                         t < way.length() - 1e-4,

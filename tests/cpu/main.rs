@@ -9,8 +9,8 @@ mod contours;
 mod hull_rays;
 mod map_accuracy;
 #[cfg(feature = "drawing")]
-mod pieces;
-#[cfg(feature = "drawing")]
 mod profiles;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod scenes;
+#[cfg(feature = "drawing")]
+mod surface;

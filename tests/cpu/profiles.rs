@@ -43,7 +43,7 @@ fn what_cannot_be_read_is_refused_in_one_line() {
     );
 }
 
-/// Every real profile touches its axis, stays inside its box, and is one piece of plausible size.
+/// Every real profile touches its axis, stays inside its box, and is one patch of plausible size.
 #[test]
 fn real_profiles_are_plausible() {
     for (name, radius, area) in [

@@ -1,4 +1,4 @@
-//! The scenes that come with the program: each reads, is drawn inside its frame, and its pieces stand on their board.
+//! The scenes that come with the program: each reads, is drawn inside its frame, and its patches stand on their board.
 
 use glam::{DVec2, DVec3};
 use revmap::scene::{CameraFrame, Scene, file};
@@ -75,16 +75,16 @@ fn solids_fill_their_picture() {
 #[test]
 fn pieces_stand_on_their_board() {
     let scene = file::load(folder().join("chess.toml"), &[]).unwrap();
-    let mut pieces = 0;
+    let mut patches = 0;
     for object in scene.objects.iter().filter(|o| o.file.is_some()) {
         let foot = object.profile.outline.bounds().unwrap().z_min;
         for placement in object.placements() {
             let z = placement.position.z + placement.scale.z * foot;
             assert!(z.abs() < 0.005, "{}: its foot is at {z:.4}", object.name);
-            pieces += 1;
+            patches += 1;
         }
     }
-    assert_eq!(pieces, 18);
+    assert_eq!(patches, 18);
 }
 
 /// Copies of one drawing share its profile, and so its map.

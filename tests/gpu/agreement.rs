@@ -72,7 +72,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 fn fragment_and_compute_agree_bit_for_bit() {
     let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     let all: Vec<_> = scenes().into_iter().enumerate().collect();
-    // Every search once over all, so that each scene meets two or more; the pieces meet every scene.
+    // Every search once over all, so that each scene meets two or more; the patches meet every scene.
     let pairs = all.iter().flat_map(|(n, scene)| {
         // Cone maps hold only some of these solids, and a hull is drawn by two different methods: both have tests of their own.
         let others: Vec<_> = Solver::ALL
@@ -90,7 +90,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             solver,
             max_steps: Some(48),
             // Convex hulls and beams start rays at different places, and have tests of their own.
-            hull_from: u32::MAX,
+            proxy_min_pixels: u32::MAX,
             ..Settings::default()
         };
         let fragment = draw(scene, &settings);

@@ -112,7 +112,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             } else {
                 formats[(n + n / 3) % 3]
             },
-            hull_from: u32::MAX, // or rays would begin elsewhere in each stage
+            proxy_min_pixels: u32::MAX, // or rays would begin elsewhere in each stage
             ..Settings::default()
         };
         let compute = Settings {

@@ -31,7 +31,7 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
                 solver,
                 max_steps: Some(max_steps),
                 planes,
-                hull_from: u32::MAX, // or rays would begin elsewhere in each stage
+                proxy_min_pixels: u32::MAX, // or rays would begin elsewhere in each stage
                 ..Settings::default()
             };
             let frame = draw(&scene, &settings);

@@ -93,7 +93,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
             width: 200,
             height: 150,
             stage,
-            hull_from: 0,
+            proxy_min_pixels: 0,
             ..Settings::default()
         };
         scene.objects.truncate(1);

@@ -23,7 +23,7 @@ pub struct Search {
 
 /// The default: hulls of the exact boundary. What may differ: silhouettes of grazing rays, and at a crease either face's normal is right.
 ///
-/// Measured on lavapipe 22.3.6, over all views of this file and of `hulls_of_pieces.rs`: 1 pixel, of 38,661 of the torus from its rim; normals
+/// Measured on lavapipe 22.3.6, over all views of this file and of `proxy_hulls.rs`: 1 pixel, of 38,661 of the torus from its rim; normals
 /// 0.98 degrees rms on the many creases of the discs from below (fragments), 0.54 elsewhere. The bound on pixels is for other
 /// devices' roundings.
 pub const EXACT: Search = Search {
@@ -49,7 +49,7 @@ pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
         width: 320,
         height: 240,
-        hull_from: 0,
+        proxy_min_pixels: 0,
         solver,
         stage,
         ..Settings::default()
@@ -61,7 +61,7 @@ impl Search {
     #[track_caller]
     pub fn assert_same(&self, name: &str, scene: &Scene, ways: Ways) {
         let from_box = Settings {
-            hull_from: u32::MAX,
+            proxy_min_pixels: u32::MAX,
             ..settings(self.from_box, DrawStage::Fragment)
         };
         let boxes = draw(scene, &from_box);
@@ -111,7 +111,7 @@ fn offsets_in_motion() {
                     bevel,
                     chamfer,
                 };
-                // A cone whose foot is moved out by the whole bevel reaches past its box, which no hull of pieces can.
+                // A cone whose foot is moved out by the whole bevel reaches past its box, which no hull of patches can.
                 let ways = match (name, bevel) {
                     ("cone", 0.12) => BOXED,
                     _ => WRAPPED,
@@ -233,7 +233,7 @@ fn where_there_is_none() {
         draw_by("8 bits", &scene, &papers, BOXED);
         for solver in [Solver::Live, Solver::Hull] {
             let boxes = Settings {
-                hull_from: u32::MAX,
+                proxy_min_pixels: u32::MAX,
                 ..settings(solver, stage)
             };
             draw_by("boxes", &scene, &boxes, BOXED);
@@ -242,7 +242,7 @@ fn where_there_is_none() {
     let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();
     let small = scene_of(profile, eye(25.0, 40.0));
     let small_enough = Settings {
-        hull_from: Settings::default().hull_from,
+        proxy_min_pixels: Settings::default().proxy_min_pixels,
         ..settings(Solver::Live, DrawStage::Fragment)
     };
     draw_by("small", &small, &small_enough, BOXED);
@@ -256,7 +256,7 @@ fn a_wrong_solid_is_noticed() {
         let mut other = scene.clone();
         other.objects[0].offset.extend = extend;
         let from_box = Settings {
-            hull_from: u32::MAX,
+            proxy_min_pixels: u32::MAX,
             ..settings(search.from_box, DrawStage::Fragment)
         };
         let hull = settings(search.solver, DrawStage::Fragment);

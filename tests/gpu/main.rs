@@ -19,9 +19,9 @@ mod gallery;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod golden;
 mod hulls;
-mod hulls_of_pieces;
 mod limits;
 mod offsets;
+mod proxy_hulls;
 mod replicas;
 mod shadows;
 mod texturing;

@@ -107,7 +107,7 @@ fn shadows_are_the_references() {
             );
             // Convex hulls and beams would start rays at different places.
             let fragment = Settings {
-                hull_from: u32::MAX,
+                proxy_min_pixels: u32::MAX,
                 ..settings
             };
             let compute = Settings {

@@ -15,7 +15,7 @@ fn settings(stage: DrawStage) -> Settings {
     Settings {
         width: 160,
         height: 120,
-        hull_from: 0, // however small
+        proxy_min_pixels: 0, // however small
         stage,
         ..Settings::default()
     }
@@ -243,7 +243,7 @@ fn no_update_compiles_a_pipeline() {
         for solver in [Solver::Hull, Solver::Quadric, Solver::Live, Solver::Circle] {
             let settings = Settings {
                 solver,
-                hull_from: 150,
+                proxy_min_pixels: 150,
                 ..settings(stage)
             };
             let mut scene = vase();

@@ -253,7 +253,7 @@ impl Vary {
 }
 
 fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
-    frame::beside::write_beside(Stage::Frame, path, |out| {
+    frame::atomic_file::write_atomically(Stage::Frame, path, |out| {
         let mut text =
             String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
         for (n, row) in rows.iter().enumerate() {

@@ -47,9 +47,9 @@ struct Solid {
     vec4 texturing;  // repetitions along xi and eta; bump depth a
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
-    uvec4 pieces;    // of the quadric search's tables (piece_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
+    uvec4 patches;    // of the quadric search's tables (patch_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
                      // of the cone search's: where they begin, rows, bits of the largest radius
-    uvec4 hull;      // first band; first vector of the nodes that beams are asked against
+    uvec4 hull;      // first frustum; first vector of the nodes that beams are asked against
     Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
 };
 
@@ -87,7 +87,7 @@ void take_solid()
     solid.texturing = batch_solid.texturing;
     solid.cells = batch_solid.cells;
     solid.instances = batch_solid.instances;
-    solid.pieces = batch_solid.pieces;
+    solid.patches = batch_solid.patches;
     solid.hull = batch_solid.hull;
     solid.single.position_sx = batch_solid.single.position_sx;
     solid.single.rotation = batch_solid.single.rotation;

@@ -23,7 +23,7 @@
 #endif
 
 #if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_BEAMS
-// Of a ray that is known to begin outside of the solid, none of which the box cuts: pieces alone, between two t.
+// Of a ray that is known to begin outside of the solid, none of which the box cuts: patches alone, between two t.
 bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
 {
     float t_in = span.x;
@@ -61,7 +61,7 @@ bool begins_within(Meridian m, inout uint steps, out float f)
 {
     f = 0.0;
 #if SEARCH == SEARCH_QUADRIC
-    // Floor and ceiling are pieces. Through the sides one enters the solid only where it reaches past them.
+    // Floor and ceiling are patches. Through the sides one enters the solid only where it reaches past them.
     float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
     bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
     return (m.from_eye || open_side) && starts_within(m);

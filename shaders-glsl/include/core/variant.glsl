@@ -6,7 +6,7 @@
 #define SEARCH_NONE 0    // vertices, lists of tiles
 #define SEARCH_CIRCLE 1  // the papers' loop
 #define SEARCH_LIVE 2    // steps that are safe to a texel and a last secant, on the map alone
-#define SEARCH_QUADRIC 3 // exact pieces of quadrics, rebuilt when parameters change
+#define SEARCH_QUADRIC 3 // exact patches of quadrics, rebuilt when parameters change
 #define SEARCH_LINEAR 4  // equal steps, then nothing, halvings or secants
 #define SEARCH_CONE 5    // empty cones on each row, for solids that are single-valued in z
 #define SEARCH_RELAXED 6 // the same, relaxed, and halvings
@@ -98,14 +98,14 @@ const uint SHADOW_SOFT = 2u;
 const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
 
 const uint MAX_LIGHTS = 8u;
-const uint PIECE_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
-const uint PIECE_ROWS = 256u; // of a solid's tables: a power of 4
-const uint PIECE_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
+const uint PATCH_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
+const uint PATCH_ROWS = 256u; // of a solid's tables: a power of 4
+const uint PATCH_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
 const uint BEAM_NODES = 64u; // of one of its levels
 const uint BEAM_FIRST_NODE = 256u; // where that begins
 const uint HULL_SIDES = 12u; // corners of a hull's rings
-const uint HULL_TESTS = 8u; // most pieces of a hull's cell
-const uint BAND_VECTORS = 17u; // of a band: its rings, then the cell's quadrics and guards
+const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
+const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
 const uint BIN_PIXELS = 32u; // side of a compute bin

@@ -1,5 +1,5 @@
 // Cone step mapping (Dummer 2006) in the half-plane, of solids r <= f(z): a table of rows of equal height, laid out and proven as
-// src/pieces/cones.rs says. From a sample outside, the ray meets in its own row a frustum, exactly; beyond that row nothing before it leaves
+// src/surface/cones.rs says. From a sample outside, the ray meets in its own row a frustum, exactly; beyond that row nothing before it leaves
 // the row's widest empty cone. Both are cones of revolution about the axis, so both are quadratics in t.
 //
 // Never passes the surface, and advances by a row at least.
@@ -30,7 +30,7 @@ vec2 row_radius(vec4 cone, float height, float n, bool above)
     float g = cone.x + slope * height;
     if (cone.w < 0.0) {
         float face = level_height(cone, n);
-        float upper = mod(-cone.w - 1.0, 4096.0) / 4095.0 * uintBitsToFloat(solid.pieces.z);
+        float upper = mod(-cone.w - 1.0, 4096.0) / 4095.0 * uintBitsToFloat(solid.patches.z);
         slope = above ? (cone.y - upper) / max(1.0 / n - face, 1e-7) : (cone.z - cone.x) / max(face, 1e-7);
         g = above ? upper + slope * (height - face) : cone.x + slope * height;
     }
@@ -39,10 +39,10 @@ vec2 row_radius(vec4 cone, float height, float n, bool above)
 
 bool starts_within_cones(Meridian m)
 {
-    float n = float(solid.pieces.y);
+    float n = float(solid.patches.y);
     float z = clamp(m.o.z, 0.0, 1.0);
     float row = min(floor(z * n), n - 1.0);
-    vec4 cone = piece_vector(uint(row));
+    vec4 cone = patch_vector(uint(row));
     float height = z - row / n;
     float g = row_radius(cone, height, n, height >= level_height(cone, n)).x;
     return m.c < g * g;
@@ -51,7 +51,7 @@ bool starts_within_cones(Meridian m)
 // FOUND or LEFT; `hit_quadric` is the frustum that was hit, as `quadric_normal` wants it.
 uint search_cone(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
 {
-    int rows = int(solid.pieces.y);
+    int rows = int(solid.patches.y);
     float n = float(rows);
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
@@ -62,7 +62,7 @@ uint search_cone(Meridian m, float side, inout float s, inout uint steps, out ve
     hit_quadric = vec4(0.0);
     bool found = false;
     for (int i = 0; i <= 2 * rows; ++i) {
-        vec4 cone = piece_vector(uint(row));
+        vec4 cone = patch_vector(uint(row));
         ++steps;
         float low = float(row) / n;
         float height = m.o.z + t * m.v.z - low;

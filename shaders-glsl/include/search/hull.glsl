@@ -1,4 +1,4 @@
-// A fragment of a hull: the pieces of its own cell, in a straight line. What a cell is, and why it loses no ray: src/pieces/hull.rs,
+// A fragment of a hull: the patches of its own cell, in a straight line. What a cell is, and why it loses no ray: src/surface/hull.rs,
 // whose `trace` is this file's twin.
 #ifndef HULL_GLSL
 #define HULL_GLSL
@@ -23,7 +23,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     m.c = dot(m.o.xy, m.o.xy);
     float best = 3e38;
     vec4 quadric = vec4(0.0);
-    for (uint k = 0u; k < HULL_TESTS; ++k) {
+    for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
         vec4 guard = hull_guard[k];
         float root = entering_root(m, hull_quadric[k], 1.0);
         float z = m.o.z + root * m.v.z;
@@ -38,7 +38,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     hit.normal = quadric_normal(m, best, quadric);
     hit.point = m.o + best * v;
     hit.sense = vec3(1.0);
-    hit.steps = HULL_TESTS;
+    hit.steps = PATCHES_PER_CELL;
     hit.exhausted = false;
     return best < 2e38;
 }

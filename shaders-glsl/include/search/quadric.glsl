@@ -1,12 +1,12 @@
-// The quadric search: the solid's boundary as pieces of quadrics of revolution, dealt out to rows of equal height, under a 4-ary tree
-// of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a piece; rows are met in the order of t. Layout and walk are
-// those of src/pieces/rows.rs and walk.rs, which is this file's twin on the CPU.
+// The quadric search: the solid's boundary as patches of quadrics of revolution, dealt out to rows of equal height, under a 4-ary tree
+// of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a patch; rows are met in the order of t. Layout and walk are
+// those of src/surface/rows.rs and walk.rs, which is this file's twin on the CPU.
 //
 // Exact but for rounding: no step, no threshold, nothing to run out of.
 #ifndef SEARCH_QUADRIC_GLSL
 #define SEARCH_QUADRIC_GLSL
 #include "core/surface.glsl"
-#include "core/piece_tables.glsl"
+#include "core/patch_tables.glsl"
 
 // The root at which G falls from out to in; NaN or out of range where there is none.
 float entering_root(Meridian m, vec4 q, float side)
@@ -24,26 +24,26 @@ float square_at(Meridian m, float s)
     return m.c + s * (2.0 * m.b + s * m.a);
 }
 
-// Whether the start of the ray is in the solid: by the number of pieces beyond it, away from the axis.
+// Whether the start of the ray is in the solid: by the number of patches beyond it, away from the axis.
 bool starts_within(Meridian m)
 {
-    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(PIECE_ROWS));
-    uint run = piece_word(PIECE_NODES + min(row, PIECE_ROWS - 1u));
+    uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(PATCH_ROWS));
+    uint run = patch_word(PATCH_NODES + min(row, PATCH_ROWS - 1u));
     uint beyond = 0u;
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
-        vec4 q = piece_vector(solid.pieces.y + 2u * record);
-        vec2 range = uintBitsToFloat(piece_tables[solid.pieces.x + solid.pieces.z + record].xy);
+        vec4 q = patch_vector(solid.patches.y + 2u * record);
+        vec2 range = uintBitsToFloat(patch_tables[solid.patches.x + solid.patches.z + record].xy);
         float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
     }
     return (beyond & 1u) != 0u;
 }
 
-// FOUND or LEFT; `hit_quadric` is the piece that was hit.
+// FOUND or LEFT; `hit_quadric` is the patch that was hit.
 uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
 {
-    const int rows = int(PIECE_ROWS);
+    const int rows = int(PATCH_ROWS);
     float n = float(rows);
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
@@ -58,7 +58,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     float best = 3e38;
     hit_quadric = vec4(0.0);
     for (;;) {
-        // Through the tree to the next row whose pieces the ray may meet.
+        // Through the tree to the next row whose patches the ray may meet.
         uint run = 0u;
         int border;
         float leave;
@@ -70,11 +70,11 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             most_out = square_at(m, leave);
             float least = square_at(m, clamp(nearest, t, leave));
             int base = level < 2 ? (level == 0 ? 0 : 256) : (level == 2 ? 320 : 336);
-            vec2 extent = node_extent(piece_word(uint(base + node)));
+            vec2 extent = node_extent(patch_word(uint(base + node)));
             ++steps;
             bool meets = max(most, most_out) >= extent.x && least <= extent.y;
             if (meets && level == 0) {
-                run = piece_word(PIECE_NODES + uint(row));
+                run = patch_word(PATCH_NODES + uint(row));
                 break;
             }
             if (meets) {
@@ -89,10 +89,10 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        uint first = solid.pieces.y + 2u * (run >> RUN_BITS);
+        uint first = solid.patches.y + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
-            vec4 q = piece_vector(first + 2u * k);
-            vec4 guard = piece_vector(first + 2u * k + 1u);
+            vec4 q = patch_vector(first + 2u * k);
+            vec4 guard = patch_vector(first + 2u * k + 1u);
             ++steps;
             float root = entering_root(m, q, side);
             float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);

@@ -10,9 +10,9 @@ const int HALVINGS_OF_CONES = 12;
 // The row at a height, and its radius and slope there.
 vec4 row_at(float z, out vec2 radius)
 {
-    float n = float(solid.pieces.y);
+    float n = float(solid.patches.y);
     float row = clamp(floor(z * n), 0.0, n - 1.0);
-    vec4 cone = piece_vector(uint(row));
+    vec4 cone = patch_vector(uint(row));
     float height = clamp(z - row / n, 0.0, 1.0 / n);
     radius = row_radius(cone, height, n, height >= level_height(cone, n));
     return cone;
@@ -30,7 +30,7 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
 {
     bool up = m.v.z >= 0.0;
     // The solid's own levels, floor and ceiling among them, are met at a row's border at the earliest.
-    float least = m.inverse_speed / float(solid.pieces.y);
+    float least = m.inverse_speed / float(solid.patches.y);
     float t = 0.0;
     float before = 0.0;
     vec4 cone;

@@ -12,7 +12,7 @@ layout(location = 13) flat VARYING vec4 box_map;
 layout(location = 14) flat VARYING vec4 box_offset;
 #endif
 #if READS_TABLES
-layout(location = 15) flat VARYING uvec4 box_pieces;
+layout(location = 15) flat VARYING uvec4 box_patches;
 #endif
 
 #ifdef VERTEX_GLSL
@@ -27,7 +27,7 @@ void hand_over_box()
     box_offset = solid.offset;
 #endif
 #if READS_TABLES
-    box_pieces = solid.pieces;
+    box_patches = solid.patches;
 #endif
 }
 #else
@@ -42,7 +42,7 @@ void take_over_box()
     solid.offset = box_offset;
 #endif
 #if READS_TABLES
-    solid.pieces = box_pieces;
+    solid.patches = box_patches;
 #endif
 }
 #endif

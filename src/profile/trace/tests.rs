@@ -2,8 +2,8 @@
 use super::*;
 use crate::maps::accuracy::Disc;
 use crate::maps::{BakeOptions, MapSource, ShapeMap};
-use crate::pieces::ContourSource;
 use crate::scene::Offset;
+use crate::surface::ContourSource;
 
 fn picture(columns: u32, rows: u32, coverage: impl Fn(f64, f64) -> f64) -> Raster {
     let at = |k: u32| coverage(f64::from(k % columns) + 0.5, f64::from(k / columns) + 0.5);

@@ -1,7 +1,7 @@
 //! A contour's chains, thinned to rings.
 
 use glam::DVec2;
-use revmap::pieces::{Chain, Contour};
+use revmap::surface::{Chain, Contour};
 
 /// A ring of vertices, seen in the half-plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

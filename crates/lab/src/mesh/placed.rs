@@ -5,9 +5,9 @@ use super::tessellation::Mesh;
 use glam::DVec3;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::Projection;
-use revmap::pieces::ContourSource;
 use revmap::profile::Profile;
 use revmap::scene::{CameraFrame, Object, Offset, Placement, Scene, Shadow};
+use revmap::surface::ContourSource;
 use std::sync::Arc;
 
 /// An object's mesh and what is drawn of it.

@@ -1,6 +1,6 @@
 //! A solid of revolution as triangles.
 //!
-//! The contour under its offset ([`ContourSource`](revmap::pieces::ContourSource), which the exact
+//! The contour under its offset ([`ContourSource`](revmap::surface::ContourSource), which the exact
 //! search uses too) is thinned to rings and turned in equal steps. The mesh is as good as its
 //! number of quads allows:
 //!
@@ -21,7 +21,7 @@
 use super::meridian::{Strand, meridian};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
-use revmap::pieces::Contour;
+use revmap::surface::Contour;
 use std::f64::consts::{PI, TAU};
 
 /// Segments that are drawn side by side from one end of the meridian to the other.

@@ -11,7 +11,7 @@ use super::pictures::png;
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use revmap::error::{Error, Result, Stage};
-use revmap::frame::beside::write_beside;
+use revmap::frame::atomic_file::write_atomically;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,7 @@ pub fn write_text(file: &Path, text: &str) -> Result<()> {
 /// # Errors
 /// [`Stage::Report`], naming the file.
 pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
-    write_beside(Stage::Report, file, |writer| {
+    write_atomically(Stage::Report, file, |writer| {
         writer.write_all(bytes).map_err(|e| {
             Error::new(
                 Stage::Report,

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 ///
 /// # Errors
 /// Of `stage`, naming the file: what `fill` reports, or that the file cannot be made or written (folder missing, no permission, full disk).
-pub fn write_beside(
+pub fn write_atomically(
     stage: Stage,
     target: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
@@ -120,8 +120,8 @@ mod tests {
     fn the_target_appears_whole_and_alone() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_beside(Stage::Frame, &target, bytes(b"one")).unwrap();
-        write_beside(Stage::Frame, &target, bytes(b"two")).unwrap();
+        write_atomically(Stage::Frame, &target, bytes(b"one")).unwrap();
+        write_atomically(Stage::Frame, &target, bytes(b"two")).unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["a.bin"]);
     }
@@ -130,8 +130,8 @@ mod tests {
     fn a_failure_keeps_what_was_there() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_beside(Stage::Frame, &target, bytes(b"old")).unwrap();
-        let error = write_beside(Stage::Map, &target, |w| {
+        write_atomically(Stage::Frame, &target, bytes(b"old")).unwrap();
+        let error = write_atomically(Stage::Map, &target, |w| {
             w.write_all(&[7; 100_000]).unwrap();
             Err(Error::new(Stage::Map, "half way"))
         })
@@ -150,7 +150,7 @@ mod tests {
             (folder.path().to_path_buf(), "is a folder"),
             (folder.path().join("file/a.bin"), "not a folder"),
         ] {
-            let error = write_beside(Stage::Frame, &target, bytes(b"x")).unwrap_err();
+            let error = write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap_err();
             assert_eq!(error.file.as_deref(), Some(target.as_path()));
             assert!(error.to_string().contains(what), "{error}");
         }
@@ -163,7 +163,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
         std::os::unix::fs::symlink("/dev/full", &target).unwrap();
-        let error = write_beside(Stage::Frame, &target, bytes(b"x")).unwrap_err();
+        let error = write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap_err();
         assert!(error.to_string().contains("the disk is full"), "{error}");
         assert_eq!(names(folder.path()), ["a.bin"]);
         assert!(Path::new("/dev/full").exists());
@@ -176,7 +176,7 @@ mod tests {
         let (real, link) = (folder.path().join("real"), folder.path().join("link"));
         fs::write(&real, b"old").unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        write_beside(Stage::Frame, &link, bytes(b"new")).unwrap();
+        write_atomically(Stage::Frame, &link, bytes(b"new")).unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
@@ -185,7 +185,7 @@ mod tests {
     fn very_long_names_work() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x".repeat(255));
-        write_beside(Stage::Frame, &target, bytes(b"x")).unwrap();
+        write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap();
         assert_eq!(names(folder.path()).len(), 1);
     }
 }

@@ -20,7 +20,7 @@
 
 mod curve;
 
-use super::chain::{JOINT, Parts};
+use super::chain::{JOINT, Segments};
 use super::tree::Tree;
 use crate::profile::Segment;
 use curve::{Curve, meet, within};
@@ -72,7 +72,7 @@ const SWEEP: f64 = 0.5;
 const SAGITTA: f64 = 1e-6;
 /// What is nearer by less than this is not nearer: some roundings of coordinates of size 1.
 const NEARER: f64 = 2e-14;
-/// Parts shorter than this are left out; the joint bridges them.
+/// Segments shorter than this are left out; the joint bridges them.
 const SHORT: f64 = 0.2 * JOINT;
 
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +102,7 @@ impl Trimmer {
         segments: &[Segment],
         corners: &[[Option<Corner>; 2]],
         tree: &Tree,
-        parts: &mut Parts,
+        parts: &mut Segments,
     ) {
         self.candidates.clear();
         for (k, (s, [before, after])) in segments.iter().zip(corners).enumerate() {
@@ -251,7 +251,7 @@ impl Trimmer {
     }
 
     /// Keeps the parts of each curve that lie on the contour.
-    fn keep(&self, layer: &Layer, tree: &Tree, parts: &mut Parts) {
+    fn keep(&self, layer: &Layer, tree: &Tree, parts: &mut Segments) {
         let mut cuts = &self.cuts[..];
         for (k, candidate) in self.candidates.iter().enumerate() {
             let own = cuts.partition_point(|c| c.0 as usize <= k);

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::pieces::ContourSource;
 use crate::profile::{Outline, Profile};
 use crate::scene::Offset;
+use crate::surface::ContourSource;
 use proptest::prelude::*;
 
 fn contour(points: &[[f64; 2]], extend: f64) -> Contour {

@@ -1,4 +1,4 @@
-//! What it costs to make contour, pieces and tables anew, and to walk them: `cargo bench --bench pieces`.
+//! What it costs to make contour, patches and tables anew, and to walk them: `cargo bench --bench patches`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/common/shapes.rs"]
@@ -7,11 +7,12 @@ mod shapes;
 
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
-use revmap::pieces::{
-    ContourSource, CutOptions, Hull, HullOptions, ROWS, Tables, cut, trace_pieces,
-};
 use revmap::profile::{Outline, Profile, ProfileAxis};
 use revmap::scene::Offset;
+use revmap::surface::{
+    ContourSource, FitOptions, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
+    trace_patches,
+};
 
 fn main() {
     divan::main();
@@ -84,8 +85,8 @@ fn rebuild<const N: u32>(bencher: Bencher, (name, technique): (&str, &str)) {
     let offset = offset(technique);
     bencher.bench(|| {
         let contour = source.contour(black_box(&offset)).unwrap();
-        let pieces = cut(&contour, &CutOptions::default());
-        Tables::new(&pieces, N)
+        let patches = fit_patches(&contour, &FitOptions::default());
+        Tables::new(&patches, N)
     });
 }
 
@@ -97,10 +98,10 @@ fn contour(bencher: Bencher, (name, technique): (&str, &str)) {
 }
 
 #[divan::bench(args = cases())]
-fn pieces(bencher: Bencher, (name, technique): (&str, &str)) {
+fn patches(bencher: Bencher, (name, technique): (&str, &str)) {
     let source = ContourSource::new(&outline(name)).unwrap();
     let contour = source.contour(&offset(technique)).unwrap();
-    bencher.bench(|| cut(black_box(&contour), &CutOptions::default()));
+    bencher.bench(|| fit_patches(black_box(&contour), &FitOptions::default()));
 }
 
 /// Dealing out to rows.
@@ -108,8 +109,8 @@ fn pieces(bencher: Bencher, (name, technique): (&str, &str)) {
 fn rows(bencher: Bencher, rows: u32) {
     let source = ContourSource::new(&outline("king")).unwrap();
     let contour = source.contour(&offset("plain")).unwrap();
-    let pieces = cut(&contour, &CutOptions::default());
-    bencher.bench(|| Tables::new(black_box(&pieces), rows));
+    let patches = fit_patches(&contour, &FitOptions::default());
+    bencher.bench(|| Tables::new(black_box(&patches), rows));
 }
 
 /// The shells of all cells.
@@ -117,8 +118,8 @@ fn rows(bencher: Bencher, rows: u32) {
 fn hull(bencher: Bencher, name: &str) {
     let source = ContourSource::new(&outline(name)).unwrap();
     let contour = source.contour(&offset("plain")).unwrap();
-    let pieces = cut(&contour, &CutOptions::default());
-    bencher.bench(|| Hull::new(black_box(&pieces), &HullOptions::default()));
+    let patches = fit_patches(&contour, &FitOptions::default());
+    bencher.bench(|| ProxyHull::new(black_box(&patches), &ProxyHullOptions::default()));
 }
 
 /// The outline of a picture of 512 rows, anti-aliased.
@@ -133,12 +134,12 @@ fn picture(bencher: Bencher) {
 fn ray(bencher: Bencher, rows: u32) {
     let source = ContourSource::new(&outline("king")).unwrap();
     let contour = source.contour(&offset("plain")).unwrap();
-    let tables = Tables::new(&cut(&contour, &CutOptions::default()), rows);
+    let tables = Tables::new(&fit_patches(&contour, &FitOptions::default()), rows);
     let mut k = 0u32;
     bencher.bench_local(|| {
         k += 1;
         let aim = DVec3::new(0.1, 0.05, (f64::from(k) * 0.618).fract());
         let origin = DVec3::new(2.0, (f64::from(k) * 0.7548).fract() - 0.5, 1.0);
-        trace_pieces(&tables, 0.5, DVec2::ZERO, origin, aim - origin)
+        trace_patches(&tables, 0.5, DVec2::ZERO, origin, aim - origin)
     });
 }

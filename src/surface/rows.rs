@@ -1,46 +1,46 @@
-//! The tables of the search: pieces dealt out to rows of equal height, and a tree of the rows' extents.
+//! The tables of the search: patches dealt out to rows of equal height, and a tree of the rows' extents.
 //!
 //! # Layout
 //!
 //! `N` rows: row `i` is `i / N <= z <= (i + 1) / N`.
 //!
-//! * `records`: the pieces, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, piece, 0]`: the quadric, the guard, and
-//!   what only questions off the main path need: the piece's range of `z`, and its number. They stand row by row (a
-//!   piece that touches several rows stands there several times, unless these rows hold the same pieces: then they share), so
-//!   that a row's pieces are one run.
+//! * `records`: the patches, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, patch, 0]`: the quadric, the guard, and
+//!   what only questions off the main path need: the patch's range of `z`, and its number. They stand row by row (a
+//!   patch that touches several rows stands there several times, unless these rows hold the same patches: then they share), so
+//!   that a row's patches are one run.
 //! * `rows[i] = first << 12 | count`: that run.
 //! * `nodes`: `[min r^2, max r^2]` of the boundary, first of each row (level 0), then of each 4 rows (level 1), of each 16, and so on;
 //!   `levels[l]` is where level `l` begins. An empty node is `[+inf, -inf]`. The topmost level has at most 4 nodes.
 //!
-//! All extents are a little too large rather than too small (by a millionth). [`trace_pieces`](super::trace_pieces) says how to walk it.
+//! All extents are a little too large rather than too small (by a millionth). [`trace_patches`](super::trace_patches) says how to walk it.
 
-use super::Piece;
+use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
 
 /// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's order): roundings of 32 bits.
 pub(super) const MARGIN: f64 = 1e-6;
 
-/// A piece, as shaders read it: three vectors of four 32-bit floats.
+/// A patch, as shaders read it: three vectors of four 32-bit floats.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Record {
+pub struct GpuPatch {
     /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`.
     pub quadric: [f32; 4],
     /// `[cz, cr, low, high]`: a point counts where `low <= cz z + cr r^2 <= high`.
     pub guard: [f32; 4],
-    /// `[z0, z1, piece, 0]`: the range of `z`, and the piece's number (exact up to 2^24).
+    /// `[z0, z1, patch, 0]`: the range of `z`, and the patch's number (exact up to 2^24).
     pub range: [f32; 4],
 }
 
-impl Record {
-    /// The record of piece number `index`.
+impl GpuPatch {
+    /// The record of patch number `index`.
     #[must_use]
-    pub fn new(piece: &Piece, index: usize) -> Self {
-        let [cz, cr, low, high] = piece.guard;
+    pub fn new(patch: &QuadricPatch, index: usize) -> Self {
+        let [cz, cr, low, high] = patch.guard;
         Self {
-            quadric: piece.quadric.map(|v| v as f32),
+            quadric: patch.quadric.map(|v| v as f32),
             guard: [cz as f32, cr as f32, low as f32, high as f32],
-            range: [piece.z[0] as f32, piece.z[1] as f32, index as f32, 0.0],
+            range: [patch.z[0] as f32, patch.z[1] as f32, index as f32, 0.0],
         }
     }
 }
@@ -54,8 +54,8 @@ pub struct Tables {
     pub nodes: Vec<[f32; 2]>,
     /// Where each level of `nodes` begins; its length is the number of levels.
     pub levels: Vec<u32>,
-    /// Pieces, row by row.
-    pub records: Vec<Record>,
+    /// Patches, row by row.
+    pub records: Vec<GpuPatch>,
     /// Largest `r` of the boundary: where it exceeds the reach of the box's sides the box cuts the solid.
     pub reach: f32,
 }
@@ -64,27 +64,27 @@ pub struct Tables {
 pub const ROWS: u32 = 256;
 
 impl Tables {
-    /// Deals pieces out to `rows` rows (at least 1, at most 4096).
+    /// Deals patches out to `rows` rows (at least 1, at most 4096).
     #[must_use]
-    pub fn new(pieces: &[Piece], rows: u32) -> Self {
+    pub fn new(patches: &[QuadricPatch], rows: u32) -> Self {
         let rows = rows.clamp(1, 4096) as usize;
         let n = rows as f64;
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); rows];
         let mut nodes = vec![EMPTY; rows];
-        for (index, piece) in pieces.iter().enumerate() {
+        for (index, patch) in patches.iter().enumerate() {
             let row = |z: f64| ((z * n).floor().max(0.0) as usize).min(rows - 1);
-            for i in row(piece.z[0] - MARGIN)..=row(piece.z[1] + MARGIN) {
+            for i in row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN) {
                 if members[i].len() == MOST {
                     continue;
                 }
                 members[i].push(index as u32);
-                let [low, high] = squares(piece, i as f64 / n, (i + 1) as f64 / n);
+                let [low, high] = squares(patch, i as f64 / n, (i + 1) as f64 / n);
                 let node: &mut [f32; 2] = &mut nodes[i];
                 node[0] = node[0].min(low);
                 node[1] = node[1].max(high);
             }
         }
-        let (starts, records) = runs(pieces, &members);
+        let (starts, records) = runs(patches, &members);
         let mut levels = vec![0];
         let mut from = 0;
         while nodes.len() - from > 4 {
@@ -105,25 +105,25 @@ impl Tables {
             nodes,
             levels,
             records,
-            reach: pieces.iter().fold(0.0f64, |m, p| m.max(p.r[1])) as f32,
+            reach: patches.iter().fold(0.0f64, |m, p| m.max(p.r[1])) as f32,
         }
     }
 
     /// Bytes that a shader reads: rows, nodes and records.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        4 * self.rows.len() + 8 * self.nodes.len() + size_of::<Record>() * self.records.len()
+        4 * self.rows.len() + 8 * self.nodes.len() + size_of::<GpuPatch>() * self.records.len()
     }
 }
 
-/// Most pieces that a row can hold.
+/// Most patches that a row can hold.
 const MOST: usize = (1 << 12) - 1;
 const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// Runs of each row and the records they run over.
-fn runs(pieces: &[Piece], members: &[Vec<u32>]) -> (Vec<u32>, Vec<Record>) {
+fn runs(patches: &[QuadricPatch], members: &[Vec<u32>]) -> (Vec<u32>, Vec<GpuPatch>) {
     let mut starts: Vec<u32> = Vec::with_capacity(members.len());
-    let mut records: Vec<Record> = Vec::new();
+    let mut records: Vec<GpuPatch> = Vec::new();
     for (i, list) in members.iter().enumerate() {
         if i > 0 && *list == members[i - 1] {
             starts.push(starts[i - 1]);
@@ -142,26 +142,26 @@ fn runs(pieces: &[Piece], members: &[Vec<u32>]) -> (Vec<u32>, Vec<Record>) {
         records.extend(
             list[shared..]
                 .iter()
-                .map(|&m| Record::new(&pieces[m as usize], m as usize)),
+                .map(|&m| GpuPatch::new(&patches[m as usize], m as usize)),
         );
     }
     (starts, records)
 }
 
-/// Least and largest `r^2` of a piece between two heights, widened.
-fn squares(piece: &Piece, from: f64, to: f64) -> [f32; 2] {
-    let [mut low, mut high] = piece.r.map(|r| r * r);
-    if !piece.is_plane() {
+/// Least and largest `r^2` of a patch between two heights, widened.
+fn squares(patch: &QuadricPatch, from: f64, to: f64) -> [f32; 2] {
+    let [mut low, mut high] = patch.r.map(|r| r * r);
+    if !patch.is_plane() {
         let ends = [
-            (from - MARGIN).clamp(piece.z[0], piece.z[1]),
-            (to + MARGIN).clamp(piece.z[0], piece.z[1]),
+            (from - MARGIN).clamp(patch.z[0], patch.z[1]),
+            (to + MARGIN).clamp(patch.z[0], patch.z[1]),
         ];
-        let squares = ends.map(|z| piece.square_at(z));
-        let [_, _, k1, k2] = piece.quadric;
+        let squares = ends.map(|z| patch.square_at(z));
+        let [_, _, k1, k2] = patch.quadric;
         let turn = -0.5 * k1 / k2;
         let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
         if ends[0] < turn && turn < ends[1] {
-            let p = piece.square_at(turn);
+            let p = patch.square_at(turn);
             (least, most) = (least.min(p), most.max(p));
         }
         // The ends themselves are known better than the quadric gives them.

@@ -1,13 +1,13 @@
 //! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what is made of them for the GPU.
 
 use super::arena::Slot;
-use super::hulls::ProxyHull;
+use super::hulls::GpuProxyHull;
 use super::solid::Outlined;
 use super::tables::GpuTables;
 use crate::error::Result;
 use crate::maps::envelope::Envelope;
-use crate::pieces::{Cones, CutOptions, Piece, cut};
 use crate::scene::Offset;
+use crate::surface::{Cones, FitOptions, QuadricPatch, fit_patches};
 use std::sync::{Arc, OnceLock};
 
 /// One surface, made when first wanted, shared by all objects that show it.
@@ -15,14 +15,14 @@ pub(crate) struct OffsetSurface {
     recipe: Recipe,
     made: OnceLock<Result<Made>>,
     tables: OnceLock<GpuTables>,
-    hull: OnceLock<ProxyHull>,
+    hull: OnceLock<GpuProxyHull>,
     slots: [OnceLock<Slot>; 2],
 }
 
 /// What a surface is made from.
 pub(crate) enum Recipe {
     /// Quadrics that follow the outline under an offset.
-    Pieces(Arc<Outlined>, Offset),
+    Patches(Arc<Outlined>, Offset),
     /// A row of so many empty cones around it, relaxed or not.
     Cones(Arc<Outlined>, Offset, u32, bool),
     /// Where a map's solid may be.
@@ -31,7 +31,7 @@ pub(crate) enum Recipe {
 
 enum Made {
     /// And their largest radius, least and largest `z`.
-    Pieces(Vec<Piece>, [f64; 3]),
+    Patches(Vec<QuadricPatch>, [f64; 3]),
     Cones(Cones),
     Envelope,
 }
@@ -42,7 +42,7 @@ pub(crate) enum Part {
     /// What searches walk.
     Tables,
     /// What the vertex shaders of hulls grow.
-    Bands,
+    Frusta,
 }
 
 impl OffsetSurface {
@@ -79,19 +79,19 @@ impl OffsetSurface {
     pub fn tables(&self) -> &GpuTables {
         self.tables
             .get_or_init(|| match (self.made(), &self.recipe) {
-                (Ok(Made::Pieces(pieces, _)), _) => GpuTables::pieces(pieces),
+                (Ok(Made::Patches(patches, _)), _) => GpuTables::patches(patches),
                 (Ok(Made::Cones(cones)), _) => GpuTables::cones(cones),
                 (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuTables::envelope(envelope),
-                _ => GpuTables::pieces(&[]),
+                _ => GpuTables::patches(&[]),
             })
     }
 
     /// What the rasteriser draws; of cones nothing.
-    pub fn hull(&self) -> &ProxyHull {
+    pub fn hull(&self) -> &GpuProxyHull {
         self.hull.get_or_init(|| match (self.made(), &self.recipe) {
-            (Ok(Made::Pieces(pieces, _)), _) => ProxyHull::new(pieces),
-            (Ok(Made::Envelope), Recipe::Envelope(envelope)) => ProxyHull::convex(envelope),
-            _ => ProxyHull::new(&[]),
+            (Ok(Made::Patches(patches, _)), _) => GpuProxyHull::new(patches),
+            (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuProxyHull::convex(envelope),
+            _ => GpuProxyHull::new(&[]),
         })
     }
 
@@ -100,10 +100,10 @@ impl OffsetSurface {
         !matches!(self.recipe, Recipe::Envelope(_))
     }
 
-    /// Largest radius, least and largest `z`; of pieces alone.
+    /// Largest radius, least and largest `z`; of patches alone.
     pub fn extent(&self) -> [f64; 3] {
         match self.made() {
-            Ok(Made::Pieces(_, extent)) => *extent,
+            Ok(Made::Patches(_, extent)) => *extent,
             _ => [0.0; 3],
         }
     }
@@ -111,7 +111,7 @@ impl OffsetSurface {
     pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
         match part {
             Part::Tables => &self.tables().vectors,
-            Part::Bands => &self.hull().vectors,
+            Part::Frusta => &self.hull().vectors,
         }
     }
 
@@ -128,14 +128,14 @@ impl OffsetSurface {
 impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
-            Self::Pieces(outlined, offset) => {
+            Self::Patches(outlined, offset) => {
                 let contour = outlined.contour(offset)?;
-                let pieces = cut(&contour, &CutOptions::default());
+                let patches = fit_patches(&contour, &FitOptions::default());
                 let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
-                let extent = pieces.iter().fold(none, |m, p| {
+                let extent = patches.iter().fold(none, |m, p| {
                     [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
                 });
-                Ok(Made::Pieces(pieces, extent))
+                Ok(Made::Patches(patches, extent))
             }
             Self::Cones(outlined, offset, rows, relaxed) => {
                 let contour = outlined.contour(offset)?;

@@ -9,21 +9,21 @@
 //! 1. Begin at the top level of the tree, in the row of the ray's first point.
 //! 2. The node of that row at the present level ends at a row's border; there the ray is at `t_out`. Between the present `t` and
 //!    `t_out` it takes the `r^2` from `min` (at an end, or at `-b / a`) to `max` (at an end).
-//! 3. If these meet the node's extent, go down a level; in a row, try its pieces.
+//! 3. If these meet the node's extent, go down a level; in a row, try its patches.
 //! 4. Else (or then) go on to the border: `t = t_out`, next row; as many levels up as the border's number of rows divides by 4. Stop where the ray
 //!    leaves the box, or where the best hit so far lies before `t`.
 //!
-//! A piece's root may lie beyond the row in which it was tried: it is kept as the best so far, and rows up to there are still walked.
+//! A patch's root may lie beyond the row in which it was tried: it is kept as the best so far, and rows up to there are still walked.
 //!
-//! # The piece
+//! # The patch
 //!
 //! `G` along the ray is `al t^2 + 2 be t + ga`. It falls, from out to in, at one root only:
 //! `t = (-be - s) / al`, `s^2 = be^2 - al ga`, which is `be <= 0 ? ga / (s - be) : -(be + s) / al` without cancellation, nor division
 //! by an `al` of zero (a plane with `be > 0` gives an infinity, and no hit). A ray that starts inside the solid looks for the way out:
 //! the same with `-G`.
 
-use super::rows::Record;
-use super::{Piece, Tables};
+use super::rows::GpuPatch;
+use super::{QuadricPatch, Tables};
 use glam::{DVec2, DVec3, Vec3};
 
 /// By how much a hit may lie before or behind the part of the ray within the box, in lengths of 1: roundings of `t`.
@@ -31,24 +31,24 @@ const SLACK: f32 = 4e-6;
 
 /// A meeting of ray and solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PieceHit {
+pub struct PatchHit {
     /// The point is `origin + t direction`.
     pub t: f64,
     /// Outward normal, not of unit length.
     pub normal: DVec3,
-    /// The piece; none on a side face of the box.
-    pub piece: Option<u32>,
+    /// The patch; none on a side face of the box.
+    pub patch: Option<u32>,
 }
 
 /// What a walk did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Walk {
     /// First hit: `t` and the record.
-    pub hit: Option<(f32, Record)>,
+    pub hit: Option<(f32, GpuPatch)>,
     /// Nodes looked at.
     pub nodes: u32,
-    /// Pieces tried.
-    pub pieces: u32,
+    /// Patches tried.
+    pub patches: u32,
 }
 
 /// The ray against one quadric: `t` of the root at which it goes from out to in (`side` 1), or from in to out (-1); NaN, or a number that
@@ -108,7 +108,7 @@ impl Tables {
                 let run = self.rows[row as usize];
                 for k in run >> 12..(run >> 12) + (run & 0xfff) {
                     let record = &self.records[k as usize];
-                    walk.pieces += 1;
+                    walk.patches += 1;
                     let root = entering_root(record.quadric, side, [a, b, c], [o.z, v.z]);
                     let [cz, cr, from, to] = record.guard;
                     let place = cz * (o.z + root * v.z) + cr * square(root);
@@ -131,7 +131,7 @@ impl Tables {
         }
     }
 
-    /// Whether a point is in the solid: counts the pieces beyond it, away from the axis.
+    /// Whether a point is in the solid: counts the patches beyond it, away from the axis.
     #[must_use]
     pub fn contains(&self, square: f32, z: f32) -> bool {
         let rows = self.rows.len();
@@ -141,7 +141,7 @@ impl Tables {
         let run = self.rows[((z * rows as f32) as usize).min(rows - 1)];
         (run >> 12..(run >> 12) + (run & 0xfff))
             .filter(|&k| {
-                let Record { quadric, range, .. } = self.records[k as usize];
+                let GpuPatch { quadric, range, .. } = self.records[k as usize];
                 let [a, k0, k1, k2] = quadric;
                 let p = -a * (k0 + z * (k1 + z * k2));
                 a != 0.0 && range[0] <= z && z < range[1] && p > square
@@ -155,16 +155,16 @@ impl Tables {
 /// The first boundary point at `t >= 0` of a solid in its box `[-radius, radius]^2 x [0, 1]`, its axis at `axis` (object units, 0 in
 /// the middle), along `origin + t direction`: what a shader does, in its precision.
 ///
-/// The box's floor and ceiling are pieces. Where the ray enters the box through a side face inside the solid, that face is hit; where it
-/// starts inside the solid and meets no piece before it leaves the box, the face it leaves through.
+/// The box's floor and ceiling are patches. Where the ray enters the box through a side face inside the solid, that face is hit; where it
+/// starts inside the solid and meets no patch before it leaves the box, the face it leaves through.
 #[must_use]
-pub fn trace_pieces(
+pub fn trace_patches(
     tables: &Tables,
     radius: f64,
     axis: DVec2,
     origin: DVec3,
     direction: DVec3,
-) -> Option<PieceHit> {
+) -> Option<PatchHit> {
     let low = DVec3::new(-radius, -radius, 0.0);
     let high = DVec3::new(radius, radius, 1.0);
     let mut t = [0.0, f64::INFINITY];
@@ -194,14 +194,14 @@ pub fn trace_pieces(
         faces[end].map(|k: usize| {
             let mut normal = DVec3::ZERO;
             normal[k] = side * direction[k].signum();
-            PieceHit {
+            PatchHit {
                 t: t[end],
                 normal,
-                piece: None,
+                patch: None,
             }
         })
     };
-    // Through floor and ceiling one comes from outside, whatever lies there: they are pieces.
+    // Through floor and ceiling one comes from outside, whatever lies there: they are patches.
     let inside = faces[0] != Some(2) && tables.contains(o.x * o.x + o.y * o.y, o.z);
     if inside && faces[0].is_some() {
         return face(0, -1.0);
@@ -213,15 +213,15 @@ pub fn trace_pieces(
     };
     let [a, _, k1, k2] = record.quadric;
     let p = o + v * root;
-    Some(PieceHit {
+    Some(PatchHit {
         t: t[0] + f64::from(root),
         normal: Vec3::new(2.0 * a * p.x, 2.0 * a * p.y, k1 + 2.0 * k2 * p.z).as_dvec3(),
-        piece: Some(record.range[2] as u32),
+        patch: Some(record.range[2] as u32),
     })
 }
 
-impl Piece {
-    /// Whether a point of the quadric belongs to the piece.
+impl QuadricPatch {
+    /// Whether a point of the quadric belongs to the patch.
     #[must_use]
     pub fn guards(&self, square: f64, z: f64) -> bool {
         let [cz, cr, low, high] = self.guard;

@@ -1,6 +1,6 @@
 //! The contour `F = d - w = 0` of an outline within the box, as chains that keep every corner.
 
-use super::chain::{Chain, Parts};
+use super::chain::{Chain, Segments};
 use super::offset::{Corner, Layer, Trimmer};
 use super::tree::Tree;
 use crate::error::{Error, Result, Stage};
@@ -109,8 +109,8 @@ impl ContourSource {
     }
 
     /// The outline itself.
-    fn plain(&self) -> Parts {
-        let mut parts = Parts::default();
+    fn plain(&self) -> Segments {
+        let mut parts = Segments::default();
         for s in &self.segments {
             if let Some([a, b]) = clipped(s) {
                 parts.line(a, b);
@@ -120,8 +120,8 @@ impl ContourSource {
     }
 
     /// The outline moved by `w`.
-    fn moved(&self, offset: &Offset) -> Parts {
-        let mut parts = Parts::default();
+    fn moved(&self, offset: &Offset) -> Segments {
+        let mut parts = Segments::default();
         let mut trimmer = Trimmer::default();
         let mut layer = |alpha, beta, low, high| {
             let layer = Layer {
@@ -146,7 +146,7 @@ impl ContourSource {
     }
 }
 
-fn close(mut parts: Parts) -> Option<Vec<Chain>> {
+fn close(mut parts: Segments) -> Option<Vec<Chain>> {
     faces(&mut parts)?;
     parts.join()
 }
@@ -205,7 +205,7 @@ fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
 ///
 /// Where a part ends on the floor the solid begins, seen from the axis, and where one starts it ends; on the ceiling the other way round.
 /// Counting from the axis outwards tells where the face is solid. `None` when the count does not come out.
-fn faces(parts: &mut Parts) -> Option<()> {
+fn faces(parts: &mut Segments) -> Option<()> {
     for face in [0.0, 1.0] {
         // Change of the count, seen from the axis.
         let mut events: Vec<(f64, i32)> = Vec::new();

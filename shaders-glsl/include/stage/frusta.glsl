@@ -1,19 +1,19 @@
-// Bands of hulls: two rings of HULL_SIDES corners each, a vertex for each corner.
+// Frusta of hulls: two rings of HULL_SIDES corners each, a vertex for each corner.
 #ifndef BANDS_GLSL
 #define BANDS_GLSL
-#include "core/piece_tables.glsl"
+#include "core/patch_tables.glsl"
 
-// Where the band of this vertex stands in the tables.
+// Where the frustum of this vertex stands in the tables.
 uint this_band()
 {
-    return solid.hull.x + BAND_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
+    return solid.hull.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
 }
 
 // The vertex's place in object space.
 vec3 band_corner(uint at)
 {
     uint corner = uint(gl_VertexIndex) % (2u * HULL_SIDES);
-    vec4 rings = uintBitsToFloat(piece_tables[at]);
+    vec4 rings = uintBitsToFloat(patch_tables[at]);
     vec2 rz = corner < HULL_SIDES ? rings.xy : rings.zw;
     float angle = float(corner % HULL_SIDES) * (6.28318530717958648 / float(HULL_SIDES));
     return vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(solid.axis.xy, 0.0);

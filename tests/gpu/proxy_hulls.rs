@@ -1,4 +1,4 @@
-//! Hulls of pieces and their beams, the default: crowds in one depth buffer, copies, slivers, faces of the box, and the truth itself.
+//! Hulls of patches and their beams, the default: crowds in one depth buffer, copies, slivers, faces of the box, and the truth itself.
 
 use super::hulls::{EXACT, settings};
 use crate::common::ways::{BOXED, STAGES, WRAPPED, draw_by};

@@ -1,4 +1,4 @@
-//! Parts of a boundary, in any order, joined end to start into whole curves.
+//! Segments of a boundary, in any order, joined end to start into whole curves.
 
 use glam::DVec2;
 
@@ -16,14 +16,14 @@ pub(super) const JOINT: f64 = 1e-8;
 
 /// Directed parts, each of at least two points.
 #[derive(Debug, Default)]
-pub(super) struct Parts {
+pub(super) struct Segments {
     points: Vec<DVec2>,
     /// `starts[k]..starts[k + 1]` are the points of part `k`.
     starts: Vec<u32>,
 }
 
-impl Parts {
-    /// Begins a part; its points follow by [`Parts::point`].
+impl Segments {
+    /// Begins a part; its points follow by [`Segments::point`].
     pub fn begin(&mut self) {
         self.starts.push(self.points.len() as u32);
     }

@@ -1,34 +1,34 @@
-//! The shell of one cell: bands along its surface, walls at its ends ([`hull`](super::hull) says what for).
+//! The shell of one cell: frusta along its surface, walls at its ends ([`hull`](super::hull) says what for).
 
-use super::{HullOptions, Piece};
+use super::{ProxyHullOptions, QuadricPatch};
 use glam::DVec2;
 
 /// Walls reach at least this far into the solid, object units.
 const ROOT: f64 = 1e-4;
 
-/// A part of a cell's surface on one piece, from one height to another (of a plane: from one radius to another).
+/// A part of a cell's surface on one patch, from one height to another (of a plane: from one radius to another).
 #[derive(Clone, Copy, Debug)]
 struct Span {
     from: DVec2,
     to: DVec2,
-    piece: usize,
+    patch: usize,
 }
 
-pub(super) struct Shell<'a> {
-    pub options: &'a HullOptions,
+pub(super) struct FrustaBuilder<'a> {
+    pub options: &'a ProxyHullOptions,
     /// `1 / cos(pi / n)`.
     pub widen: f64,
 }
 
-impl Shell<'_> {
+impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
     ///
-    /// Pieces shorter than the margin have no direction to build on, and no need: what wraps their neighbours wraps them.
-    pub fn of(&self, cell: &[Piece]) -> Vec<[DVec2; 2]> {
-        let long = |p: &&Piece| p.start.distance(p.end) > self.options.margin;
-        let kept: Vec<Piece> = cell.iter().filter(long).copied().collect();
+    /// Patches shorter than the margin have no direction to build on, and no need: what wraps their neighbours wraps them.
+    pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
+        let long = |p: &&QuadricPatch| p.start.distance(p.end) > self.options.margin;
+        let kept: Vec<QuadricPatch> = cell.iter().filter(long).copied().collect();
         let cell = if kept.is_empty() { cell } else { &kept };
-        let mut bands: Vec<[DVec2; 2]> = Vec::new();
+        let mut frusta: Vec<[DVec2; 2]> = Vec::new();
         let mut from = 0;
         while from < cell.len() {
             let a = cell[from].quadric[0];
@@ -37,22 +37,22 @@ impl Shell<'_> {
                 to += 1;
             }
             let spans: Vec<Span> = (from..to)
-                .map(|piece| Span {
-                    from: cell[piece].start,
-                    to: cell[piece].end,
-                    piece,
+                .map(|patch| Span {
+                    from: cell[patch].start,
+                    to: cell[patch].end,
+                    patch,
                 })
                 .collect();
-            self.follow(cell, &spans, 0, &mut bands);
+            self.follow(cell, &spans, 0, &mut frusta);
             from = to;
         }
-        let mut shell = joined(bands);
+        let mut shell = joined(frusta);
         self.wall_off(cell, &mut shell);
         shell
     }
 
-    /// Bands along spans that look the same way, in or out (or one plane).
-    fn follow(&self, cell: &[Piece], spans: &[Span], depth: u32, out: &mut Vec<[DVec2; 2]>) {
+    /// Frusta along spans that look the same way, in or out (or one plane).
+    fn follow(&self, cell: &[QuadricPatch], spans: &[Span], depth: u32, out: &mut Vec<[DVec2; 2]>) {
         let [first, .., last] = spans else {
             if let [one] = spans {
                 self.follow_one(cell, *one, depth, out);
@@ -67,7 +67,7 @@ impl Shell<'_> {
         // By how much a joint lies beyond the chord's ends: a rim that turns back within the gap.
         let mut beyond = (self.options.margin, None);
         for (k, s) in spans.iter().enumerate() {
-            for (height, _) in extremes(&cell[s.piece], s, a, outward) {
+            for (height, _) in extremes(&cell[s.patch], s, a, outward) {
                 extent = [extent[0].min(height), extent[1].max(height)];
             }
             let height = (s.from - a).dot(outward).abs();
@@ -87,7 +87,7 @@ impl Shell<'_> {
             return;
         }
         if extent[1] - extent[0] <= self.options.gap || depth > 40 {
-            out.push(self.band(&cell[first.piece], a, b, outward * extent[1]));
+            out.push(self.frustum(&cell[first.patch], a, b, outward * extent[1]));
             return;
         }
         let (left, right) = spans.split_at(farthest.1);
@@ -95,11 +95,11 @@ impl Shell<'_> {
         self.follow(cell, right, depth + 1, out);
     }
 
-    fn follow_one(&self, cell: &[Piece], span: Span, depth: u32, out: &mut Vec<[DVec2; 2]>) {
-        let piece = &cell[span.piece];
+    fn follow_one(&self, cell: &[QuadricPatch], span: Span, depth: u32, out: &mut Vec<[DVec2; 2]>) {
+        let patch = &cell[span.patch];
         let (a, b) = (span.from, span.to);
         let outward = outward(a, b);
-        let heights = extremes(piece, &span, a, outward);
+        let heights = extremes(patch, &span, a, outward);
         let low = heights.iter().fold(0.0f64, |m, h| m.min(h.0));
         let high = heights.iter().fold(0.0f64, |m, h| m.max(h.0));
         let farthest = heights
@@ -112,15 +112,15 @@ impl Shell<'_> {
                     self.follow_one(cell, Span { from, to, ..span }, depth + 1, out);
                 }
             }
-            _ => out.push(self.band(piece, a, b, outward * high)),
+            _ => out.push(self.frustum(patch, a, b, outward * high)),
         }
     }
 
-    /// The band over a chord, moved outwards.
-    fn band(&self, piece: &Piece, a: DVec2, b: DVec2, shift: DVec2) -> [DVec2; 2] {
+    /// The frustum over a chord, moved outwards.
+    fn frustum(&self, patch: &QuadricPatch, a: DVec2, b: DVec2, shift: DVec2) -> [DVec2; 2] {
         let margin = outward(a, b) * self.options.margin;
         let rim = |p: DVec2, other: DVec2| {
-            let factor = match piece.quadric[0] {
+            let factor = match patch.quadric[0] {
                 1.0 => self.widen,
                 -1.0 => 1.0,
                 _ if p.x > other.x => self.widen,
@@ -130,7 +130,7 @@ impl Shell<'_> {
             DVec2::new(q.x.max(0.0) * factor, q.y)
         };
         let [mut from, mut to] = [rim(a, b), rim(b, a)];
-        if piece.is_plane() {
+        if patch.is_plane() {
             // Its own rims: what the neighbours' margins leave out.
             let way = (to - from).normalize_or_zero() * self.options.margin;
             (from, to) = (from - way, to + way);
@@ -140,21 +140,21 @@ impl Shell<'_> {
     }
 
     /// Walls at both ends.
-    fn wall_off(&self, cell: &[Piece], shell: &mut Vec<[DVec2; 2]>) {
+    fn wall_off(&self, cell: &[QuadricPatch], shell: &mut Vec<[DVec2; 2]>) {
         let (Some(&[begin, _]), Some(&[_, end])) = (shell.first(), shell.last()) else {
             return;
         };
         let on_axis = |p: DVec2| p.x == 0.0;
-        if let Some(piece) = cell.last()
-            && !(on_axis(piece.end) && on_axis(end))
+        if let Some(patch) = cell.last()
+            && !(on_axis(patch.end) && on_axis(end))
         {
-            shell.push([end, self.foot(piece, piece.end, end, end.y <= piece.end.y)]);
+            shell.push([end, self.foot(patch, patch.end, end, end.y <= patch.end.y)]);
         }
-        if let Some(piece) = cell.first()
-            && !(on_axis(piece.start) && on_axis(begin))
+        if let Some(patch) = cell.first()
+            && !(on_axis(patch.start) && on_axis(begin))
         {
-            let around = begin.y > piece.start.y;
-            let foot = self.foot(piece, piece.start, begin, around);
+            let around = begin.y > patch.start.y;
+            let foot = self.foot(patch, patch.start, begin, around);
             shell.insert(0, [foot, begin]);
         }
     }
@@ -163,8 +163,8 @@ impl Shell<'_> {
     /// wall's inner side all round, and as far beyond as that polygon departs from the circle, so that no ray passes under the foot.
     ///
     /// A plane's rims are beyond its circles already: there walls stand upright.
-    fn foot(&self, piece: &Piece, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
-        if piece.is_plane() {
+    fn foot(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
+        if patch.is_plane() {
             return DVec2::new(top.x, joint.y + (joint.y - top.y).signum() * ROOT);
         }
         let factor = if around { self.widen } else { 1.0 };
@@ -182,13 +182,13 @@ fn outward(a: DVec2, b: DVec2) -> DVec2 {
 
 /// Where on a span the height over the line through `a` is extreme: heights and places, besides the ends those points at which the
 /// meridian `r = sqrt(p(z))` runs along the line: `p'^2 nr^2 = 4 nz^2 p`.
-fn extremes(piece: &Piece, span: &Span, a: DVec2, normal: DVec2) -> Vec<(f64, DVec2)> {
+fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(f64, DVec2)> {
     let height = |p: DVec2| (p - a).dot(normal);
     let mut found = vec![(height(span.from), span.from), (height(span.to), span.to)];
-    if piece.is_plane() {
+    if patch.is_plane() {
         return found;
     }
-    let [side, k0, k1, k2] = piece.quadric;
+    let [side, k0, k1, k2] = patch.quadric;
     let [p0, p1, p2] = [-side * k0, -side * k1, -side * k2];
     let (r2, z2) = (normal.x * normal.x, normal.y * normal.y);
     let qa = 4.0 * p2 * (p2 * r2 - z2);
@@ -199,36 +199,36 @@ fn extremes(piece: &Piece, span: &Span, a: DVec2, normal: DVec2) -> Vec<(f64, DV
     let (low, high) = (span.from.y.min(span.to.y), span.from.y.max(span.to.y));
     for z in [half / qa, qc / half] {
         if z > low && z < high {
-            let p = DVec2::new(piece.square_at(z).max(0.0).sqrt(), z);
+            let p = DVec2::new(patch.square_at(z).max(0.0).sqrt(), z);
             found.push((height(p), p));
         }
     }
     found
 }
 
-/// Joins bands end to start: at bulges at the intersection of their lines, in hollows where they cross, else by a band more.
-fn joined(bands: Vec<[DVec2; 2]>) -> Vec<[DVec2; 2]> {
-    let mut out: Vec<[DVec2; 2]> = Vec::with_capacity(bands.len());
-    for mut band in bands {
+/// Joins frusta end to start: at bulges at the intersection of their lines, in hollows where they cross, else by a frustum more.
+fn joined(frusta: Vec<[DVec2; 2]>) -> Vec<[DVec2; 2]> {
+    let mut out: Vec<[DVec2; 2]> = Vec::with_capacity(frusta.len());
+    for mut frustum in frusta {
         if let Some(last) = out.last_mut() {
-            let (p, q) = (last[1], band[0]);
-            let (u, v) = (last[1] - last[0], band[1] - band[0]);
+            let (p, q) = (last[1], frustum[0]);
+            let (u, v) = (last[1] - last[0], frustum[1] - frustum[0]);
             let cross = u.perp_dot(v);
-            let x = (band[0] - last[0]).perp_dot(v) / cross;
-            let y = (band[0] - last[0]).perp_dot(u) / cross;
+            let x = (frustum[0] - last[0]).perp_dot(v) / cross;
+            let y = (frustum[0] - last[0]).perp_dot(u) / cross;
             let meeting = last[0] + u * x;
             let sharp = meeting.distance(p) + meeting.distance(q) > 3.0 * p.distance(q);
             let bulge = x >= 1.0 && y <= 0.0 && !sharp && meeting.x >= 0.0;
             let hollow = (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y);
             if p.distance_squared(q) < 1e-16 {
-                band[0] = p;
+                frustum[0] = p;
             } else if bulge || hollow {
-                (last[1], band[0]) = (meeting, meeting);
+                (last[1], frustum[0]) = (meeting, meeting);
             } else {
                 out.push([p, q]);
             }
         }
-        out.push(band);
+        out.push(frustum);
     }
     out
 }

@@ -8,23 +8,23 @@
 //! ```
 //!
 //! A sample `(r, z)` of the boundary, whose direction there is `dr/dz = k`, is met within the tolerance `tau` (measured along the
-//! normal) when `sqrt(p)` is within `tau sqrt(1 + k^2)` of `r`. That is an interval of `p`, so one of `q`; the stretch can be one piece
+//! normal) when `sqrt(p)` is within `tau sqrt(1 + k^2)` of `r`. That is an interval of `p`, so one of `q`; the stretch can be one patch
 //! when the intervals of all samples have a common point. On a straight segment `r^2` is itself such a parabola, so between two
 //! corners the deviation is a parabola too, and corners and middles are samples enough.
 //!
 //! Stretches grow greedily: as neighbours share their ends exactly, nothing is lost at the joints.
 
-use super::{Contour, Piece};
+use super::{Contour, QuadricPatch};
 use glam::DVec2;
 
 /// How contours are cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutOptions {
-    /// Largest distance between contour and pieces, object units, along the normal.
+pub struct FitOptions {
+    /// Largest distance between contour and patches, object units, along the normal.
     pub tolerance: f64,
 }
 
-impl Default for CutOptions {
+impl Default for FitOptions {
     /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much, and the 99th percentile of all
     /// rays stays below a fiftieth.
     fn default() -> Self {
@@ -36,11 +36,11 @@ impl Default for CutOptions {
 
 /// Rounding unit of the arithmetic that will solve the quadrics.
 const EPSILON: f64 = (f32::EPSILON / 2.0) as f64;
-/// Least by which guards reach past a piece's ends, object units: a few roundings of coordinates of size 1.
+/// Least by which guards reach past a patch's ends, object units: a few roundings of coordinates of size 1.
 const OVERLAP: f64 = 1e-6;
-/// Steepest `|dr/dz|` at the end of a piece that is told from its neighbours by `z` alone.
+/// Steepest `|dr/dz|` at the end of a patch that is told from its neighbours by `z` alone.
 const STEEP: f64 = 4.0;
-/// Above this `|dr/dz|` a piece is the flattest paraboloid that will do: where `r^2` is all but linear in `z` the quadric has no other sheet
+/// Above this `|dr/dz|` a patch is the flattest paraboloid that will do: where `r^2` is all but linear in `z` the quadric has no other sheet
 /// near, the guard can go by `r`, and nothing is divided by small differences.
 const FLAT: f64 = 8.0;
 /// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute rounding error.
@@ -48,29 +48,29 @@ const SMALL: f64 = 0.05;
 /// Segments that climb less than this are horizontal.
 const LEVEL: f64 = 1e-9;
 
-/// Cuts all chains of a contour, each in its own order; pieces of a chain stand one after the other.
+/// Cuts all chains of a contour, each in its own order; patches of a chain stand one after the other.
 #[must_use]
-pub fn cut(contour: &Contour, options: &CutOptions) -> Vec<Piece> {
-    let mut pieces = Vec::new();
+pub fn fit_patches(contour: &Contour, options: &FitOptions) -> Vec<QuadricPatch> {
+    let mut patches = Vec::new();
     let mut cutter = Cutter::new(options.tolerance);
     for (number, chain) in contour.chains.iter().enumerate() {
-        let first = pieces.len();
+        let first = patches.len();
         cutter.load(&chain.points, chain.closed);
-        cutter.pieces(number as u32, &mut pieces);
-        let last = pieces.len();
-        for (piece, k) in pieces[first..].iter_mut().zip(first..) {
-            piece.previous = (k > first).then(|| k as u32 - 1);
-            piece.next = (k + 1 < last).then_some(k as u32 + 1);
+        cutter.patches(number as u32, &mut patches);
+        let last = patches.len();
+        for (patch, k) in patches[first..].iter_mut().zip(first..) {
+            patch.previous = (k > first).then(|| k as u32 - 1);
+            patch.next = (k + 1 < last).then_some(k as u32 + 1);
         }
         if chain.closed && last > first {
-            pieces[first].previous = Some(last as u32 - 1);
-            pieces[last - 1].next = Some(first as u32);
+            patches[first].previous = Some(last as u32 - 1);
+            patches[last - 1].next = Some(first as u32);
         }
     }
-    pieces
+    patches
 }
 
-/// A place of the boundary, and the interval of `r^2` that a piece may have there.
+/// A place of the boundary, and the interval of `r^2` that a patch may have there.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     z: f64,
@@ -158,7 +158,7 @@ impl Cutter {
         0.5 * self.tolerance / EPSILON * (2.0 * r).hypot(slope)
     }
 
-    fn pieces(&self, chain: u32, out: &mut Vec<Piece>) {
+    fn patches(&self, chain: u32, out: &mut Vec<QuadricPatch>) {
         let n = self.points.len();
         let mut i = 0;
         while i + 1 < n {
@@ -180,7 +180,7 @@ impl Cutter {
         }
     }
 
-    /// The farthest point that one piece from point `i` can reach, and its `q`.
+    /// The farthest point that one patch from point `i` can reach, and its `q`.
     fn longest(&self, i: usize, end: usize) -> (usize, f64) {
         let mut best = (i + 1, self.single(i));
         let mut step = 1;
@@ -208,7 +208,7 @@ impl Cutter {
         best
     }
 
-    /// `q` of the piece along a single segment: the cone, as far as floats bear it; of a flat one the least that will do.
+    /// `q` of the patch along a single segment: the cone, as far as floats bear it; of a flat one the least that will do.
     fn single(&self, i: usize) -> f64 {
         let (a, b) = (self.points[i], self.points[i + 1]);
         let slope = (b.x - a.x) / (b.y - a.y);
@@ -222,7 +222,7 @@ impl Cutter {
         (slope * slope).min(most)
     }
 
-    /// A `q` with which one piece from point `i` to point `j` stays within the tolerance.
+    /// A `q` with which one patch from point `i` to point `j` stays within the tolerance.
     fn bend(&self, i: usize, j: usize) -> Option<f64> {
         let (a, b) = (self.points[i], self.points[j]);
         let (pa, pb) = (a.x * a.x, b.x * b.x);
@@ -258,7 +258,7 @@ impl Cutter {
         (monotone || steep).then_some(q)
     }
 
-    fn quadric(&self, i: usize, j: usize, q: f64, chain: u32) -> Piece {
+    fn quadric(&self, i: usize, j: usize, q: f64, chain: u32) -> QuadricPatch {
         let (a, b) = (self.points[i], self.points[j]);
         let (pa, pb) = (a.x * a.x, b.x * b.x);
         let climb = b.y - a.y;
@@ -285,7 +285,7 @@ impl Cutter {
         } else {
             0.0
         };
-        Piece {
+        QuadricPatch {
             quadric: [side, -side * p[0], -side * p[1], -side * p[2]],
             start: a,
             end: b,
@@ -304,12 +304,12 @@ impl Cutter {
         }
     }
 
-    fn plane(&self, i: usize, j: usize, chain: u32) -> Piece {
+    fn plane(&self, i: usize, j: usize, chain: u32) -> QuadricPatch {
         let (a, b) = (self.points[i], self.points[j]);
         // Inwards the solid lies below.
         let side = if b.x < a.x { 1.0 } else { -1.0 };
         let cr = 1.0 / (2.0 * (0.5 * (a.x + b.x)).max(SMALL));
-        Piece {
+        QuadricPatch {
             quadric: [0.0, -side * a.y, side, 0.0],
             start: a,
             end: b,
@@ -334,7 +334,7 @@ impl Cutter {
 /// The largest weight of `r^2` in a guard with which the quadric's other sheet fails it everywhere in the box.
 ///
 /// On `r^2 = p(z)` the guard's value `z + w p(z)` (for a rising `p`) is a parabola in `z`. It turns `1 / (2 |q| w)` beyond where `p`
-/// itself turns, and takes the piece's values again as far on the other side: that has to lie beyond floor or ceiling.
+/// itself turns, and takes the patch's values again as far on the other side: that has to lie beyond floor or ceiling.
 fn unambiguous([_, p1, q]: [f64; 3], [low, high]: [f64; 2]) -> f64 {
     const BEYOND: f64 = 0.01;
     if q == 0.0 {

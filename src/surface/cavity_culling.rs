@@ -2,7 +2,7 @@
 //!
 //! # Tubes
 //!
-//! Pieces that have nothing but emptiness between themselves and the axis, one after the other along their chain, line a **tube**
+//! Patches that have nothing but emptiness between themselves and the axis, one after the other along their chain, line a **tube**
 //! `r < f(z)`, whatever `f` is: level faces between them close its jumps, so a ray that is in the tube at one height and at another is in it at all
 //! heights between, or it meets the solid. A tube is closed at an end where its chain ends on the axis.
 //!
@@ -14,7 +14,7 @@
 //! `R |z_o - z| / |z_e - z_o|` beyond the axis and the radius `r_o |z_e - z| / |z_e - z_o|`; where the circle of radius `r` at that height
 //! lies wholly outside it, or around it, `p` is hidden. Both bounds are linear in `z`: it is enough to look at a cell's ends.
 
-use super::Piece;
+use super::QuadricPatch;
 use glam::DVec2;
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ struct Tube {
     r: f64,
     /// Whether it ends on the axis: at its lower end, at its upper.
     closed: [bool; 2],
-    /// Ends of its pieces.
+    /// Ends of its patches.
     rims: Vec<DVec2>,
 }
 
@@ -44,30 +44,30 @@ struct Place {
 
 /// What is known of a hull's cells once and for all.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Sight {
+pub(super) struct CavityCulling {
     tubes: Vec<Tube>,
     /// One a cell; none outside of tubes.
     cells: Vec<Option<Place>>,
 }
 
-impl Sight {
-    /// Of pieces in the order of their chains, dealt out to `cells`.
-    pub fn new(pieces: &[Piece], cells: &[Range<usize>]) -> Self {
+impl CavityCulling {
+    /// Of patches in the order of their chains, dealt out to `cells`.
+    pub fn new(patches: &[QuadricPatch], cells: &[Range<usize>]) -> Self {
         let mut sight = Self::default();
         let mut runs = Vec::new();
         let mut at = 0;
-        while at < pieces.len() {
-            let run = run_from(pieces, at);
+        while at < patches.len() {
+            let run = run_from(patches, at);
             at = run.end.max(at + 1);
             if !run.is_empty() {
-                sight.tubes.push(Tube::of(&pieces[run.clone()]));
+                sight.tubes.push(Tube::of(&patches[run.clone()]));
                 runs.push(run);
             }
         }
         let place = |cell: &Range<usize>| {
             let within = |run: &Range<usize>| run.start <= cell.start && cell.end <= run.end;
             let tube = runs.iter().position(within)?;
-            let [r, z] = extent(&pieces[cell.clone()]);
+            let [r, z] = extent(&patches[cell.clone()]);
             Some(Place { tube, z, r })
         };
         sight.cells = cells.iter().map(place).collect();
@@ -95,7 +95,7 @@ impl Sight {
 }
 
 impl Tube {
-    fn of(lining: &[Piece]) -> Self {
+    fn of(lining: &[QuadricPatch]) -> Self {
         let [r, z] = extent(lining);
         let on_axis = |p: Option<DVec2>| p.is_some_and(|p| p.x == 0.0);
         let start = lining.first().map(|p| p.start);
@@ -134,43 +134,46 @@ impl Place {
 }
 
 /// Least and largest `r`, then `z`.
-fn extent(pieces: &[Piece]) -> [[f64; 2]; 2] {
+fn extent(patches: &[QuadricPatch]) -> [[f64; 2]; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let join = |[low, high]: [f64; 2], with: [f64; 2]| [low.min(with[0]), high.max(with[1])];
-    pieces
+    patches
         .iter()
         .fold([none; 2], |[r, z], p| [join(r, p.r), join(z, p.z)])
 }
 
-/// The lining that begins at piece `at`: empty where none does.
-fn run_from(pieces: &[Piece], at: usize) -> Range<usize> {
-    let chain = pieces[at].chain;
-    let joins = |p: &Piece| p.chain == chain && (p.is_plane() || is_exposed(pieces, p));
-    let end = at + pieces[at..].iter().take_while(|p| joins(p)).count();
+/// The lining that begins at patch `at`: empty where none does.
+fn run_from(patches: &[QuadricPatch], at: usize) -> Range<usize> {
+    let chain = patches[at].chain;
+    let joins = |p: &QuadricPatch| p.chain == chain && (p.is_plane() || is_exposed(patches, p));
+    let end = at + patches[at..].iter().take_while(|p| joins(p)).count();
     let mut run = at..end;
     // A level face at an end belongs to it where it closes the tube.
-    while run.start < run.end && pieces[run.start].is_plane() && pieces[run.start].start.x != 0.0 {
+    while run.start < run.end && patches[run.start].is_plane() && patches[run.start].start.x != 0.0
+    {
         run.start += 1;
     }
-    while run.start < run.end && pieces[run.end - 1].is_plane() && pieces[run.end - 1].end.x != 0.0
+    while run.start < run.end
+        && patches[run.end - 1].is_plane()
+        && patches[run.end - 1].end.x != 0.0
     {
         run.end -= 1;
     }
-    let lines = pieces[run.clone()].iter().any(|p| !p.is_plane());
+    let lines = patches[run.clone()].iter().any(|p| !p.is_plane());
     if lines { run } else { end..end }
 }
 
-/// Whether nothing lies between a piece and the axis. Pieces do not cross: who is nearer at one height is at all that both have.
-fn is_exposed(pieces: &[Piece], piece: &Piece) -> bool {
-    if piece.quadric[0] >= 0.0 {
+/// Whether nothing lies between a patch and the axis. Patches do not cross: who is nearer at one height is at all that both have.
+fn is_exposed(patches: &[QuadricPatch], patch: &QuadricPatch) -> bool {
+    if patch.quadric[0] >= 0.0 {
         return false;
     }
-    let nearer = |other: &Piece| {
-        let (low, high) = (piece.z[0].max(other.z[0]), piece.z[1].min(other.z[1]));
+    let nearer = |other: &QuadricPatch| {
+        let (low, high) = (patch.z[0].max(other.z[0]), patch.z[1].min(other.z[1]));
         let middle = 0.5 * (low + high);
         high - low > 1e-9
             && !other.is_plane()
-            && other.square_at(middle) < piece.square_at(middle) - 1e-12
+            && other.square_at(middle) < patch.square_at(middle) - 1e-12
     };
-    !pieces.iter().any(nearer)
+    !patches.iter().any(nearer)
 }

@@ -1,7 +1,7 @@
 //! The surface of a contour as the rows of a cone map have it: a slope in each, or a level face where that is closer.
 
 use crate::error::{Error, Result, Stage};
-use crate::pieces::Contour;
+use crate::surface::Contour;
 use glam::DVec2;
 
 /// A row's level face.

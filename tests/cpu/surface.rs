@@ -1,11 +1,11 @@
-//! Quadric pieces and their tables against the reference in double precision, ray by ray.
+//! Quadric patches and their tables against the reference in double precision, ray by ray.
 
 use crate::common::rays::{Random, count, profiles};
 use glam::{DVec2, DVec3};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::pieces::{ContourSource, CutOptions, ROWS, Tables, cut, trace_pieces};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Object, Offset, Scene};
+use revmap::surface::{ContourSource, FitOptions, ROWS, Tables, fit_patches, trace_patches};
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
 
@@ -19,30 +19,30 @@ struct Tally {
 
 /// Rays from cameras all round, above and below.
 fn shoot(profile: &Profile, offset: Offset, count: usize) -> (Tally, String) {
-    let options = CutOptions::default();
+    let options = FitOptions::default();
     shoot_at(profile, &profile.outline, &options, offset, count)
 }
 
-/// The same, with pieces made from `own`.
+/// The same, with patches made from `own`.
 fn shoot_at(
     profile: &Profile,
     own: &Outline,
-    options: &CutOptions,
+    options: &FitOptions,
     offset: Offset,
     count: usize,
 ) -> (Tally, String) {
     let source = ContourSource::new(own).unwrap();
     let contour = source.contour(&offset).unwrap();
-    let pieces = cut(&contour, options);
-    let tables = Tables::new(&pieces, ROWS);
+    let patches = fit_patches(&contour, options);
+    let tables = Tables::new(&patches, ROWS);
     let tally = against_offset(profile, offset, count, |origin, direction| {
-        trace_pieces(&tables, profile.radius, DVec2::ZERO, origin, direction)
+        trace_patches(&tables, profile.radius, DVec2::ZERO, origin, direction)
             .map(|hit| (hit.t, hit.normal))
     });
     let words = format!(
-        "{:4} points {:4} pieces {:6} bytes {:4} records",
+        "{:4} points {:4} patches {:6} bytes {:4} records",
         contour.chains.iter().map(|c| c.points.len()).sum::<usize>(),
-        pieces.len(),
+        patches.len(),
         tables.bytes(),
         tables.records.len(),
     );
@@ -142,7 +142,7 @@ const OFFSETS: [(f64, f64, f64); 8] = [
 ];
 
 #[test]
-fn pieces_meet_the_reference() {
+fn patches_meet_the_reference() {
     let count = count(2_500);
     let mut failures = Vec::new();
     let (mut wrong, mut hits) = (0, 0);
@@ -241,7 +241,7 @@ fn pictures_are_twice_as_good_as_the_papers_loop() {
             2.0 * limits.1
         );
         for (kind, traced) in [("binary", binary), ("grey", bytes)] {
-            let options = CutOptions::default();
+            let options = FitOptions::default();
             let offset = Offset::default();
             let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, count);
             let (wrong, p99) = (
@@ -281,7 +281,7 @@ fn eyes_inside_and_boxes_that_cut() {
             profile.radius = radius;
             let source = ContourSource::new(&profile.outline).unwrap();
             let contour = source.contour(&Offset::default()).unwrap();
-            let tables = Tables::new(&cut(&contour, &CutOptions::default()), ROWS);
+            let tables = Tables::new(&fit_patches(&contour, &FitOptions::default()), ROWS);
             let mut object = Object::new("test", Arc::new(profile.clone()));
             object.axis = [axis, 0.5];
             let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
@@ -301,7 +301,7 @@ fn eyes_inside_and_boxes_that_cut() {
                 let origin = point(if k % 2 == 0 { 1.0 } else { 3.0 });
                 let direction = (point(1.0) - origin).normalize();
                 let truth = reference.trace(Ray { origin, direction });
-                let found = trace_pieces(&tables, radius, middle, origin, direction);
+                let found = trace_patches(&tables, radius, middle, origin, direction);
                 hits += usize::from(truth.hit.is_some());
                 let same = match (truth.hit, found) {
                     (Some(a), Some(b)) => (a.t - b.t).abs() < 1e-3,

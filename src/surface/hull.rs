@@ -1,13 +1,13 @@
-//! Shells of triangles around the pieces, so that a rasteriser finds the piece that a ray meets.
+//! Shells of triangles around the patches, so that a rasteriser finds the patch that a ray meets.
 //!
 //! # Cells
 //!
-//! Up to [`HullOptions::tests`] consecutive pieces of a chain are a **cell**. Around its surface, on the empty side, lies a shell: frusta along
-//! it, and walls at its two ends, from the frusta down to the surface and a little into the solid. Shell and surface enclose the cell's part
-//! of the empty space. A ray from outside that first meets the solid on one of the cell's pieces was in that part just before; it came
+//! Up to [`ProxyHullOptions::tests`] consecutive patches of a chain are a **cell**. Around its surface, on the empty side, lies a shell: frusta along
+//! it, and walls at its two ends, from the frusta down to the surface and a little into the solid. FrustaBuilder and surface enclose the cell's part
+//! of the empty space. A ray from outside that first meets the solid on one of the cell's patches was in that part just before; it came
 //! in through the shell (through the surface it would have come out of the solid, which it then had met before). So
 //!
-//! > a fragment of a front-facing triangle tests the pieces of its own cell, no others, and the nearest fragment is the first hit.
+//! > a fragment of a front-facing triangle tests the patches of its own cell, no others, and the nearest fragment is the first hit.
 //!
 //! No ray is lost however flat it glides along the surface, whichever way the profile folds: chains, undercuts and cavities
 //! need no care, and what a fragment finds is a true point of the boundary in every case. It holds for eyes outside all shells
@@ -16,50 +16,50 @@
 //! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]): beyond it another sheet of a quadric can
 //! pass the guard.
 //!
-//! # Bands
+//! # Frusta
 //!
-//! The shell of a cell is a polyline in the half-plane; each of its parts, turned about the axis in `n` steps, is a **band** of `2 n`
-//! triangles. A band is as long as the surface stays within [`HullOptions::gap`] of it: it lies along the surface's chord, moved outwards to
-//! touch it (the support line; the extremes of a quadric's meridian above a line are the roots of a quadratic). Where two bands meet
+//! The shell of a cell is a polyline in the half-plane; each of its parts, turned about the axis in `n` steps, is a **frustum** of `2 n`
+//! triangles. A frustum is as long as the surface stays within [`ProxyHullOptions::gap`] of it: it lies along the surface's chord, moved outwards to
+//! touch it (the support line; the extremes of a quadric's meridian above a line are the roots of a quadratic). Where two frusta meet
 //! at a bulge they are prolonged to their intersection, in a hollow cut at it, else joined by a third.
 //!
 //! A regular polygon of `n` corners at radius `f r` contains the circle of radius `r` with `f = 1 / cos(pi / n)`, and lies in it with
 //! `f = 1`. Walls that look away from the axis take the first, walls that look towards it the second, planes the one at their outer rim and
-//! the other at the inner. The radii of [`Band`] are those of the corners.
+//! the other at the inner. The radii of [`Frustum`] are those of the corners.
 //!
 //! # Growing it in a vertex shader
 //!
-//! `6 n` corners for each band (a vertex shader makes the `2 n` different ones from their number, an index buffer repeats them). Of corner `v`: `band = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
+//! `6 n` corners for each frustum (a vertex shader makes the `2 n` different ones from their number, an index buffer repeats them). Of corner `v`: `frustum = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
 //! `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth
-//! `2 pi s / n`. Counter-clockwise is front. [`Hull::trace`] does the same on the CPU.
+//! `2 pi s / n`. Counter-clockwise is front. [`ProxyHull::trace`] does the same on the CPU.
 
-use super::rows::Record;
-use super::shell::Shell;
-use super::sight::Sight;
+use super::cavity_culling::CavityCulling;
+use super::frusta::FrustaBuilder;
+use super::rows::GpuPatch;
 use super::walk::entering_root;
-use super::{Piece, Walk};
+use super::{QuadricPatch, Walk};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// How shells are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HullOptions {
+pub struct ProxyHullOptions {
     /// Corners of the rings, at least 3.
     pub sides: u32,
-    /// Most pieces of a cell: what a fragment tests.
-    pub tests: u32,
-    /// How far the surface may lie below a band before it is divided, object units.
+    /// Most patches of a cell: what a fragment tests.
+    pub patches_per_cell: u32,
+    /// How far the surface may lie below a frustum before it is divided, object units.
     pub gap: f64,
-    /// By how much bands are moved outwards beyond what touches, object units: a rasteriser moves corners by fractions of a pixel.
+    /// By how much frusta are moved outwards beyond what touches, object units: a rasteriser moves corners by fractions of a pixel.
     pub margin: f64,
 }
 
-impl Default for HullOptions {
+impl Default for ProxyHullOptions {
     /// What charted best (docs/searches.md): few triangles, at the price of fragments that meet nothing.
     fn default() -> Self {
         Self {
             sides: 12,
-            tests: 8,
+            patches_per_cell: 8,
             gap: 0.03,
             margin: 1e-4,
         }
@@ -68,14 +68,14 @@ impl Default for HullOptions {
 
 /// A ring of triangles between two regular polygons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Band {
+pub struct Frustum {
     /// Radius of the corners and height of the ring where it begins.
     pub from: [f32; 2],
     /// The same where it ends; seen along `(from, to)` the solid lies on the left.
     pub to: [f32; 2],
-    /// The cell's first piece.
+    /// The cell's first patch.
     pub first: u32,
-    /// Number of the cell's pieces, which stand one after the other.
+    /// Number of the cell's patches, which stand one after the other.
     pub count: u32,
     /// Number of the cell.
     pub cell: u32,
@@ -83,20 +83,20 @@ pub struct Band {
 
 /// The shells of all cells.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Hull {
+pub struct ProxyHull {
     /// Corners of each ring.
     pub sides: u32,
-    /// All bands, cell by cell.
-    pub bands: Vec<Band>,
+    /// All frusta, cell by cell.
+    pub frusta: Vec<Frustum>,
     /// What each cell's shell occupies: `[r min, r max, z min, z max]`.
     pub extents: Vec<[f64; 4]>,
-    sight: Sight,
+    sight: CavityCulling,
 }
 
 /// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less than what guards tell apart.
 pub const FLOOR: f32 = 1e-3;
 
-impl Band {
+impl Frustum {
     /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the ring.
     fn place(&self, corner: u32) -> (u32, [f32; 2]) {
         let (side, which) = (corner / 6, corner % 6);
@@ -106,45 +106,45 @@ impl Band {
     }
 }
 
-impl Hull {
-    /// The shells around pieces that [`cut`](super::cut) made.
+impl ProxyHull {
+    /// The shells around patches that [`cut`](super::cut) made.
     #[must_use]
-    pub fn new(pieces: &[Piece], options: &HullOptions) -> Self {
+    pub fn new(patches: &[QuadricPatch], options: &ProxyHullOptions) -> Self {
         let sides = options.sides.max(3);
         let mut hull = Self {
             sides,
             ..Self::default()
         };
         let widen = 1.0 / (std::f64::consts::PI / f64::from(sides)).cos();
-        let most = options.tests.clamp(1, 255) as usize;
+        let most = options.patches_per_cell.clamp(1, 255) as usize;
         let mut cells = Vec::new();
         let mut first = 0;
-        while first < pieces.len() {
-            let chain = pieces[first].chain;
-            let left = pieces[first..]
+        while first < patches.len() {
+            let chain = patches[first].chain;
+            let left = patches[first..]
                 .iter()
                 .take_while(|p| p.chain == chain)
                 .count();
             // Cells of a chain as even as can be: the largest decides what every fragment tests.
             let count = left.div_ceil(left.div_ceil(most));
-            let cell = &pieces[first..first + count];
-            let points = Shell { options, widen }.of(cell);
+            let cell = &patches[first..first + count];
+            let points = FrustaBuilder { options, widen }.of(cell);
             hull.push(&points, first, count);
             cells.push(first..first + count);
             first += count;
         }
-        hull.sight = Sight::new(pieces, &cells);
+        hull.sight = CavityCulling::new(patches, &cells);
         hull
     }
 
-    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to the other: a cell without pieces.
+    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to the other: a cell without patches.
     #[must_use]
     pub(crate) fn convex(points: &[DVec2], sides: u32) -> Self {
         let sides = sides.max(3);
         let widen = DVec2::new(1.0 / (std::f64::consts::PI / f64::from(sides)).cos(), 1.0);
         let mut hull = Self {
             sides,
-            sight: Sight::new(&[], std::slice::from_ref(&(0..0))),
+            sight: CavityCulling::new(&[], std::slice::from_ref(&(0..0))),
             ..Self::default()
         };
         let lines: Vec<_> = points
@@ -155,15 +155,15 @@ impl Hull {
         hull
     }
 
-    /// Runs of bands that eyes at these `(r, z)` may see: cells in cavities that none of them looks into are left out, whose shells would
+    /// Runs of frusta that eyes at these `(r, z)` may see: cells in cavities that none of them looks into are left out, whose shells would
     /// be drawn in vain.
     #[must_use]
     pub fn seen_from(&self, eyes: &[DVec2]) -> Vec<Range<u32>> {
         let hidden = |cell: u32| eyes.iter().all(|&eye| self.sight.hides(cell as usize, eye));
         let seen: Vec<bool> = (0..self.extents.len() as u32).map(|c| !hidden(c)).collect();
         let mut runs: Vec<Range<u32>> = Vec::new();
-        for (band, number) in self.bands.iter().zip(0..) {
-            if seen[band.cell as usize] {
+        for (frustum, number) in self.frusta.iter().zip(0..) {
+            if seen[frustum.cell as usize] {
                 match runs.last_mut() {
                     Some(run) if run.end == number => run.end += 1,
                     _ => runs.push(number..number + 1),
@@ -184,7 +184,7 @@ impl Hull {
             }
             let flat = |p: &DVec2| [p.x as f32, p.y as f32];
             if flat(a) != flat(b) {
-                self.bands.push(Band {
+                self.frusta.push(Frustum {
                     from: flat(a),
                     to: flat(b),
                     first: first as u32,
@@ -198,16 +198,16 @@ impl Hull {
         self.extents.push(extent);
     }
 
-    /// Pieces of the largest cell.
+    /// Patches of the largest cell.
     #[must_use]
-    pub fn tests(&self) -> u32 {
-        self.bands.iter().map(|b| b.count).max().unwrap_or(0)
+    pub fn largest_cell(&self) -> u32 {
+        self.frusta.iter().map(|b| b.count).max().unwrap_or(0)
     }
 
     /// Vertices of the whole draw.
     #[must_use]
     pub fn vertices(&self) -> u32 {
-        self.bands.len() as u32 * 6 * self.sides
+        self.frusta.len() as u32 * 6 * self.sides
     }
 
     /// Whether an eye at `(r, z)` is outside all shells by at least `margin`; if not, front faces may be behind it.
@@ -223,26 +223,26 @@ impl Hull {
 
     /// What rasteriser and fragments make of a ray `o + t v` about the axis, from an eye outside: its nearest fragment.
     #[must_use]
-    pub fn trace(&self, records: &[Record], o: DVec3, v: DVec3) -> Walk {
+    pub fn trace(&self, records: &[GpuPatch], o: DVec3, v: DVec3) -> Walk {
         let mut walk = Walk::default();
         let circle: Vec<DVec2> = (0..=self.sides)
             .map(|k| {
                 DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(self.sides))
             })
             .collect();
-        for band in &self.bands {
+        for frustum in &self.frusta {
             for triangle in 0..2 * self.sides {
                 let corner = |k| {
-                    let (step, [r, z]) = band.place(3 * triangle + k);
+                    let (step, [r, z]) = frustum.place(3 * triangle + k);
                     (circle[step as usize] * f64::from(r)).extend(f64::from(z))
                 };
                 if !enters(o, v, [corner(0), corner(1), corner(2)]) {
                     continue;
                 }
                 walk.nodes += 1;
-                let cell = &records[band.first as usize..][..band.count as usize];
+                let cell = &records[frustum.first as usize..][..frustum.count as usize];
                 for record in cell {
-                    walk.pieces += 1;
+                    walk.patches += 1;
                     // Near the solid, as shaders start their rays at the box.
                     let near = -o.dot(v) / v.length_squared();
                     let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
