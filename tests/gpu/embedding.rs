@@ -4,7 +4,7 @@
 
 #[path = "../../examples/engine/host/mod.rs"]
 #[allow(dead_code, missing_docs)]
-mod host;
+pub mod host;
 
 use crate::common::{eye, placement, scene_of, shapes};
 use ash::vk;
@@ -20,9 +20,9 @@ use revmap::settings::{Planes, SearchSettings, Settings};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
+pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
-fn options() -> Options {
+pub fn options() -> Options {
     Options {
         width: 240,
         height: 180,
@@ -32,7 +32,7 @@ fn options() -> Options {
     }
 }
 
-fn open() -> Host {
+pub fn open() -> Host {
     Host::open(true, |instance, physical| {
         // SAFETY: both are live.
         let needs = unsafe { Requirements::of(instance, physical) }?;
@@ -41,7 +41,7 @@ fn open() -> Host {
     .unwrap()
 }
 
-fn borrow(host: &Host) -> Device {
+pub fn borrow(host: &Host) -> Device {
     // SAFETY: the host's own handles; each test drops the device before the host.
     unsafe {
         Device::borrow(&HostDevice {
@@ -104,12 +104,12 @@ fn frame(stage: &mut Stage, renderer: &mut Renderer, view: &View, clip: DMat4, m
         .unwrap();
 }
 
-fn assert_silent(host: &Host) {
+pub fn assert_silent(host: &Host) {
     let messages = host.take_messages();
     assert!(messages.is_empty(), "{messages:?}");
 }
 
-fn three() -> Scene {
+pub fn three() -> Scene {
     let mut scene = scene_of(shapes::vase(), eye(25.0, 3.0));
     scene.background = BACKGROUND;
     let mut ball = Object::new("ball", shapes::sphere().into());
@@ -123,7 +123,13 @@ fn three() -> Scene {
 }
 
 /// What the host draws with this scene alone, seen as off screen.
-fn drawn(host: &Host, device: &Device, options: Options, scene: &Scene, view: &View) -> Vec<u8> {
+pub fn drawn(
+    host: &Host,
+    device: &Device,
+    options: Options,
+    scene: &Scene,
+    view: &View,
+) -> (Vec<u8>, Vec<f32>) {
     let mut stage = Stage::new(host, options).unwrap();
     let mut renderer = renderer(device, &stage);
     renderer.set_lighting(&scene.lighting()).unwrap();
@@ -133,10 +139,10 @@ fn drawn(host: &Host, device: &Device, options: Options, scene: &Scene, view: &V
     for _ in 0..3 {
         frame(&mut stage, &mut renderer, view, DMat4::IDENTITY, &[]);
     }
-    stage.read().unwrap().0
+    stage.read().unwrap()
 }
 
-fn srgb(linear: f32) -> u8 {
+pub fn srgb(linear: f32) -> u8 {
     let c = f64::from(linear);
     let encoded = if c <= 0.003_130_8 {
         12.92 * c
@@ -179,7 +185,7 @@ fn alone_it_draws_the_off_screen_frame() {
             dynamic,
             ..options()
         };
-        let one = drawn(&host, &device, options, &scene, &view);
+        let one = drawn(&host, &device, options, &scene, &view).0;
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
         // Of four samples all go by the ray through the pixel's centre: away from silhouettes nothing differs.
         let samples = 4;
@@ -189,7 +195,8 @@ fn alone_it_draws_the_off_screen_frame() {
             Options { samples, ..options },
             &scene,
             &view,
-        );
+        )
+        .0;
         let differ = (0..wanted.len() / 4)
             .filter(|n| one[4 * n..4 * n + 4] != four[4 * n..4 * n + 4])
             .count();
@@ -328,7 +335,7 @@ fn ball(o: DVec3, v: DVec3, radius: f64) -> f64 {
 }
 
 /// The same of the cylinder `x^2 + y^2 <= r^2, 0 <= z <= 1`; from within its back.
-fn upright(o: DVec3, v: DVec3, radius: f64) -> f64 {
+pub fn upright(o: DVec3, v: DVec3, radius: f64) -> f64 {
     let (of, vf): (DVec2, DVec2) = (o.truncate(), v.truncate());
     let (a, b, c) = (vf.dot(vf), of.dot(vf), of.dot(of) - radius * radius);
     let under = b * b - a * c;

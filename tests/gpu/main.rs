@@ -12,6 +12,7 @@ mod bitmaps;
 mod bumps;
 mod cones;
 mod embedding;
+mod embedding_outputs;
 mod exhausted;
 mod fallback;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]

@@ -1,6 +1,6 @@
 //! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here is revmap's.
 
-mod memory;
+pub mod memory;
 mod mesh;
 mod stage;
 

@@ -1,0 +1,332 @@
+//! What a host may have drawn besides a colour picture with depth: depth alone for its shadow maps, and compute into its own buffer.
+#![allow(unsafe_code)]
+
+use crate::common::{scene_of, shapes};
+use crate::embedding::host::memory::{HostBuffer, HostImage};
+use crate::embedding::host::{self, Host};
+use crate::embedding::{BACKGROUND, assert_silent, borrow, open, options, srgb, three, upright};
+use ash::vk;
+use glam::{DMat4, DVec3, DVec4};
+use revmap::gpu::{
+    ComputeTarget, DepthOrder, Device, Offscreen, Output, PassFormats, PassKind, Renderer, View,
+    Viewport,
+};
+use revmap::profile::Profile;
+use revmap::scene::{Object, Scene};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
+use std::sync::Arc;
+
+/// Records commands, submits them and waits.
+fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
+    let device = &host.device;
+    // SAFETY: everything is made here, waited for, then destroyed.
+    unsafe {
+        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
+        let pool = device.create_command_pool(&pool, None).unwrap();
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(pool)
+            .command_buffer_count(1);
+        let cmd = device.allocate_command_buffers(&info).unwrap()[0];
+        device
+            .begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())
+            .unwrap();
+        record(cmd);
+        device.end_command_buffer(cmd).unwrap();
+        let all = [cmd];
+        let submit = vk::SubmitInfo::default().command_buffers(&all);
+        device
+            .queue_submit(host.queue, &[submit], vk::Fence::null())
+            .unwrap();
+        device.queue_wait_idle(host.queue).unwrap();
+        device.destroy_command_pool(pool, None);
+    }
+}
+
+fn barrier(host: &Host, cmd: vk::CommandBuffer) {
+    let access = vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::MEMORY_READ;
+    let barrier = [vk::MemoryBarrier::default()
+        .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+        .dst_access_mask(access)];
+    let all = vk::PipelineStageFlags::ALL_COMMANDS;
+    // SAFETY: `cmd` is recording outside of a pass.
+    unsafe {
+        host.device.cmd_pipeline_barrier(
+            cmd,
+            all,
+            all,
+            vk::DependencyFlags::empty(),
+            &barrier,
+            &[],
+            &[],
+        );
+    }
+}
+
+fn viewport() -> Viewport {
+    Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: f64::from(options().width),
+        height: f64::from(options().height),
+    }
+}
+
+/// Depths of a scene, drawn into a host's shadow map.
+fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bool) -> Vec<f32> {
+    let (width, height) = (options().width, options().height);
+    let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
+    let bytes = 4 * (width * height) as usize;
+    let read = HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST).unwrap();
+    let output = Output::Pass(PassFormats {
+        begun: PassKind::Dynamic {
+            color: Vec::new(),
+            depth: host::DEPTH,
+            stencil: vk::Format::UNDEFINED,
+        },
+        samples: 1,
+        depth: DepthOrder::Normal,
+        planes: Planes::Depth { parallel },
+    });
+    let mut renderer = Renderer::new(device, output, &SearchSettings::default(), 1).unwrap();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    let raw = &host.device;
+    let area = vk::Rect2D::default().extent(vk::Extent2D { width, height });
+    let range = vk::ImageSubresourceRange::default()
+        .aspect_mask(vk::ImageAspectFlags::DEPTH)
+        .level_count(1)
+        .layer_count(1);
+    let to_layout = |cmd, from, to| {
+        let change = [vk::ImageMemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
+            .old_layout(from)
+            .new_layout(to)
+            .image(image.raw)
+            .subresource_range(range)];
+        let all = vk::PipelineStageFlags::ALL_COMMANDS;
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: `cmd` is recording outside of a pass.
+        unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &change) };
+    };
+    type Layout = vk::ImageLayout;
+    once(host, |cmd| {
+        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass is of the output's formats.
+        unsafe {
+            renderer.prepare(cmd, 0, view).unwrap();
+            to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
+            let depth = vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(Layout::DEPTH_ATTACHMENT_OPTIMAL)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .clear_value(vk::ClearValue {
+                    depth_stencil: vk::ClearDepthStencilValue {
+                        depth: 1.0,
+                        stencil: 0,
+                    },
+                });
+            let info = vk::RenderingInfo::default()
+                .render_area(area)
+                .layer_count(1)
+                .depth_attachment(&depth);
+            raw.cmd_begin_rendering(cmd, &info);
+            let seen = vk::Viewport {
+                width: width as f32,
+                height: height as f32,
+                max_depth: 1.0,
+                ..Default::default()
+            };
+            raw.cmd_set_viewport(cmd, 0, &[seen]);
+            raw.cmd_set_scissor(cmd, 0, &[area]);
+            renderer.record(cmd, 0);
+            raw.cmd_end_rendering(cmd);
+            let (from, to) = (
+                Layout::DEPTH_ATTACHMENT_OPTIMAL,
+                Layout::TRANSFER_SRC_OPTIMAL,
+            );
+            to_layout(cmd, from, to);
+            let copy = vk::BufferImageCopy::default()
+                .image_subresource(
+                    vk::ImageSubresourceLayers::default()
+                        .aspect_mask(vk::ImageAspectFlags::DEPTH)
+                        .layer_count(1),
+                )
+                .image_extent(vk::Extent3D {
+                    width,
+                    height,
+                    depth: 1,
+                });
+            raw.cmd_copy_image_to_buffer(cmd, image.raw, to, read.raw, &[copy]);
+            barrier(host, cmd);
+        }
+    });
+    bytemuck::pod_collect_to_vec(&read.bytes())
+}
+
+/// A light's view: depth alone is the depth of a colour picture bit for bit, along parallel rays it is the analytic one.
+#[test]
+fn depth_alone_is_a_pictures_depth() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = three();
+    let (eye, target) = (scene.camera.eye, scene.camera.target);
+    let [view, projection] = host::view_and_projection(eye, target, &options());
+    let order = DepthOrder::Normal;
+    let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
+    let alone = depths(&host, &device, &scene, &seen, false);
+    let beside = crate::embedding::drawn(&host, &device, options(), &scene, &seen).1;
+    let hits = alone.iter().filter(|d| **d < 1.0).count();
+    assert!(hits > 3000, "{hits}");
+    assert!(alone == beside, "depths differ");
+
+    let wide = 0.3;
+    let cylinder = Profile::polygon(&[[0.0, 0.0], [wide, 0.0], [wide, 1.0], [0.0, 1.0]], 0.5);
+    let mut one = scene_of(shapes::vase(), eye);
+    one.objects = vec![Object::new("cylinder", Arc::new(cylinder.unwrap()))];
+    let from = DVec3::new(2.0, 1.0, 2.5);
+    let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
+    let (near, far) = (0.5, 6.0);
+    let projection = DMat4::from_cols(
+        DVec4::new(1.0 / 0.8, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -1.0 / 0.6, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0 / (far - near), 0.0),
+        DVec4::new(0.0, 0.0, -near / (far - near), 1.0),
+    );
+    let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
+    let found = depths(&host, &device, &one, &seen, true);
+    let back = (projection * view).inverse();
+    let (width, height) = (options().width as usize, options().height as usize);
+    let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
+    for (n, &depth) in found.iter().enumerate() {
+        let at = |size: usize, k: usize| 2.0 * (k as f64 + 0.5) / size as f64 - 1.0;
+        let (x, y) = (at(width, n % width), at(height, n / width));
+        let [near, far] = [0.0, 1.0].map(|z| back.project_point3(DVec3::new(x, y, z)));
+        // `t` is the depth itself: 0 in the near plane, 1 in the far one.
+        let t = upright(near, far - near, wide);
+        if t.is_finite() && depth < 1.0 {
+            hits += 1;
+            worst = worst.max((f64::from(depth) - t).abs());
+        } else {
+            wrong += usize::from(t.is_finite() != (depth < 1.0));
+        }
+    }
+    println!("parallel: {hits} hits, {wrong} wrong, depth {worst:e}");
+    assert!(hits > 3000 && wrong <= 2, "{hits} hits, {wrong} wrong");
+    assert!(worst <= 2f64.powi(-20), "{worst:e}");
+    drop(device);
+    assert_silent(&host);
+}
+
+/// Compute into a host's buffer: where it is cleared the off-screen picture, where it holds nearer things they stay.
+#[test]
+fn compute_writes_to_a_hosts_buffer() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = three();
+    let (width, height) = (options().width, options().height);
+    let settings = Settings {
+        width,
+        height,
+        stage: DrawStage::Compute,
+        planes: Planes::Color,
+        ..Settings::default()
+    };
+    let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
+    offscreen.draw().unwrap();
+    let wanted = offscreen.read().unwrap().color;
+    let pack = |c: &[f32]| {
+        u32::from_le_bytes([
+            srgb(c[0]),
+            srgb(c[1]),
+            srgb(c[2]),
+            (c[3] * 255.0).round() as u8,
+        ])
+    };
+    let pixels = (width * height) as usize;
+    let nearer = 0x0102_0304u32;
+    // The left half is empty, in the right half something stands before everything.
+    let is_empty = |n: usize| n % (width as usize) < width as usize / 2;
+    let mut words: Vec<u32> = (0..pixels)
+        .map(|n| if is_empty(n) { 1f32.to_bits() } else { 0 })
+        .collect();
+    words.extend((0..pixels).map(|n| {
+        if is_empty(n) {
+            pack(&BACKGROUND)
+        } else {
+            nearer
+        }
+    }));
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let buffer = HostBuffer::of(&host, &words, usage).unwrap();
+    let search = SearchSettings {
+        solver: Solver::DEFAULT,
+        ..SearchSettings::default()
+    };
+    let output = Output::Compute(Planes::Color);
+    let mut renderer = Renderer::new(&device, output, &search, 1).unwrap();
+    renderer.set_lighting(&scene.lighting()).unwrap();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    // SAFETY: the buffer is of the host's device, two words a pixel, and outlives the renderer.
+    unsafe {
+        renderer.set_compute_target(ComputeTarget {
+            words: buffer.raw,
+            images: Vec::new(),
+        });
+    }
+    once(&host, |cmd| {
+        // SAFETY: `cmd` is recording outside of a pass; nothing was submitted for the slot before.
+        unsafe {
+            renderer.prepare(cmd, 0, offscreen.view()).unwrap();
+            renderer.record_compute(cmd, 0);
+        }
+        barrier(&host, cmd);
+    });
+    let found: Vec<u32> = bytemuck::pod_collect_to_vec(&buffer.bytes());
+    let mut drawn = 0;
+    for n in 0..pixels {
+        let (depth, color) = (f32::from_bits(found[n]), found[pixels + n]);
+        if is_empty(n) {
+            assert_eq!(color, pack(&wanted[n]), "pixel {n}");
+            drawn += usize::from(depth < 1.0);
+        } else {
+            assert_eq!((depth, color), (0.0, nearer), "pixel {n}");
+        }
+    }
+    assert!(drawn > 2000, "{drawn}");
+    drop((renderer, offscreen, buffer));
+    drop(device);
+    assert_silent(&host);
+}
+
+/// A renderer of depth alone has no use for searches without an exact depth, nor for compute.
+#[test]
+fn depth_alone_takes_exact_searches() {
+    let device = crate::common::device();
+    let pass = |planes| {
+        Output::Pass(PassFormats {
+            begun: PassKind::Dynamic {
+                color: Vec::new(),
+                depth: host::DEPTH,
+                stencil: vk::Format::UNDEFINED,
+            },
+            samples: 1,
+            depth: DepthOrder::Normal,
+            planes,
+        })
+    };
+    let planes = Planes::Depth { parallel: false };
+    let circle = SearchSettings {
+        solver: Solver::Circle,
+        ..SearchSettings::default()
+    };
+    let refused = |output, settings: &SearchSettings| {
+        let error = Renderer::new(device, output, settings, 1).err().unwrap();
+        assert!(error.to_string().contains("depth alone"), "{error}");
+    };
+    refused(pass(planes), &circle);
+    refused(Output::Compute(planes), &SearchSettings::default());
+}
