@@ -6,7 +6,7 @@ use super::solid::MapFacts;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::maps::MapFormat;
-use crate::scene::{Lighting, Object, Offset, Placement};
+use crate::scene::{Growth, Lighting, Object, Offset, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
 use crate::shader::is_beveled;
@@ -111,10 +111,15 @@ pub(crate) fn solid_block(
         specular: [
             object.specular.strength,
             object.specular.shininess,
-            0.0,
+            1.0,
             0.0,
         ],
-        texturing: [f(look.repeat[0]), f(look.repeat[1]), f(look.bump), 0.0],
+        texturing: [
+            f(look.repeat[0]),
+            f(look.repeat[1]),
+            f(look.bump),
+            f(2.0 * object.profile.radius),
+        ],
         cells: [
             object.repeat[0],
             object.repeat[1],
@@ -131,6 +136,14 @@ pub(crate) fn solid_block(
         hull: [0; 4],
         single: object.placements().first().map(instance_block).unwrap_or_default(),
     }
+}
+
+/// What textures need to find the profile's box in a larger one, whose radius is `radius`.
+#[allow(clippy::cast_possible_truncation)]
+pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) {
+    block.specular[2] = growth.height() as f32;
+    block.specular[3] = growth.low as f32;
+    block.texturing[3] = (2.0 * (radius * growth.height() - growth.side)) as f32;
 }
 
 #[allow(clippy::cast_possible_truncation)]

@@ -63,9 +63,9 @@ pub struct SolidBlock {
     pub axis: [f32; 4],
     /// Linear RGB.
     pub albedo: [f32; 4],
-    /// Strength and shininess.
+    /// Strength and shininess; height of the box, and of its part below `z = 0`, in units of the profile's box.
     pub specular: [f32; 4],
-    /// Repetitions along xi and eta; bump depth `a`.
+    /// Repetitions along xi and eta; bump depth `a`; `2 R` of the profile's box in its units.
     pub texturing: [f32; 4],
     /// Replicas along x, y, z; bits: reflected along x, y, z.
     pub cells: [u32; 4],

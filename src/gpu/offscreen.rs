@@ -10,7 +10,7 @@ use super::target::Target;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
-use crate::scene::{CameraFrame, Object, Scene};
+use crate::scene::{CameraFrame, Growth, Object, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
 use glam::DVec3;
@@ -353,10 +353,12 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
     let mut high: f64 = 0.0;
     for object in &scene.objects {
         // Corners of hulls stand out a little, those of convex ones by some texels more.
-        let radius = 1.04 * object.profile.radius + 0.02;
-        let half = DVec3::new(radius, radius, 0.502);
+        let growth = Growth::of(object);
+        let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
+        let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
+        let middle_z = 0.5 * (1.0 + growth.high - growth.low);
         for p in object.placements() {
-            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));
+            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, middle_z));
             let depth = (middle - camera.eye).dot(camera.forward);
             let reach = (p.rotation.conjugate() * camera.forward * p.scale)
                 .abs()

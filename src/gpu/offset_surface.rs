@@ -21,8 +21,8 @@ pub(crate) struct OffsetSurface {
 
 /// What a surface is made from.
 pub(crate) enum Recipe {
-    /// Quadrics that follow the outline under an offset.
-    Patches(Arc<Outlined>, Offset),
+    /// Quadrics that follow the outline under an offset, in a box of this height in units of the profile's.
+    Patches(Arc<Outlined>, Offset, f64),
     /// A row of so many empty cones around it, relaxed or not.
     Cones(Arc<Outlined>, Offset, u32, bool),
     /// Where a map's solid may be.
@@ -128,9 +128,12 @@ impl OffsetSurface {
 impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
-            Self::Patches(outlined, offset) => {
+            Self::Patches(outlined, offset, height) => {
                 let contour = outlined.contour(offset)?;
-                let patches = fit_patches(&contour, &FitOptions::default());
+                let options = FitOptions {
+                    tolerance: FitOptions::default().tolerance / height,
+                };
+                let patches = fit_patches(&contour, &options);
                 let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
                 let extent = patches.iter().fold(none, |m, p| {
                     [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]

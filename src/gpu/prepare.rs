@@ -1,6 +1,6 @@
 //! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows what has changed.
 
-use super::block::{frame_block, instance_block, solid_block};
+use super::block::{frame_block, instance_block, note_growth, solid_block};
 use super::blocks::{InstanceBlock, SolidBlock};
 use super::buffers::{indices, write_slice};
 use super::hulls;
@@ -125,7 +125,7 @@ impl Renderer {
             let entry = entries[*number as usize].as_ref();
             entry.map_or(Work::Nothing, |entry| {
                 let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
-                planner.fragment(&entry.object, wrapped)
+                planner.fragment(entry.drawn(), wrapped)
             })
         };
         if numbers.len() < MANY {
@@ -149,7 +149,7 @@ impl Renderer {
                 let entry = self.entries[*number as usize].as_ref();
                 entry.map_or(Work::Nothing, |entry| {
                     let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
-                    planner.compute(&entry.object, wrapped, entry.instances.start, &mut lists)
+                    planner.compute(entry.drawn(), wrapped, entry.instances.start, &mut lists)
                 })
             })
             .collect();
@@ -284,7 +284,7 @@ impl Renderer {
             };
             to.write_block(number, &block)?;
             let placed: Vec<InstanceBlock> = entry
-                .object
+                .drawn()
                 .placements()
                 .iter()
                 .map(instance_block)
@@ -314,7 +314,7 @@ impl Renderer {
                         for tiles in copies {
                             let Some(number) = tiles.block else { continue };
                             block.single =
-                                instance_block(&entry.object.placements()[tiles.instance]);
+                                instance_block(&entry.drawn().placements()[tiles.instance]);
                             to.write_block(number, &block)?;
                         }
                     }
@@ -335,7 +335,7 @@ impl Entry {
         let length = p.arc.as_ref().map_or(1.0, |a| a.length);
         let (instances, map) = (&self.instances, p.shadow_map);
         let mut block = solid_block(
-            &self.object,
+            self.drawn(),
             &p.facts,
             length,
             instances,
@@ -343,6 +343,9 @@ impl Entry {
             p.solver,
             settings,
         );
+        if let Some(grown) = &self.grown {
+            note_growth(&mut block, &grown.growth, grown.object.profile.radius);
+        }
         block.hull[0] = self.draw.frusta;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {

@@ -107,7 +107,7 @@ impl Renderer {
     }
 
     fn reachable(&self, entry: &Entry, all: &mut Vec<(Variant, Kind)>) {
-        let object = &entry.object;
+        let object = entry.drawn();
         let surface = entry.prepared.as_ref().and_then(|p| p.surface.as_deref());
         let (settings, solver) = (&self.settings, self.settings.solver);
         let planes = self.output.planes();

@@ -8,10 +8,10 @@ use super::textures::{Bound, ShadowMaps};
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::SLACK;
 use crate::maps::{MapFormat, Projection};
-use crate::scene::{Object, Shadow};
+use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
 use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
-use crate::shader::{Met, Variant, is_beveled};
+use crate::shader::{Met, Variant};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -21,8 +21,18 @@ pub(super) const FALLBACK: Solver = Solver::Live;
 /// What is known of a changed object before the device is touched.
 struct Resolved {
     number: u32,
+    /// In a box that has grown.
+    grown: Option<GrownObject>,
     solid: Arc<Solid>,
     surface: Option<Arc<OffsetSurface>>,
+}
+
+impl Resolved {
+    /// What is drawn of `entry`, and by how much its box has grown.
+    fn shown<'a>(&'a self, entry: &'a Entry) -> (&'a Object, Growth) {
+        let own = (entry.latest(), Growth::default());
+        self.grown.as_ref().map_or(own, |g| (&g.object, g.growth))
+    }
 }
 
 impl Renderer {
@@ -100,17 +110,18 @@ impl Renderer {
         for (one, map) in mapped {
             let number = one.number;
             let prepared = self
-                .prepared(one, map)
+                .prepared(&one, map)
                 .map_err(|e| self.named(e, number, "profile"))?;
-            ready.push((number, prepared));
+            ready.push((number, one.grown, prepared));
         }
-        for (number, prepared) in ready {
+        for (number, grown, prepared) in ready {
             let Some(entry) = &mut self.entries[number as usize] else {
                 continue;
             };
             if let Some(wanted) = entry.wanted.take() {
                 entry.object = wanted;
             }
+            entry.grown = grown;
             let old = entry.prepared.replace(prepared);
             self.retire(old);
             self.unplanned.push(number);
@@ -126,18 +137,21 @@ impl Renderer {
             let Some(entry) = &self.entries[number as usize] else {
                 continue;
             };
-            let object = entry.latest();
+            let grown = self.solids.grown.grown(entry.latest());
+            let object = grown.as_ref().map_or(entry.latest(), |g| &g.object);
+            let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
             let solid = self.solids.get(&object.profile);
             let surface = if solver.reads_map() {
                 None
             } else if solver.is_of_cones() {
-                let rows = self.settings.map_rows.unwrap_or(object.map_rows);
+                let rows = MapKey::new(object, &growth, &self.settings).rows;
                 Some(solid.cones(&object.offset, rows, solver == Solver::Relaxed)?)
             } else {
-                Some(solid.patches(&object.offset)?)
+                Some(solid.patches(&object.offset, &growth)?)
             };
             resolved.push(Resolved {
                 number,
+                grown,
                 solid,
                 surface,
             });
@@ -205,7 +219,7 @@ impl Renderer {
         let objects = || self.ordered().map(Entry::latest);
         Met {
             repeated: objects().any(|o| o.repeat != [1; 3]),
-            beveled: objects().any(is_beveled),
+            beveled: objects().any(|o| o.offset.bevel != 0.0),
         }
     }
 
@@ -227,10 +241,11 @@ impl Renderer {
         let Some(entry) = &self.entries[one.number as usize] else {
             return Ok(None);
         };
-        let key = MapKey::new(entry.latest(), &self.settings);
+        let (wanted, growth) = one.shown(entry);
+        let key = MapKey::new(wanted, &growth, &self.settings);
         let there = entry.prepared.as_ref().and_then(|p| p.map.as_ref());
         if let Some(there) = there
-            && Arc::ptr_eq(&entry.latest().profile, &entry.object.profile)
+            && Arc::ptr_eq(&wanted.profile, &entry.drawn().profile)
             && there.key.holds(&key)
         {
             return Ok(Some(there.clone()));
@@ -287,12 +302,8 @@ impl Renderer {
         })
     }
 
-    fn prepared(&mut self, one: Resolved, map: Option<Arc<ShapeTexture>>) -> Result<Prepared> {
-        let Resolved {
-            number,
-            solid,
-            surface,
-        } = one;
+    fn prepared(&mut self, one: &Resolved, map: Option<Arc<ShapeTexture>>) -> Result<Prepared> {
+        let (number, solid, surface) = (one.number, &one.solid, one.surface.clone());
         let solver = self.solver_of(surface.as_ref());
         let Some(entry) = &self.entries[number as usize] else {
             return Err(Error::new(
@@ -300,10 +311,10 @@ impl Renderer {
                 "an object is gone while it is prepared",
             ));
         };
-        let object = entry.latest();
-        check_format(object, solver, &self.settings).map_err(|e| self.under(e, number))?;
+        let (object, growth) = one.shown(entry);
+        check_format(entry.latest(), solver, &self.settings).map_err(|e| self.under(e, number))?;
         let facts = map.as_ref().map_or_else(
-            || MapKey::new(object, &self.settings).unbaked(&object.profile),
+            || MapKey::new(object, &growth, &self.settings).unbaked(&object.profile),
             |m| m.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {
@@ -311,7 +322,7 @@ impl Renderer {
         } else {
             None
         };
-        let wrapped = self.wrapped(object, solver, &solid, map.as_deref(), surface.as_ref())?;
+        let wrapped = self.wrapped(object, solver, solid, map.as_deref(), surface.as_ref())?;
         let planes = self.output.planes();
         let (settings, lighting) = (&self.settings, &self.lighting);
         let variant = Variant::new(settings, planes, solver, lighting, object, self.met);
@@ -327,7 +338,7 @@ impl Renderer {
         };
         Ok(Prepared {
             textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
-            _solid: solid,
+            _solid: solid.clone(),
             solver,
             surface: surface.filter(|_| !solver.reads_map()),
             wrapped,

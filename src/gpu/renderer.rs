@@ -16,7 +16,7 @@ use super::textures::{ShadowMaps, TextureSet, Textures};
 use super::uploads::Uploads;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
-use crate::scene::{Lighting, Object, Offset, Placement};
+use crate::scene::{GrownObject, Lighting, Object, Offset, Placement};
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::{Kind, Met, Variant};
 use ash::vk;
@@ -96,6 +96,8 @@ pub(super) struct Entry {
     pub object: Object,
     /// What was set since it was prepared last.
     pub wanted: Option<Object>,
+    /// What is drawn in its place, in a box that has grown with the offset.
+    pub grown: Option<GrownObject>,
     /// None before the first frame, and where that failed.
     pub prepared: Option<Prepared>,
     pub draw: Draw,
@@ -230,6 +232,7 @@ impl Renderer {
         self.entries[number] = Some(Entry {
             object,
             wanted: None,
+            grown: None,
             prepared: None,
             draw: Draw::default(),
             instances,
@@ -318,6 +321,9 @@ impl Renderer {
         if let Some(wanted) = &mut entry.wanted {
             wanted.placement = placement;
         }
+        if let Some(grown) = &mut entry.grown {
+            grown.object.placement = grown.growth.placement(&placement);
+        }
         self.unplanned.push(id.number);
         Ok(())
     }
@@ -337,6 +343,10 @@ impl Renderer {
         let entry = self.entry(id)?;
         if let Some(wanted) = &mut entry.wanted {
             wanted.instances.clone_from(&instances);
+        }
+        if let Some(grown) = &mut entry.grown {
+            let all = instances.iter().map(|p| grown.growth.placement(p));
+            grown.object.instances = all.collect();
         }
         entry.object.instances = instances;
         self.unplanned.push(id.number);
@@ -518,6 +528,11 @@ impl Entry {
     /// The values that were set last.
     pub fn latest(&self) -> &Object {
         self.wanted.as_ref().unwrap_or(&self.object)
+    }
+
+    /// The values that were prepared last, in a box that cuts nothing.
+    pub fn drawn(&self) -> &Object {
+        self.grown.as_ref().map_or(&self.object, |g| &g.object)
     }
 
     fn placements_len(&self) -> usize {

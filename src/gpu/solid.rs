@@ -10,7 +10,7 @@ use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::Envelope;
 use crate::maps::{ArcLength, BakeOptions, Bounds, MapFormat, MapSource, ShapeMap};
 use crate::profile::Profile;
-use crate::scene::{Object, Offset};
+use crate::scene::{GrownProfiles, Growth, Object, Offset};
 use crate::settings::SearchSettings;
 use crate::surface::{Contour, ContourSource};
 use ash::vk;
@@ -18,11 +18,16 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
 
+/// Most rows of a map whose box has grown.
+const MOST_ROWS: f64 = 16384.0;
+
 /// The solids of a renderer, by profile.
 #[derive(Default)]
 pub(crate) struct SolidCache {
     /// By the profile's address, which a solid keeps from being used again.
     solids: HashMap<usize, Weak<Solid>>,
+    /// Profiles in boxes that have grown with offsets.
+    pub grown: GrownProfiles,
 }
 
 /// All that is made from one profile.
@@ -137,9 +142,9 @@ impl Solid {
     }
 
     /// The boundary as quadrics; not made yet where it is new.
-    pub fn patches(&self, offset: &Offset) -> Result<Arc<OffsetSurface>> {
+    pub fn patches(&self, offset: &Offset, growth: &Growth) -> Result<Arc<OffsetSurface>> {
         self.surfaces.get(SurfaceKey::Patches(bits(offset)), || {
-            let recipe = Recipe::Patches(self.outlined.clone(), *offset);
+            let recipe = Recipe::Patches(self.outlined.clone(), *offset, growth.height());
             Ok(OffsetSurface::new(recipe))
         })
     }
@@ -227,9 +232,14 @@ impl Outlined {
 
 impl MapKey {
     /// The map that `object` wants; `columns` as many as its solid needs under its offset.
-    pub fn new(object: &Object, settings: &SearchSettings) -> Self {
+    pub fn new(object: &Object, growth: &Growth, settings: &SearchSettings) -> Self {
         let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
+        // Texels of a grown box are as large as those of its own.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
+        let rows = (f64::from(rows) * growth.height())
+            .ceil()
+            .min(MOST_ROWS.max(f64::from(rows))) as u32;
         let reach = super::block::reach(object, 2.0 / f64::from(rows.max(1)));
         Self {
             rows,

@@ -30,6 +30,7 @@
 //! | `object.N.extend` | `e`, object units; negative insets | `0` |
 //! | `object.N.bevel` | `b`, slope | `0` |
 //! | `object.N.chamfer` | `c`, depth in `[0, 1]` to which the bevel reaches | `1` |
+//! | `object.N.clip` | `"none"`: the shape box grows with the offset; `"box"`: the papers' fixed box cuts the solid; replicas are cut by their cells | `"none"` |
 //! | `object.N.axis` | `(Ox, Oy)`, box texture coordinates | `[0.5, 0.5]` |
 //! | `object.N.repeat` | cells of the box along x, y, z | `[1, 1, 1]` |
 //! | `object.N.mirror` | whether every other cell is mirrored | `[false, false, false]` |
@@ -43,7 +44,7 @@
 use super::instances::{self, unit};
 use super::keys::Keys;
 use super::{
-    BumpForm, Camera, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
+    BumpForm, Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
     overrides,
 };
 use crate::error::{Error, Result, Stage};
@@ -87,6 +88,7 @@ const OBJECT: &[&str] = &[
     "extend",
     "bevel",
     "chamfer",
+    "clip",
     "axis",
     "repeat",
     "mirror",
@@ -287,6 +289,7 @@ impl Reader {
         object.specular = specular(&keys)?;
         object.texturing = self.texturing(&keys, object.file.as_deref())?;
         object.offset = offset(&keys)?;
+        object.clip = keys.one_of("clip", &Clip::NAMES)?.unwrap_or_default();
         object.axis = keys.numbers("axis")?.unwrap_or(object.axis);
         object.repeat = keys.counts("repeat")?.unwrap_or(object.repeat);
         object.mirror = keys.flags("mirror")?.unwrap_or(object.mirror);

@@ -28,6 +28,7 @@ mod camera;
 mod check;
 #[cfg(feature = "scene-file")]
 pub mod file;
+mod growth;
 #[cfg(feature = "scene-file")]
 mod instances;
 #[cfg(feature = "scene-file")]
@@ -37,6 +38,7 @@ mod object;
 mod overrides;
 
 pub use camera::CameraFrame;
+pub use growth::{Clip, GrownObject, GrownProfiles, Growth};
 pub use object::{BumpForm, Object, Offset, Placement, Specular, Texturing};
 
 use glam::DVec3;

@@ -1,5 +1,6 @@
 //! One solid of revolution: what is turned, what covers it, how far its surface stands off, where it stands.
 
+use super::Clip;
 use crate::maps::{ColorMap, DisplacementMap, Projection};
 use crate::profile::Profile;
 use glam::{DQuat, DVec3};
@@ -25,6 +26,8 @@ pub struct Object {
     pub texturing: Texturing,
     /// Extension, bevel and chamfer.
     pub offset: Offset,
+    /// Whether the shape box cuts what an offset adds.
+    pub clip: Clip,
     /// `(Ox, Oy)`: where the axis stands in box texture coordinates.
     pub axis: [f64; 2],
     /// How many replicas the box holds along x, y, z: each is the whole solid, shrunk to its cell. At least 1 each.
@@ -55,6 +58,7 @@ impl Object {
             specular: Specular::default(),
             texturing: Texturing::default(),
             offset: Offset::default(),
+            clip: Clip::default(),
             axis: [0.5; 2],
             repeat: [1; 3],
             mirror: [false; 3],
@@ -73,13 +77,13 @@ impl Object {
         }
         let (a, b) = (&self.texturing, &other.texturing);
         let look = (self.color, self.specular, self.offset, self.axis);
-        let shape = (self.map_rows, self.repeat, self.mirror);
+        let shape = (self.map_rows, self.repeat, self.mirror, self.clip);
         let covering = (a.bump, a.bump_form, a.projection, a.repeat);
         Arc::ptr_eq(&self.profile, &other.profile)
             && self.name == other.name
             && self.file == other.file
             && look == (other.color, other.specular, other.offset, other.axis)
-            && shape == (other.map_rows, other.repeat, other.mirror)
+            && shape == (other.map_rows, other.repeat, other.mirror, other.clip)
             && covering == (b.bump, b.bump_form, b.projection, b.repeat)
             && one(&a.color_map, &b.color_map)
             && one(&a.displacement_map, &b.displacement_map)

@@ -4,7 +4,7 @@ use crate::common::rays::{Random, count, profiles};
 use glam::{DVec2, DVec3};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::{Outline, Profile};
-use revmap::scene::{Camera, Object, Offset, Scene};
+use revmap::scene::{Camera, Clip, Object, Offset, Scene};
 use revmap::surface::{ContourSource, FitOptions, ROWS, Tables, fit_patches, trace_patches};
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
@@ -66,6 +66,7 @@ fn against_offset(
 ) -> Tally {
     let mut object = Object::new("test", Arc::new(profile.clone()));
     object.offset = offset;
+    object.clip = Clip::Box; // patches of the profile's own box
     let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
     scene.objects.push(object);
     let reference = Reference::new(&scene).unwrap();

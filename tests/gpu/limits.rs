@@ -5,7 +5,7 @@ use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes
 use revmap::error::Stage;
 use revmap::gpu::{self, Offscreen};
 use revmap::maps::MapFormat;
-use revmap::scene::{Offset, Scene};
+use revmap::scene::{Clip, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 fn settings() -> Settings {
@@ -41,7 +41,8 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
             (-0.2, 50.0, 0.5),
             (-0.3, 1.0, 0.0),
         ] {
-            let scene = with(&plain, extend, bevel, chamfer);
+            let mut scene = with(&plain, extend, bevel, chamfer);
+            scene.objects[0].clip = Clip::Box;
             let truth = reference(&scene, &settings());
             let frame = draw(&scene, &settings());
             assert_sound(&frame, name);

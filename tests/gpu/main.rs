@@ -10,6 +10,7 @@ mod agreement_textures;
 #[cfg(feature = "drawing")]
 mod bitmaps;
 mod bumps;
+mod clip;
 mod cones;
 mod embedding;
 mod embedding_outputs;

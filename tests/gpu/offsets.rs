@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
 use revmap::maps::MapFormat;
-use revmap::scene::{CameraFrame, Offset, Scene};
+use revmap::scene::{CameraFrame, Clip, Offset, Scene};
 use revmap::settings::{Settings, Solver};
 use revmap_reference::{Ray, Reference};
 use std::f64::consts::FRAC_PI_4;
@@ -45,6 +45,7 @@ fn with(scene: &Scene, offset: Offset, elevation: f64) -> Scene {
     let mut scene = scene.clone();
     scene.camera.eye = eye(elevation, 2.3);
     scene.objects[0].offset = offset;
+    scene.objects[0].clip = Clip::Box;
     scene
 }
 

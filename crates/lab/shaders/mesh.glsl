@@ -40,9 +40,9 @@ layout(set = 0, binding = 1, std430) readonly buffer InstanceBlock {
 };
 
 layout(push_constant) uniform ObjectBlock {
-    vec4 axis;     // x, y in object units from the middle of the box; z: radius of the box
+    vec4 axis;     // x, y in object units from the middle of the box
     vec4 albedo;   // linear RGB; w: strength of the highlight
-    vec4 specular; // x: shininess
+    vec4 specular; // x: shininess; of the box in units of the profile's box: y: height, z: height below z = 0, w: 2 R of the profile's
     Instance single;
 } object;
 

@@ -19,11 +19,12 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
-// Texture coordinates at `p`, object units about the axis.
-vec2 coordinates(vec3 p)
+// Texture coordinates at `place`, object units about the axis. The box may be larger than the profile's.
+vec2 coordinates(vec3 place)
 {
+    vec3 p = place * object.specular.y - vec3(0.0, 0.0, object.specular.z);
     if (PROJECTION == PROJECTION_PLANAR) {
-        return (p.xy + object.axis.xy) / (2.0 * object.axis.z) + 0.5;
+        return (p.xy + object.axis.xy * object.specular.y) / object.specular.w + 0.5;
     }
     float r = length(p.xy);
     float xi = r > 0.0 ? (PI + atan(p.y, p.x)) / (2.0 * PI) : 0.5;

@@ -49,10 +49,11 @@ impl Part {
             scale,
         } = self.placement;
         let turn = DMat3::from_quat(rotation);
-        let middle = position + turn.z_axis * (0.5 * scale.z);
-        let half = turn.x_axis.abs() * (self.solid.radius * scale.x)
-            + turn.y_axis.abs() * (self.solid.radius * scale.y)
-            + turn.z_axis.abs() * (0.5 * scale.z);
+        let [low, high] = self.solid.faces();
+        let (center, size) = (0.5 * (low + high) * scale, 0.5 * (high - low) * scale);
+        let middle = position + rotation * center;
+        let half =
+            turn.x_axis.abs() * size.x + turn.y_axis.abs() * size.y + turn.z_axis.abs() * size.z;
         let half = half * (1.0 + 1e-6) + middle.abs() * 1e-12;
         (middle - half, middle + half)
     }

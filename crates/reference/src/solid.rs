@@ -4,7 +4,7 @@ use super::bracket::{Search, first_zero};
 use super::field::{Field, Nearest};
 use super::is_ray;
 use glam::{DVec2, DVec3};
-use revmap::scene::{Object, Offset};
+use revmap::scene::{Growth, Object, Offset};
 use std::sync::Arc;
 
 /// Which part of a solid's boundary was met.
@@ -42,6 +42,8 @@ pub(super) struct LocalTrace {
 pub(super) struct Solid {
     pub field: Arc<Field>,
     pub radius: f64,
+    /// By how much the box is larger than the profile's.
+    pub growth: Growth,
     pub offset: Offset,
     /// Where the axis stands in a cell, object units.
     pub axis: DVec2,
@@ -62,6 +64,7 @@ impl Solid {
         Self {
             field,
             radius,
+            growth: Growth::of(object),
             offset: object.offset,
             axis: DVec2::new(
                 (2.0 * object.axis[0] - 1.0) * radius,
@@ -70,6 +73,15 @@ impl Solid {
             repeat: object.repeat.map(|n| n.max(1)),
             mirror: object.mirror,
         }
+    }
+
+    /// The lowest and the highest corner of the box.
+    pub fn faces(&self) -> [DVec3; 2] {
+        let side = self.radius + self.growth.side;
+        [
+            DVec3::new(-side, -side, -self.growth.low),
+            DVec3::new(side, side, 1.0 + self.growth.high),
+        ]
     }
 
     /// The first meeting at `t >= 0` of the ray `origin + t direction`, object space.
@@ -82,7 +94,7 @@ impl Solid {
         if !is_ray(origin, direction) {
             return trace;
         }
-        let Some(clip) = Clip::new(self.radius, origin, direction, &mut trace.grazes) else {
+        let Some(clip) = Clip::new(self.faces(), origin, direction, &mut trace.grazes) else {
             return trace;
         };
         let start = origin + direction * clip.t[0];
@@ -141,12 +153,12 @@ impl Solid {
             return f64::INFINITY;
         }
         let speed = direction.length();
-        let middle = DVec3::new(0.0, 0.0, 0.5);
-        let half = DVec3::new(self.radius, self.radius, 0.5);
+        let [low, high] = self.faces();
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let faces = |p: DVec3| ((p - middle).abs() - half).max_element();
         // Farther than this the box only recedes.
         let end = ((origin.distance(middle) + half.length()) / speed).min(last);
-        let clip = Clip::new(self.radius, origin, direction, &mut false);
+        let clip = Clip::new(self.faces(), origin, direction, &mut false);
         let Some(mut clip) = clip.filter(|clip| clip.t[0] <= last) else {
             return least(
                 |t| faces(origin + direction * t),
@@ -253,11 +265,12 @@ struct Clip {
 }
 
 impl Clip {
-    fn new(radius: f64, origin: DVec3, direction: DVec3, grazes: &mut bool) -> Option<Self> {
-        let (low, high) = (
-            DVec3::new(-radius, -radius, 0.0),
-            DVec3::new(radius, radius, 1.0),
-        );
+    fn new(
+        [low, high]: [DVec3; 2],
+        origin: DVec3,
+        direction: DVec3,
+        grazes: &mut bool,
+    ) -> Option<Self> {
         let mut clip = Self {
             t: [f64::NEG_INFINITY, f64::INFINITY],
             axis: [0, 0],

@@ -43,8 +43,8 @@ struct Solid {
     vec4 offset;     // e, b, c; bound of the search's steps
     vec4 axis;       // x, y in object units from the middle of the box; 1 / length of the outline; arc length at z = 0 over that
     vec4 albedo;     // linear RGB
-    vec4 specular;   // strength, shininess
-    vec4 texturing;  // repetitions along xi and eta; bump depth a
+    vec4 specular;   // strength, shininess; height of the box, and of its part below z = 0, in units of the profile's box
+    vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
     uvec4 patches;    // of the quadric search's tables (patch_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;

@@ -72,8 +72,8 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
 #if TEXTURED
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
         vec3 normal = unit(hit.normal);
-        vec3 right = footprint(v, rays.dir_x, normal, hit.t);
-        vec3 down = footprint(v, rays.dir_y, normal, hit.t);
+        vec3 right = footprint(v, rays.dir_x, normal, hit.t) * profile_units();
+        vec3 down = footprint(v, rays.dir_y, normal, hit.t) * profile_units();
         if (CELLS != 0u) {
             right *= hit.sense * count;
             down *= hit.sense * count;

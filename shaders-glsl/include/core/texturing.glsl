@@ -34,17 +34,24 @@ float arc_length(vec2 rz, out vec2 rising)
     return mixed > 1.0 ? mixed - 1.0 : mixed;
 }
 
-// At `p`, object units about the axis; `n` the surface's normal there.
-Coordinates texture_coordinates(vec3 p, vec3 n)
+// Units of the profile's box for one of the box's own, which may have grown with the offset.
+float profile_units()
+{
+    return solid.specular.z;
+}
+
+// At `place`, object units about the axis; `n` the surface's normal there. Gradients are over the profile's units.
+Coordinates texture_coordinates(vec3 place, vec3 n)
 {
     Coordinates c;
+    vec3 p = place * profile_units() - vec3(0.0, 0.0, solid.specular.w);
     float r2 = dot(p.xy, p.xy);
     float r = sqrt(r2);
     c.grad_xi = vec3(-p.y, p.x, 0.0) / (2.0 * PI * max(r2, 1e-12));
     c.uv.x = r > 0.0 ? (PI + atan(p.y, p.x)) / (2.0 * PI) : 0.5;
     if (PROJECTION == PROJECTION_PLANAR) {
-        float width = 2.0 * solid.bounds.x;
-        c.uv = (p.xy + solid.axis.xy) / width + 0.5;
+        float width = solid.texturing.w;
+        c.uv = (p.xy + solid.axis.xy * profile_units()) / width + 0.5;
         c.grad_xi = vec3(1.0 / width, 0.0, 0.0);
         c.grad_eta = vec3(0.0, 1.0 / width, 0.0);
     } else if (PROJECTION == PROJECTION_SPHERICAL) {
@@ -55,13 +62,13 @@ Coordinates texture_coordinates(vec3 p, vec3 n)
         c.grad_eta = -vec3(q.xy * (q.z / max(r, 1e-6)), -r) / (PI * rho2);
     } else if (PROJECTION == PROJECTION_ARC) {
         vec2 rising;
-        c.uv.y = arc_length(vec2(r, p.z), rising);
+        c.uv.y = arc_length(vec2(length(place.xy), place.z), rising);
         vec3 around = vec3(-p.y, p.x, 0.0) / max(r, 1e-6);
         // By how much lengths grow along the surface: within a cavity the other way round than outside, and faster where an outline
         // is shorter. Between the two sides of a thin wall the table says nothing; there the longest outline's rate stands in.
         vec3 along = cross(n, around);
         float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / solid.map.z;
-        c.grad_eta = along * (abs(rate) < 16.0 * solid.axis.z ? rate : solid.axis.z);
+        c.grad_eta = along * ((abs(rate) < 16.0 * solid.axis.z ? rate : solid.axis.z) / profile_units());
     } else {
         c.uv.y = p.z;
         c.grad_eta = vec3(0.0, 0.0, 1.0);

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use revmap::gpu::View;
-use revmap::scene::{CameraFrame, Lighting, Object, Placement};
+use revmap::scene::{CameraFrame, Growth, Lighting, Object, Placement};
 
 /// Most lights; a renderer takes no more.
 pub(super) const MAX_LIGHTS: usize = 8;
@@ -84,14 +84,20 @@ pub(super) struct ObjectBlock {
 
 impl ObjectBlock {
     /// `first` is the instance of an object that has one.
-    pub fn new(object: &Object, first: InstanceBlock) -> Self {
+    pub fn new(object: &Object, growth: &Growth, first: InstanceBlock) -> Self {
         let [x, y] = axis_offset(object);
         let [red, green, blue] = object.color;
-        let axis = DVec3::new(x, y, object.profile.radius).as_vec3();
+        let axis = DVec3::new(x, y, 0.0).as_vec3();
         Self {
             axis: axis.extend(0.0).to_array(),
             albedo: [red, green, blue, object.specular.strength],
-            specular: [object.specular.shininess, 0.0, 0.0, 0.0],
+            #[allow(clippy::cast_possible_truncation)]
+            specular: [
+                object.specular.shininess,
+                growth.height() as f32,
+                growth.low as f32,
+                (2.0 * (object.profile.radius * growth.height() - growth.side)) as f32,
+            ],
             single: first,
         }
     }

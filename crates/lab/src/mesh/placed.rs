@@ -6,7 +6,7 @@ use glam::DVec3;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::Projection;
 use revmap::profile::Profile;
-use revmap::scene::{CameraFrame, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{CameraFrame, GrownProfiles, Growth, Object, Offset, Placement, Scene, Shadow};
 use revmap::surface::ContourSource;
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub(super) struct SceneMeshes {
     segments: u32,
     rings: u32,
     sources: Vec<(Arc<Profile>, ContourSource)>,
+    /// Profiles in boxes that have grown with offsets.
+    grown: GrownProfiles,
     made: Vec<Made>,
     made_count: u64,
 }
@@ -48,6 +50,7 @@ impl SceneMeshes {
             segments,
             rings,
             sources: Vec::new(),
+            grown: GrownProfiles::default(),
             made: Vec::new(),
             made_count: 0,
         }
@@ -73,6 +76,9 @@ impl SceneMeshes {
         for (number, object) in scene.objects.iter().enumerate() {
             let under = |key: &str| format!("object.{number}.{key}");
             check_object(object).map_err(|(key, error)| error.at_key(under(key)))?;
+            let grown = self.grown.grown(object);
+            let growth = Growth::of(object);
+            let object = grown.as_ref().map_or(object, |g| &g.object);
             let made = self.make(object).map_err(|error| {
                 let error = error.at_key(under("profile"));
                 match &object.file {
@@ -82,7 +88,7 @@ impl SceneMeshes {
             })?;
             check_box(object, made.mesh.extent[0])
                 .map_err(|(key, error)| error.at_key(under(key)))?;
-            placed.push(place(object, made.mesh.clone(), camera));
+            placed.push(place(object, &growth, made.mesh.clone(), camera));
             used.push(made);
         }
         self.sources
@@ -120,7 +126,7 @@ impl SceneMeshes {
     }
 }
 
-fn place(object: &Object, mesh: Arc<Mesh>, camera: &CameraFrame) -> PlacedMesh {
+fn place(object: &Object, growth: &Growth, mesh: Arc<Mesh>, camera: &CameraFrame) -> PlacedMesh {
     let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
     let mut placements = object.placements().to_vec();
     placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -134,7 +140,11 @@ fn place(object: &Object, mesh: Arc<Mesh>, camera: &CameraFrame) -> PlacedMesh {
         _ => 0,
     };
     PlacedMesh {
-        block: ObjectBlock::new(object, instances.first().copied().unwrap_or_default()),
+        block: ObjectBlock::new(
+            object,
+            growth,
+            instances.first().copied().unwrap_or_default(),
+        ),
         instances,
         projection: object.texturing.projection,
         both_sides: eyes.iter().any(|eye| may_hold(&mesh, *eye)),

@@ -8,7 +8,7 @@ use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{ColorMap, DisplacementMap, Projection};
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Offset, Placement, Scene, Shadow, Specular};
+use revmap::scene::{Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow, Specular};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_lab::compare::{CompareOptions, Comparison, compare};
 use revmap_lab::mesh::{MeshOffscreen, MeshPipelines};
@@ -471,10 +471,10 @@ fn what_a_mesh_cannot_draw_is_refused() {
         s.objects[2].axis = [0.9, 0.5]
     });
     refused(Stage::Scene, "object.0.extend", |s, _| {
-        s.objects[0].offset.extend = 0.3
+        (s.objects[0].offset.extend, s.objects[0].clip) = (0.3, Clip::Box);
     });
     refused(Stage::Scene, "object.0.bevel", |s, _| {
-        s.objects[0].offset.bevel = 0.8
+        (s.objects[0].offset.bevel, s.objects[0].clip) = (0.8, Clip::Box);
     });
     for (segments, rings) in [(2, 1), (0, 0), (99_999_999, 9), (u32::MAX, u32::MAX)] {
         refused(Stage::Usage, "", |_, s| {

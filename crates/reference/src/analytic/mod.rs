@@ -17,7 +17,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use path::{Curve, Path};
 use revmap::error::{Error, Result, Stage};
 use revmap::profile::Outline;
-use revmap::scene::{Object, Offset, Scene};
+use revmap::scene::{Growth, Object, Offset, Scene};
 
 /// Pieces of a ray shorter than this, in object units, mark it as grazing.
 const SLIVER: f64 = 1e-7;
@@ -40,6 +40,7 @@ struct Part {
 struct Solid {
     outline: Outline,
     radius: f64,
+    growth: Growth,
     axis: DVec2,
     /// `w = start + slope z` of each piece.
     pieces: Vec<(f64, f64)>,
@@ -121,6 +122,7 @@ impl Solid {
         Ok(Self {
             outline: object.profile.outline.clone(),
             radius,
+            growth: Growth::of(object),
             axis,
             pieces,
             offset: object.offset,
@@ -129,7 +131,7 @@ impl Solid {
 
     fn trace(&self, ray: Ray) -> Trace {
         let mut trace = Trace::default();
-        let Some(inside) = Inside::new(self.radius, ray) else {
+        let Some(inside) = Inside::new(self.radius, &self.growth, ray) else {
             return trace;
         };
         let start = ray.origin + ray.direction * inside.enter.max(0.0) - self.axis.extend(0.0);
@@ -290,7 +292,7 @@ struct Inside {
 
 impl Inside {
     /// `None` when the ray misses the box, or has left it, or is none.
-    fn new(radius: f64, ray: Ray) -> Option<Self> {
+    fn new(radius: f64, growth: &Growth, ray: Ray) -> Option<Self> {
         if !is_ray(ray.origin, ray.direction) {
             return None;
         }
@@ -300,7 +302,12 @@ impl Inside {
             leave: f64::INFINITY,
             leave_axis: 0,
         };
-        let walls = [(-radius, radius), (-radius, radius), (0.0, 1.0)];
+        let side = radius + growth.side;
+        let walls = [
+            (-side, side),
+            (-side, side),
+            (-growth.low, 1.0 + growth.high),
+        ];
         for (axis, (low, high)) in walls.into_iter().enumerate() {
             for (limit, outward) in [(low, -1.0), (high, 1.0)] {
                 let (v, gap) = (

@@ -67,6 +67,7 @@ fn singles(object: &Object) -> Vec<Object> {
         let mirrored: [bool; 3] = std::array::from_fn(|a| object.mirror[a] && index[a] % 2 == 1);
         let mut one = object.clone();
         (one.repeat, one.mirror) = ([1; 3], [false; 3]);
+        one.clip = revmap::scene::Clip::Box; // as a cell cuts
         let at = |a: usize, shift: f64| (f64::from(index[a]) + shift) / n[a] * size[a];
         let mut place = Placement {
             position: DVec3::new(

@@ -1,0 +1,203 @@
+//! Shape boxes that grow with the offset, so that they cut nothing of the solid ([`Clip::None`]).
+//!
+//! A grown box is no special case to what draws it. The outline is put into a larger box, the whole
+//! is scaled so that this box is one unit high again, and offset, axis and placement are
+//! transformed to match. With `k = 1 / (1 + low + high)` and `z' = k (z + low)`, the depth is
+//! `u = 1 - z = u' / k - high`, so the offset keeps its form:
+//! `k w = k (e - b high) + b min(u', k (c + high))`.
+
+use super::{Object, Offset, Placement};
+use crate::profile::{Outline, Profile, Raster};
+use glam::{DVec2, DVec3};
+use std::collections::HashMap;
+use std::sync::{Arc, Weak};
+
+/// What the shape box cuts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// Nothing that an offset adds: the box grows with it. Replicas are cut by their cells all the
+    /// same.
+    #[default]
+    None,
+    /// All that reaches past `[-R, R]^2 x [0, 1]`, as in the papers.
+    Box,
+}
+
+impl Clip {
+    /// Every value with the name that scene files give it.
+    pub const NAMES: [(&'static str, Self); 2] = [("none", Self::None), ("box", Self::Box)];
+}
+
+/// By how much a shape box is larger than the profile's, object units.
+///
+/// Sizes go by sixteenths, so that an offset that moves changes the box seldom.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// Below `z = 0`.
+    pub low: f64,
+    /// Above `z = 1`.
+    pub high: f64,
+    /// Beyond `R`.
+    pub side: f64,
+}
+
+/// Sizes of boxes are multiples of this, object units.
+const STEP: f64 = 1.0 / 16.0;
+/// A box grows by no more than this; what offsets add beyond it is cut.
+const MOST: f64 = 64.0;
+/// What an offset must at least have left to a grown box's faces, object units.
+const MARGIN: f64 = 1e-3;
+
+impl Growth {
+    /// What `object` needs; nothing where its box cuts, and where its offset stays within the box.
+    #[must_use]
+    pub fn of(object: &Object) -> Self {
+        let bounds = object.profile.outline.bounds();
+        let Some(bounds) = bounds.filter(|_| object.clip == Clip::None && object.repeat == [1; 3])
+        else {
+            return Self::default();
+        };
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = object.offset;
+        // A bevel is no less than 0, so the offset is largest at the bottom, and from z = 1 on at most e.
+        let largest = extend + bevel * chamfer;
+        let pixel = object.profile.raster.as_ref().map(|r| f64::from(r.rows));
+        let needed = |offset: f64, room: f64| {
+            let least = offset - room.max(0.0);
+            if least <= 0.0 {
+                return 0.0;
+            }
+            let steps = (((least + MARGIN) / STEP).ceil() * STEP).min(MOST);
+            // Whole pixels of a picture.
+            pixel.map_or(steps, |rows| (steps * rows).ceil() / rows)
+        };
+        Self {
+            low: needed(largest, bounds.z_min),
+            high: needed(
+                largest.min(extend + bevel * (1.0 - bounds.z_max).max(0.0)),
+                1.0 - bounds.z_max,
+            ),
+            side: needed(largest, object.profile.radius - bounds.r_max),
+        }
+    }
+
+    /// Whether the box is the profile's own.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Height of the grown box, object units.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        1.0 + self.low + self.high
+    }
+
+    fn profile(&self, profile: &Profile) -> Profile {
+        let scale = 1.0 / self.height();
+        let moved = |p: &DVec2| (*p + DVec2::new(0.0, self.low)) * scale;
+        let loops = profile.outline.loops.iter();
+        Profile {
+            outline: Outline {
+                loops: loops.map(|l| l.iter().map(moved).collect()).collect(),
+            },
+            radius: (profile.radius + self.side) * scale,
+            raster: profile.raster.as_ref().map(|raster| self.raster(raster)),
+        }
+    }
+
+    /// The picture with empty pixels around it.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
+    fn raster(&self, raster: &Raster) -> Raster {
+        let pixels = |length: f64| (length * f64::from(raster.rows)).round() as u32;
+        let columns = raster.columns + pixels(self.side);
+        let mut coverage = vec![0.0; (pixels(self.high) * columns) as usize];
+        for row in raster.coverage.chunks_exact(raster.columns as usize) {
+            coverage.extend_from_slice(row);
+            coverage.resize(coverage.len() + pixels(self.side) as usize, 0.0);
+        }
+        coverage.resize(coverage.len() + (pixels(self.low) * columns) as usize, 0.0);
+        Raster {
+            columns,
+            rows: raster.rows + pixels(self.low) + pixels(self.high),
+            coverage,
+        }
+    }
+
+    fn offset(&self, offset: &Offset) -> Offset {
+        let scale = 1.0 / self.height();
+        Offset {
+            extend: (offset.extend - offset.bevel * self.high) * scale,
+            bevel: offset.bevel,
+            chamfer: (offset.chamfer + self.high) * scale,
+        }
+    }
+
+    /// Where the grown box stands so that the solid stands at `placement`.
+    #[must_use]
+    pub fn placement(&self, placement: &Placement) -> Placement {
+        let down = DVec3::new(0.0, 0.0, -self.low * placement.scale.z);
+        Placement {
+            position: placement.position + placement.rotation.normalize() * down,
+            rotation: placement.rotation,
+            scale: placement.scale * self.height(),
+        }
+    }
+}
+
+/// An object in a grown box.
+#[derive(Clone, Debug)]
+pub struct GrownObject {
+    /// The same solid, in units of the grown box.
+    pub object: Object,
+    /// By how much the box is larger.
+    pub growth: Growth,
+}
+
+/// Grown profiles, one for each profile and growth that some object shows.
+#[derive(Debug, Default)]
+pub struct GrownProfiles {
+    /// By the profile's address, which the weak reference beside it keeps from being used again.
+    known: HashMap<(usize, [u64; 3]), [Weak<Profile>; 2]>,
+}
+
+impl GrownProfiles {
+    /// `object` in a box that cuts nothing of it; `None` where its own does.
+    pub fn grown(&mut self, object: &Object) -> Option<GrownObject> {
+        let growth = Growth::of(object);
+        if growth.is_none() {
+            return None;
+        }
+        let numbers = [growth.low, growth.high, growth.side].map(f64::to_bits);
+        let key = (Arc::as_ptr(&object.profile) as usize, numbers);
+        let known = self.known.get(&key).and_then(|[_, grown]| grown.upgrade());
+        let profile = known.unwrap_or_else(|| {
+            self.known.retain(|_, [_, grown]| grown.strong_count() > 0);
+            let grown = Arc::new(growth.profile(&object.profile));
+            let weak = [Arc::downgrade(&object.profile), Arc::downgrade(&grown)];
+            self.known.insert(key, weak);
+            grown
+        });
+        let axis = object.axis.map(|o| {
+            let scale = 1.0 / growth.height();
+            let place = (2.0 * o - 1.0) * object.profile.radius * scale;
+            0.5 * (place / profile.radius + 1.0)
+        });
+        let object = Object {
+            profile,
+            offset: growth.offset(&object.offset),
+            axis,
+            placement: growth.placement(&object.placement),
+            instances: object
+                .instances
+                .iter()
+                .map(|p| growth.placement(p))
+                .collect(),
+            ..object.clone()
+        };
+        Some(GrownObject { object, growth })
+    }
+}

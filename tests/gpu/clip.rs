@@ -1,0 +1,219 @@
+//! Boxes that grow with the offset (`clip = "none"`), against the reference, which moves the box's faces and nothing else; and
+//! boxes that cut (`clip = "box"`).
+
+use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
+use glam::DVec3;
+use revmap::gpu::Offscreen;
+use revmap::profile::{Profile, Raster};
+use revmap::scene::{Clip, Growth, Object, Offset, Scene};
+use revmap::settings::{DrawStage, Settings, Solver};
+
+const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+
+fn settings(stage: DrawStage, solver: Solver) -> Settings {
+    Settings {
+        width: 200,
+        height: 150,
+        stage,
+        solver,
+        ..Settings::default()
+    }
+}
+
+fn with(profile: Profile, [extend, bevel, chamfer]: [f64; 3]) -> Scene {
+    let mut scene = scene_of(profile, eye(20.0, 3.4));
+    scene.objects[0].offset = Offset {
+        extend,
+        bevel,
+        chamfer,
+    };
+    // Turned, stretched and moved: the grown box has to stand so that the solid stays.
+    scene.objects[0].placement = placement([0.1, -0.2, 0.05], [0.3, -0.2, 0.7], [1.1, 0.8, 0.9]);
+    scene
+}
+
+/// A sphere that is extended is a larger sphere, all of it.
+#[test]
+fn an_extended_sphere_is_whole() {
+    let scene = with(shapes::sphere(), [0.15, 0.0, 1.0]);
+    let own = &scene.objects[0].placement;
+    let bounds = scene.objects[0].profile.outline.bounds().unwrap();
+    let (radius, middle) = (bounds.r_max + 0.15, 0.5 * (bounds.z_min + bounds.z_max));
+    for stage in STAGES {
+        let frame = draw(&scene, &settings(stage, Solver::Hull));
+        let camera = &scene.camera;
+        let rays = revmap::scene::CameraFrame::new(camera, 200, 150).unwrap();
+        let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
+        for n in 0..200 * 150 {
+            let v = rays.pixel(n % 200, n / 200);
+            let back = own.rotation.conjugate();
+            let o = back * (camera.eye - own.position) / own.scale - DVec3::new(0.0, 0.0, middle);
+            let d = back * v / own.scale;
+            let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - radius * radius);
+            let under = b * b - a * c;
+            let found = f64::from(frame.distance[n as usize]);
+            if under > 0.0 && found.is_finite() {
+                hits += 1;
+                let t = (-b - under.sqrt()) / a;
+                worst = worst.max((t * v.length() - found).abs() * under.sqrt().min(1.0));
+            } else if (under > 0.0) != found.is_finite() {
+                wrong += 1;
+            }
+        }
+        println!("{stage:?}: {hits} hits, {wrong} wrong, depth {worst:e}");
+        assert!(hits > 2000 && wrong <= 2, "{stage:?}: {wrong} of {hits}");
+        assert!(worst < 2e-4, "{worst:e}");
+    }
+}
+
+/// Every search finds the whole solid, in both stages.
+#[test]
+fn searches_agree_with_the_reference() {
+    let mut failures = Vec::new();
+    for (name, profile) in [("vase", shapes::vase()), ("column", shapes::column())] {
+        for offset in [
+            [0.15, 0.0, 1.0],
+            [0.0, 0.25, 1.0],
+            [0.05, 0.8, 0.2],
+            [3.0, 0.1, 0.5],
+        ] {
+            let scene = with(profile.clone(), offset);
+            let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+            for solver in [Solver::Hull, Solver::Quadric, Solver::Live] {
+                for stage in STAGES {
+                    let c = errors(&truth, &draw(&scene, &settings(stage, solver)), 512);
+                    let what = format!(
+                        "{name} {offset:?} {solver} {stage:?}: {} wrong of {}, depth p99 {:.4}",
+                        c.missed + c.ghost,
+                        c.hits,
+                        c.depth.unwrap().p99
+                    );
+                    println!("{what}");
+                    // The exact searches by the bounds of those in boxes that cut; `live` by its own.
+                    let (most, p99) = match solver {
+                        Solver::Live => (c.hits / 500, 0.5),
+                        _ => (2, 0.02),
+                    };
+                    if c.missed + c.ghost > most || c.depth.unwrap().p99 > p99 {
+                        failures.push(what);
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// Texture coordinates are those of the profile's box.
+#[test]
+fn textures_stay_where_they_are() {
+    use revmap::maps::Projection;
+    for projection in Projection::ALL {
+        let mut scene = with(shapes::vase(), [0.1, 0.05, 0.5]);
+        scene.objects[0].texturing.projection = projection;
+        let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+        for stage in STAGES {
+            let frame = draw(&scene, &settings(stage, Solver::Hull));
+            let mut off: Vec<f64> = (truth.uv.iter().zip(&frame.uv))
+                .zip(truth.distance.iter().zip(&frame.distance))
+                .filter(|(_, (a, b))| a.is_finite() && b.is_finite())
+                .map(|((a, b), _)| {
+                    let turn = |d: f32| f64::from((d - d.round()).abs());
+                    turn(a[0] - b[0]).max(turn(a[1] - b[1]))
+                })
+                .collect();
+            off.sort_by(f64::total_cmp);
+            let p99 = off[off.len() * 99 / 100];
+            println!("{projection:?} {stage:?}: {p99:e} of {}", off.len());
+            // Lengths along the outline come from a table of texels.
+            let most = if projection == Projection::Arc {
+                5e-3
+            } else {
+                1e-4
+            };
+            assert!(p99 < most, "{projection:?} {stage:?}: {p99}");
+        }
+    }
+}
+
+/// A box that cuts does so at its faces; one that grows goes on by the offset, in steps, and not where the offset stays within.
+#[test]
+fn boxes_grow_by_what_offsets_need() {
+    let rod = [[0.0, 0.0], [0.3, 0.0], [0.3, 1.0], [0.0, 1.0]];
+    let rod = Profile::polygon(&rod, 0.3).unwrap();
+    let mut object = Object::new("rod", rod.into());
+    let bounds = object.profile.outline.bounds().unwrap();
+    assert_eq!((bounds.z_min, bounds.z_max), (0.0, 1.0));
+    let growth = |object: &Object| Growth::of(object);
+    assert!(growth(&object).is_none());
+    object.offset.extend = -0.02;
+    assert!(growth(&object).is_none());
+    object.offset.extend = 0.03;
+    let grown = growth(&object);
+    assert!(
+        grown.low >= 0.03 && grown.low <= 0.1 && grown.low == grown.high,
+        "{grown:?}"
+    );
+    object.offset.extend = 0.031;
+    assert_eq!(growth(&object), grown);
+    object.clip = Clip::Box;
+    assert!(growth(&object).is_none());
+    object.clip = Clip::None;
+    object.repeat = [2, 1, 1];
+    assert!(growth(&object).is_none());
+    object.repeat = [1; 3];
+    // Whole pixels of a picture.
+    let raster = Raster {
+        columns: 5,
+        rows: 11,
+        coverage: vec![1.0; 55],
+    };
+    object.profile = Profile::traced(raster).unwrap().into();
+    let grown = growth(&object);
+    assert!((grown.high * 11.0).fract() < 1e-9, "{grown:?}");
+    assert!(grown.side >= 0.031);
+
+    let mut scene = with(shapes::column(), [0.15, 0.0, 1.0]);
+    scene.objects[0].clip = Clip::Box;
+    let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+    let cut = draw(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+    scene.objects[0].clip = Clip::None;
+    let whole = draw(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+    let c = errors(&truth, &cut, 512);
+    assert!(c.missed + c.ghost <= 2);
+    let hits =
+        |frame: &revmap::frame::Frame| frame.distance.iter().filter(|d| d.is_finite()).count();
+    assert!(hits(&whole) as f64 > 1.1 * hits(&cut) as f64);
+}
+
+/// The offset moves, the object is moved, copies come: the picture is that of a new renderer.
+#[test]
+fn growing_follows_every_change() {
+    let settings = settings(DrawStage::Fragment, Solver::Hull);
+    let mut scene = with(shapes::vase(), [0.0, 0.0, 1.0]);
+    let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
+    let copy = placement([0.5, 0.4, 0.1], [0.0; 3], [0.5; 3]);
+    type Change<'a> = &'a dyn Fn(&mut Object);
+    let changes: [Change; 7] = [
+        &|o| o.offset.extend = 0.02,
+        &|o| o.offset.extend = 0.12,
+        &|o| o.placement.position.x += 0.2,
+        &|o| o.instances = vec![o.placement, copy],
+        &|o| o.instances[0].position.y += 0.1,
+        &|o| o.clip = Clip::Box,
+        &|o| {
+            o.clip = Clip::None;
+            o.instances.clear();
+            o.offset.extend = 0.0;
+        },
+    ];
+    for (n, change) in changes.into_iter().enumerate() {
+        change(&mut scene.objects[0]);
+        renderer.update(&scene).unwrap();
+        renderer.draw().unwrap();
+        let found = renderer.read().unwrap();
+        assert!(found == draw(&scene, &settings), "change {n}");
+    }
+    drop(renderer);
+    device().check().unwrap();
+}
