@@ -16,13 +16,12 @@ void main()
 
     // At one t the tile's rays are nowhere farther than this from the middle one, in object space.
     vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
-    float base = dot(point_to_world(solid.single, vec3(0.0, 0.0, 0.5)) - frame.eye.xyz, frame.forward.xyz);
     vec3 forward = rotate(conjugate(solid.single.rotation), frame.forward.xyz) * scale_of(solid.single);
-    float farthest = base + dot(abs(forward), half_size);
+    float farthest = rays.base + dot(abs(forward), half_size);
     float spread = 0.5 * float(GROUP_PIXELS) * max(length(rays.dir_x + rays.dir_y), length(rays.dir_x - rays.dir_y));
     float beam = spread * farthest + 1e-4;
 
-    vec3 o = rays.eye + base * v;
+    vec3 o = rays.origin + rays.base * (middle.x * rays.dir_x + middle.y * rays.dir_y);
     float a = max(dot(v.xy, v.xy), 1e-12 * dot(v, v));
     float nearest = -dot(o.xy, v.xy) / a;
     float least = max(dot(o.xy, o.xy) - a * nearest * nearest, 0.0);
@@ -45,7 +44,7 @@ void main()
     if (begin <= end && all(lessThan(tile * GROUP_PIXELS, frame.size.xy))) {
         uint at = pushed.first_bin + 4u + 4u * atomicAdd(bin_words[pushed.first_bin], 1u);
         bin_words[at] = tile.x | tile.y << 16;
-        bin_words[at + 1u] = floatBitsToUint(max(base + begin, 0.0));
-        bin_words[at + 2u] = floatBitsToUint(base + end);
+        bin_words[at + 1u] = floatBitsToUint(max(begin, -rays.base));
+        bin_words[at + 2u] = floatBitsToUint(end);
     }
 }

@@ -16,5 +16,5 @@ void main()
         discard;
     }
     store(pixel, hit);
-    gl_FragDepth = depth_of(hit.t);
+    gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
 }

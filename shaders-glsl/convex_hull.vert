@@ -8,11 +8,11 @@
 void main()
 {
     Instance i = begin();
-    gl_Position = frame.clip_from_world * vec4(point_to_world(i, band_corner(this_band())), 1.0);
+    gl_Position = clip_of(i, band_corner(this_band()));
     // Its corners stand out of the box, beyond which the far plane may be; no fragment takes its depth from here.
     float sense = frame.forward.w;
     float far = (1.0 - frame.ambient.w) * gl_Position.w;
     gl_Position.z = sense * min(sense * gl_Position.z, sense * far);
-    hand_over(i, 1.0, frame.dir_00.w);
+    hand_over(i, -frame.dir_00.w);
     hand_over_box();
 }

@@ -16,5 +16,5 @@ void main()
         discard;
     }
     store(pixel, hit);
-    gl_FragDepth = hull_depth(hit.t);
+    gl_FragDepth = hull_depth(ray_origin_base.w + hit.t);
 }

@@ -134,7 +134,7 @@ pub(crate) fn solid_block(
         ],
         patches: [0; 4],
         hull: [0; 4],
-        single: object.placements().first().map(instance_block).unwrap_or_default(),
+        single: InstanceBlock::default(),
     }
 }
 
@@ -146,15 +146,28 @@ pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) 
     block.texturing[3] = (2.0 * (radius * growth.height() - growth.side)) as f32;
 }
 
+/// A copy of `object` as a view sees it. World coordinates are subtracted here, in double precision.
 #[allow(clippy::cast_possible_truncation)]
-pub(crate) fn instance_block(placement: &Placement) -> InstanceBlock {
-    let p = placement.position.as_vec3();
-    let q = placement.rotation.normalize();
-    let s = placement.scale.as_vec3();
+pub(crate) fn instance_block(object: &Object, placement: &Placement, view: &View) -> InstanceBlock {
+    let rotation = placement.rotation.normalize();
+    let [x, y] = axis_offset(object);
+    let p = placement.position - view.eye;
+    let middle = p + rotation * (placement.scale * DVec3::new(0.0, 0.0, 0.5));
+    let depth = middle.dot(view.forward);
+    let clip = view.clip_of(middle);
+    let to_plane = view.dir_00 * depth.max(0.0);
+    let origin = rotation.conjugate() * (to_plane - p) / placement.scale - DVec3::new(x, y, 0.0);
+    let (p, s, q, o) = (
+        p.as_vec3(),
+        placement.scale.as_vec3(),
+        rotation.as_quat(),
+        origin.as_vec3(),
+    );
     InstanceBlock {
         position_sx: [p.x, p.y, p.z, s.x],
-        rotation: [q.x as f32, q.y as f32, q.z as f32, q.w as f32],
-        scale_yz: [s.y, s.z, 0.0, 0.0],
+        rotation: q.to_array(),
+        scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
+        origin: [o.x, o.y, o.z, clip.y as f32],
     }
 }
 
@@ -173,12 +186,13 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
         DepthOrder::Normal => (1.0, 0.0),
         DepthOrder::Reversed => (-1.0, 1.0),
     };
+    let [clip_x, clip_y] = view.clip_rows();
     let [red, green, blue] = lighting.ambient;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pixels
     let size = [view.viewport.width, view.viewport.height.abs()].map(|v| v as u32);
     FrameBlock {
-        clip_from_world: view.clip_from_world.as_mat4().to_cols_array_2d(),
-        eye: vector(view.eye, view.near),
+        clip_x: vector(clip_x, f64::from(u8::from(view.parallel))),
+        clip_y: vector(clip_y, view.near),
         dir_00: vector(view.dir_00, view.pixel_size()),
         dir_x: vector(view.dir_x, constant),
         dir_y: vector(view.dir_y, factor),

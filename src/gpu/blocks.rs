@@ -17,10 +17,10 @@ pub struct LightBlock {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct FrameBlock {
-    /// Column-major.
-    pub clip_from_world: [[f32; 4]; 4],
-    /// World position; w: depth of the near plane.
-    pub eye: [f32; 4],
+    /// Clip x of a way in the world; w: 1 where rays are parallel.
+    pub clip_x: [f32; 4],
+    /// Clip y; w: depth of the near plane.
+    pub clip_y: [f32; 4],
     /// Ray through the centre of pixel (0, 0), forward component 1; w: a pixel's size at unit depth.
     pub dir_00: [f32; 4],
     /// Its change from column to column; w: the constant of depth = w + `dir_y.w` / t.
@@ -37,16 +37,18 @@ pub struct FrameBlock {
     pub lights: [LightBlock; MAX_LIGHTS as usize],
 }
 
-/// `Instance` of `blocks.glsl`.
+/// `Instance` of `blocks.glsl`: as the eye sees it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct InstanceBlock {
-    /// Of the middle of the box's lower face; scale along x.
+    /// Of the middle of the box's lower face, from the eye; scale along x.
     pub position_sx: [f32; 4],
     /// Unit quaternion, x y z w.
     pub rotation: [f32; 4],
-    /// Scale along y and z.
-    pub scale_yz: [f32; 4],
+    /// Scale along y and z; depth of the box's middle; its clip x.
+    pub scale_depth: [f32; 4],
+    /// Of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's middle.
+    pub origin: [f32; 4],
 }
 
 /// `Solid` of `blocks.glsl`.

@@ -21,6 +21,8 @@ pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * PATCHES_PER_CELL);
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
+    /// Whether two parts of the boundary meet in a circle, where no wall between their shells can stand.
+    pub touches: bool,
 }
 
 impl GpuProxyHull {
@@ -32,15 +34,45 @@ impl GpuProxyHull {
         };
         let hull = ProxyHull::new(patches, &options);
         let vectors = pack(&hull, patches);
-        Self { hull, vectors }
+        let touches = touches(patches);
+        Self {
+            hull,
+            vectors,
+            touches,
+        }
     }
 
     /// The convex hull of an envelope.
     pub fn convex(envelope: &Envelope) -> Self {
         let hull = ProxyHull::convex(&envelope.convex(), HULL_SIDES);
         let vectors = pack(&hull, &[]);
-        Self { hull, vectors }
+        Self {
+            hull,
+            vectors,
+            touches: false,
+        }
     }
+}
+
+/// Points of an outline nearer than this are one, object units: what the union of loops rounds to.
+const ONE_POINT: f64 = 1e-6;
+
+/// Whether two patches that do not follow each other begin at one point off the axis.
+fn touches(patches: &[QuadricPatch]) -> bool {
+    let mut order: Vec<usize> = (0..patches.len()).collect();
+    let start = |k: usize| patches[k].start;
+    order.sort_unstable_by(|&a, &b| start(a).y.total_cmp(&start(b).y));
+    let follow = |a: usize, b: usize| {
+        let next = |k: usize| patches[k].next.map(|n| n as usize);
+        next(a) == Some(b) || next(b) == Some(a)
+    };
+    order.iter().enumerate().any(|(n, &a)| {
+        let level = |b: &&usize| start(**b).y - start(a).y <= ONE_POINT;
+        let near = |&b: &usize| start(a).distance(start(b)) <= ONE_POINT;
+        let others = order[n + 1..].iter().take_while(level);
+        let mut apart = others.filter(|&&b| !follow(a, b));
+        start(a).x > ONE_POINT && apart.any(near)
+    })
 }
 
 /// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and holds no replicas. Rays that are searched
@@ -74,6 +106,17 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
+/// Largest ratio of the sides of a box, in the world, that hulls are drawn in. Their rays start in the plane through the box's middle, in a flat
+/// box up to so many heights from where they meet the solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
+const LOPSIDED: f64 = 32.0;
+
+/// Whether a copy's box is too flat or too slender for its hull.
+fn is_lopsided(object: &Object, copy: &Placement) -> bool {
+    let radius = object.profile.radius;
+    let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
+    sides.max_element() > LOPSIDED * sides.min_element()
+}
+
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
 const SAMPLES: usize = 64;
 
@@ -90,6 +133,9 @@ pub(crate) fn frusta(
     }
     let hull = &surface.hull().hull;
     let copies = object.placements();
+    if surface.hull().touches || copies.iter().any(|copy| is_lopsided(object, copy)) {
+        return None;
+    }
     let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));
     let count = sampled.len().max(1);
     let covered: u64 = sampled

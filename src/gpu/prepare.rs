@@ -203,7 +203,7 @@ impl Renderer {
                 let several = several || copies.len() > 1;
                 (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
             }
-            Work::Bins(_) | Work::Nothing if entry.object.placements().len() > 1 => {
+            Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
                 let variant = variant.with_tables(!large(tables));
                 (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
             }
@@ -279,15 +279,18 @@ impl Renderer {
                 continue;
             };
             entry.stale &= !bit;
-            let Some(block) = entry.block(&self.settings) else {
+            let Some(mut block) = entry.block(&self.settings) else {
                 continue;
             };
+            if let Some(copy) = entry.drawn().placements().first() {
+                block.single = instance_block(entry.drawn(), copy, view);
+            }
             to.write_block(number, &block)?;
             let placed: Vec<InstanceBlock> = entry
                 .drawn()
                 .placements()
                 .iter()
-                .map(instance_block)
+                .map(|copy| instance_block(entry.drawn(), copy, view))
                 .collect();
             to.write_instances(entry.instances.start, &placed)?;
         }
@@ -313,8 +316,8 @@ impl Renderer {
                     {
                         for tiles in copies {
                             let Some(number) = tiles.block else { continue };
-                            block.single =
-                                instance_block(&entry.drawn().placements()[tiles.instance]);
+                            let copy = &entry.drawn().placements()[tiles.instance];
+                            block.single = instance_block(entry.drawn(), copy, view);
                             to.write_block(number, &block)?;
                         }
                     }

@@ -249,6 +249,26 @@ impl View {
         (DVec2::new(along(self.dir_x), along(self.dir_y)), depth)
     }
 
+    /// What clip x and y change by for a way in the world; of parallel rays for a clip w of 1.
+    pub(crate) fn clip_rows(&self) -> [DVec3; 2] {
+        let rows = self.clip_from_world.transpose();
+        let w = if self.parallel { rows.w_axis.w } else { 1.0 };
+        [rows.x_axis, rows.y_axis].map(|row| row.truncate() / w)
+    }
+
+    /// Clip x and y of a point that is given from the eye.
+    pub(crate) fn clip_of(&self, from_eye: DVec3) -> DVec2 {
+        let [x, y] = self.clip_rows();
+        let at_eye = self.clip_from_world * self.eye.extend(1.0);
+        // Of perspective the eye's own is nothing.
+        let constant = if self.parallel {
+            at_eye.truncate().truncate() / at_eye.w
+        } else {
+            DVec2::ZERO
+        };
+        constant + DVec2::new(x.dot(from_eye), y.dot(from_eye))
+    }
+
     /// The corners of the viewport: upper left, lower right, pixels.
     pub(crate) fn corners(&self) -> [DVec2; 2] {
         let v = &self.viewport;

@@ -90,8 +90,8 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
         words,
         "Frame",
         FrameBlock {
-            clip_from_world,
-            eye,
+            clip_x,
+            clip_y,
             dir_00,
             dir_x,
             dir_y,
@@ -134,10 +134,11 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
         InstanceBlock {
             position_sx,
             rotation,
-            scale_yz
+            scale_depth,
+            origin
         }
     );
-    assert_eq!(size_of::<InstanceBlock>(), 48);
+    assert_eq!(size_of::<InstanceBlock>(), 64);
 }
 
 /// The same comparison must fail when a member moves.

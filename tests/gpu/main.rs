@@ -15,6 +15,7 @@ mod cones;
 mod embedding;
 mod embedding_outputs;
 mod exhausted;
+mod extremes;
 mod fallback;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod gallery;

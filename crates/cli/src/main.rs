@@ -16,6 +16,7 @@ mod output;
 mod pipelines;
 mod progress;
 mod render;
+mod stability;
 mod usage;
 
 use clap::{Parser, Subcommand};
@@ -40,6 +41,7 @@ enum Command {
     Bake(bake::Bake),
     Bench(bench::Bench),
     Chart(chart::Chart),
+    Stability(stability::Stability),
     Devices(devices::Devices),
     Compare(compare::Compare),
 }
@@ -52,6 +54,7 @@ impl Command {
             Self::Bake(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Chart(command) => command.run(),
+            Self::Stability(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
         }

@@ -7,6 +7,7 @@
 //! | `mesh` | the mesh baseline: the same solids as triangles (feature `mesh`) |
 //! | `renderer` | one renderer for every method (feature `mesh`) |
 //! | `report` | views and ways to draw them: times beside errors, as tables, charts and one page (feature `report`) |
+//! | `stability` | cases in which methods fail, and how each search fares (feature `report`) |
 
 pub mod compare;
 #[cfg(feature = "mesh")]
@@ -16,3 +17,5 @@ pub mod method;
 pub mod renderer;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "report")]
+pub mod stability;

@@ -213,7 +213,7 @@ impl Reference {
         if !is_ray(ray.origin, ray.direction) {
             return f64::INFINITY;
         }
-        let [from, to] = [part[0].max(0.0), part[1].max(part[0].max(0.0))];
+        let [from, to] = within(part);
         self.parts.list().iter().fold(f64::INFINITY, |least, one| {
             let (origin, direction) = one.local(ray.origin, ray.direction);
             let start = origin + direction * from;
@@ -221,6 +221,23 @@ impl Reference {
                 one.solid
                     .clearance(start, direction, to - from, tolerance.max(1e-9)),
             )
+        })
+    }
+
+    /// Whether a part of a ray, between two values of `t`, goes deeper into a solid than `depth`, object units, to within `tolerance`. Much
+    /// faster than [`Reference::clearance_within`], which finds how deep.
+    #[must_use]
+    pub fn goes_deeper(&self, ray: Ray, part: [f64; 2], depth: f64, tolerance: f64) -> bool {
+        if !is_ray(ray.origin, ray.direction) {
+            return false;
+        }
+        let [from, to] = within(part);
+        self.parts.list().iter().any(|one| {
+            let (origin, direction) = one.local(ray.origin, ray.direction);
+            let start = origin + direction * from;
+            let tolerance = tolerance.max(1e-9);
+            one.solid
+                .is_below(start, direction, to - from, tolerance, -depth)
         })
     }
 }
@@ -231,6 +248,11 @@ impl Reference {
 /// Those of [`Reference::new`].
 pub fn trace(scene: &Scene, ray: Ray) -> Result<Trace> {
     Ok(Reference::new(scene)?.trace(ray))
+}
+
+/// A part of a ray that lies ahead of its start.
+fn within(part: [f64; 2]) -> [f64; 2] {
+    [part[0].max(0.0), part[1].max(part[0].max(0.0))]
 }
 
 fn prepare(profile: &Profile) -> Result<Field> {

@@ -149,6 +149,31 @@ impl Solid {
     /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of box and cell, to within
     /// `tolerance`.
     pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
+        self.lowest(origin, direction, last, tolerance, None)
+    }
+
+    /// Whether [`clearance`](Self::clearance) is below `floor`; ends at the first place that is.
+    pub fn is_below(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        last: f64,
+        tolerance: f64,
+        floor: f64,
+    ) -> bool {
+        self.lowest(origin, direction, last, tolerance, Some(floor)) < floor
+    }
+
+    /// The least value; values above `floor` count as `floor`, and the first below it ends the search.
+    fn lowest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        last: f64,
+        tolerance: f64,
+        floor: Option<f64>,
+    ) -> f64 {
+        let known = floor.unwrap_or(f64::INFINITY);
         if !is_ray(origin, direction) {
             return f64::INFINITY;
         }
@@ -165,12 +190,12 @@ impl Solid {
                 (0.0, end),
                 speed,
                 tolerance,
-                f64::INFINITY,
+                (known, floor),
             );
         };
         clip.t[1] = clip.t[1].min(last);
         let start = origin + direction * clip.t[0];
-        let mut lowest = f64::INFINITY;
+        let mut lowest = known;
         for pair in self.cuts(start, direction, clip).windows(2) {
             let (low, high) = (pair[0].0, pair[1].0);
             let cell = Cell::new(self, start, direction, 0.5 * (low + high));
@@ -180,7 +205,16 @@ impl Solid {
                 cell.value(p, &mut hint)
                     .max(faces(p + self.axis.extend(0.0)))
             };
-            lowest = least(value, (low, high), cell.lipschitz(), tolerance, lowest);
+            lowest = least(
+                value,
+                (low, high),
+                cell.lipschitz(),
+                tolerance,
+                (lowest, floor),
+            );
+            if floor.is_some_and(|floor| lowest < floor) {
+                break;
+            }
         }
         lowest
     }
@@ -236,19 +270,20 @@ impl LocalTrace {
     }
 }
 
-/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high allows pass none lower.
+/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high allows pass none lower. The first value
+/// below `floor` ends it.
 fn least(
     mut f: impl FnMut(f64) -> f64,
     (mut t, end): (f64, f64),
     lipschitz: f64,
     tolerance: f64,
-    lowest: f64,
+    (lowest, floor): (f64, Option<f64>),
 ) -> f64 {
     let mut lowest = lowest;
     loop {
         let value = f(t);
         lowest = lowest.min(value);
-        if t >= end {
+        if t >= end || floor.is_some_and(|floor| lowest < floor) {
             return lowest;
         }
         t = (t + (value - lowest + tolerance) / lipschitz).min(end);

@@ -10,8 +10,8 @@ struct Light {
 };
 
 struct Frame {
-    mat4 clip_from_world;
-    vec4 eye;     // world; w: depth of the near plane
+    vec4 clip_x;  // clip x of a way in the world; w: 1 where rays are parallel
+    vec4 clip_y;  // clip y; w: depth of the near plane
     vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel's size at unit depth
     vec4 dir_x;   // its change from column to column; w: depth = w + dir_y.w / t
     vec4 dir_y;   // its change from row to row
@@ -30,10 +30,12 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
 // before anything else; those that nothing reads cost nothing. What fragments need most comes to them in flat varyings.
 Frame frame; // without the lights
 
+// As the eye sees it: found in double precision for each view, so that no rounding grows with the distance from the origin or the eye.
 struct Instance {
-    vec4 position_sx; // of the middle of the box's lower face; scale along x
+    vec4 position_sx; // of the middle of the box's lower face, from the eye, world axes; scale along x
     vec4 rotation;    // unit quaternion, x y z w
-    vec4 scale_yz;    // scale along y and z
+    vec4 scale_depth; // scale along y and z; depth of the box's middle; its clip x
+    vec4 origin;      // of the ray of pixel (0, 0) (pixel_ray.glsl), object space, from the axis at z = 0; w: clip y of the box's middle
 };
 
 // A batch: instances that share shape, look and variant.
@@ -66,8 +68,8 @@ Solid solid;
 
 void take_frame()
 {
-    frame.clip_from_world = frame_block.clip_from_world;
-    frame.eye = frame_block.eye;
+    frame.clip_x = frame_block.clip_x;
+    frame.clip_y = frame_block.clip_y;
     frame.dir_00 = frame_block.dir_00;
     frame.dir_x = frame_block.dir_x;
     frame.dir_y = frame_block.dir_y;
@@ -91,7 +93,8 @@ void take_solid()
     solid.hull = batch_solid.hull;
     solid.single.position_sx = batch_solid.single.position_sx;
     solid.single.rotation = batch_solid.single.rotation;
-    solid.single.scale_yz = batch_solid.single.scale_yz;
+    solid.single.scale_depth = batch_solid.single.scale_depth;
+    solid.single.origin = batch_solid.single.origin;
 }
 
 #endif

@@ -11,6 +11,9 @@ struct Look {
     vec3 ambient;
     Light light_0; // in that space; black where there is none
     Light light_1;
+#if SHADOWED
+    vec3 position; // the instance's, from the eye, world axes
+#endif
 };
 
 Light light_seen(vec4 rotation, uint n)
@@ -29,6 +32,9 @@ Look look_of(Instance i)
     look.ambient = frame.ambient.rgb;
     look.light_0 = light_seen(i.rotation, 0u);
     look.light_1 = light_seen(i.rotation, 1u);
+#if SHADOWED
+    look.position = i.position_sx.xyz;
+#endif
     return look;
 }
 

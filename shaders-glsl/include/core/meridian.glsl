@@ -15,6 +15,7 @@ struct Meridian {
     float a, b, c;
     float inverse_speed; // object units per unit of s, inverted
     float t_start;       // t = t_start + s
+    float base;          // the eye is at t = -base
     float s_end;         // where the ray leaves what is searched
     uint face_in;        // what it enters through
     uint face_out;       // and leaves through
@@ -27,9 +28,9 @@ vec2 point_rz(Meridian m, float s)
     return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
 }
 
-// Clips the ray to the box, the solid's height and the cylinder about it. False: it meets none of that. One way out: software
+// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder about it. False: it meets none of that. One way out: software
 // drivers run both sides of a branch, and a return costs them a mask of lanes from there on.
-bool clip_ray(vec3 eye, vec3 v, out Meridian m)
+bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
 {
     float R = solid.bounds.x;
     vec3 low = vec3(-R - solid.axis.xy, solid.bounds.z);
@@ -49,10 +50,11 @@ bool clip_ray(vec3 eye, vec3 v, out Meridian m)
     float t_out = min(far.x, min(far.y, far.z));
     m.face_in = t_in == near.z ? FACE_Z : t_in == near.x ? FACE_X : FACE_Y;
     m.face_out = t_out == far.z ? FACE_Z : t_out == far.x ? FACE_X : FACE_Y;
-    m.from_eye = t_in <= 0.0;
+    m.from_eye = t_in <= -base;
     m.face_in = m.from_eye ? FACE_NONE : m.face_in;
-    t_in = max(t_in, 0.0);
+    t_in = max(t_in, -base);
 
+    m.base = base;
     m.v = v;
     m.a = dot(v.xy, v.xy);
     vec3 o = eye + t_in * v;

@@ -1,11 +1,16 @@
-// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so that
-// `t` is the depth along the camera's forward axis in every space.
+// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so that `t` is the
+// depth along the camera's forward axis in every space.
+//
+// Rays do not begin at the eye but in the plane of the depth `base`, which goes through the box's middle (or through the eye, where the
+// middle is behind it): from a far eye the roundings of a direction would grow to more than a pixel on the way. Where pixel (0, 0) meets
+// that plane is found in double precision. `t` counts from there; the eye is at -base.
 #ifndef PIXEL_RAY_GLSL
 #define PIXEL_RAY_GLSL
 #include "core/placement.glsl"
 
 struct PixelRays {
-    vec3 eye;    // relative to the axis at z = 0
+    vec3 origin; // of pixel (0, 0), relative to the axis at z = 0
+    float base;
     vec3 dir_00; // through pixel (0, 0)
     vec3 dir_x;
     vec3 dir_y;
@@ -14,20 +19,19 @@ struct PixelRays {
 PixelRays pixel_rays(Instance i)
 {
     PixelRays rays;
-    rays.eye = point_to_axis(i, frame.eye.xyz);
+    rays.origin = i.origin.xyz;
+    rays.base = max(middle_depth(i), 0.0);
     rays.dir_00 = direction_to_object(i, frame.dir_00.xyz);
     rays.dir_x = direction_to_object(i, frame.dir_x.xyz);
     rays.dir_y = direction_to_object(i, frame.dir_y.xyz);
     return rays;
 }
 
-// From the eye, or from the plane of parallel rays.
+// In the plane of the depth `base`.
 vec3 ray_origin(PixelRays rays, uvec2 pixel)
 {
-    if (ORTHO != 0) {
-        return rays.eye + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
-    }
-    return rays.eye;
+    float spread = ORTHO != 0 ? 1.0 : rays.base;
+    return rays.origin + spread * (float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y);
 }
 
 vec3 ray_direction(PixelRays rays, uvec2 pixel)
@@ -38,12 +42,13 @@ vec3 ray_direction(PixelRays rays, uvec2 pixel)
     return rays.dir_00 + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
 }
 
-// A pixel's width at t, in units of t.
+// A pixel's width at a depth, in its units.
 float pixel_width(float t)
 {
     return ORTHO != 0 ? frame.dir_00.w : frame.dir_00.w * t;
 }
 
+// What the depth buffer has at a depth.
 float depth_of(float t)
 {
     return clamp(frame.dir_x.w + (ORTHO != 0 ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);

@@ -1,4 +1,5 @@
-// From world to object and back: world = position + rotate(q, scale * object).
+// From world axes to object space and back: way in the world = rotate(q, scale * way in object space). Places are counted from the eye or
+// from an instance, never from the world's origin.
 #ifndef PLACEMENT_GLSL
 #define PLACEMENT_GLSL
 #include "core/blocks.glsl"
@@ -16,18 +17,32 @@ vec4 conjugate(vec4 q)
 
 vec3 scale_of(Instance i)
 {
-    return vec3(i.position_sx.w, i.scale_yz.xy);
+    return vec3(i.position_sx.w, i.scale_depth.xy);
 }
 
-vec3 point_to_world(Instance i, vec3 p)
+// Depth of the box's middle.
+float middle_depth(Instance i)
 {
-    return i.position_sx.xyz + rotate(i.rotation, scale_of(i) * p);
+    return i.scale_depth.z;
 }
 
-// Of a point; the result is relative to the axis of revolution at z = 0.
-vec3 point_to_axis(Instance i, vec3 p)
+// Clip coordinates of a point of object space.
+vec4 clip_of(Instance i, vec3 p)
 {
-    return rotate(conjugate(i.rotation), p - i.position_sx.xyz) / scale_of(i) - vec3(solid.axis.xy, 0.0);
+    vec3 way = rotate(i.rotation, scale_of(i) * (p - vec3(0.0, 0.0, 0.5)));
+    float depth = middle_depth(i) + dot(frame.forward.xyz, way);
+    vec2 xy = vec2(i.scale_depth.w, i.origin.w) + vec2(dot(frame.clip_x.xyz, way), dot(frame.clip_y.xyz, way));
+    bool parallel = frame.clip_x.w != 0.0;
+    // As depth_of in pixel_ray.glsl, times w.
+    float z = parallel ? frame.dir_x.w + frame.dir_y.w * depth : frame.dir_x.w * depth + frame.dir_y.w;
+    return vec4(xy, z, parallel ? 1.0 : depth);
+}
+
+// Of a point that is given from the place of some instance; the result is relative to the axis of revolution at z = 0. The difference of
+// the places comes first: of the instance's own it is nothing, and exact.
+vec3 point_to_axis(Instance i, vec3 place, vec3 p)
+{
+    return rotate(conjugate(i.rotation), (place - i.position_sx.xyz) + p) / scale_of(i) - vec3(solid.axis.xy, 0.0);
 }
 
 vec3 direction_to_object(Instance i, vec3 d)

@@ -33,14 +33,14 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
     return facing > 0.0 ? reflected : vec3(0.0);
 }
 
-// What a light that shines on the hit adds. `n` and `view` in the turned space, `point` in the world.
+// What a light that shines on the hit adds. `n` and `view` in the turned space, `point` from the instance's place.
 vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point)
 {
     vec3 color = blinn_phong(look, light, n, view, albedo);
 #if SHADOWED
     if (SHADOW != SHADOW_OFF && color != vec3(0.0)) {
         bool faces = dot(turned, light.towards.xyz) > 0.0;
-        color *= faces ? light_reaching(point, rotate(look.rotation, light.towards.xyz)) : 0.0;
+        color *= faces ? light_reaching(look.position, point, rotate(look.rotation, light.towards.xyz)) : 0.0;
     }
 #endif
     return color;
@@ -57,7 +57,8 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 view = dir * -inverse_length;
     // The normal over the scale, times the product of all three.
     vec3 turned = unit(hit.normal * (scale.yzx * scale.zxy));
-    s.distance = hit.t * (square * inverse_length);
+    float t = rays.base + hit.t; // from the eye
+    s.distance = t * (square * inverse_length);
     s.normal = rotate(look.rotation, turned);
     s.albedo = look.albedo_strength.rgb;
     s.uv = vec2(0.0);
@@ -72,8 +73,8 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
 #if TEXTURED
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
         vec3 normal = unit(hit.normal);
-        vec3 right = footprint(v, rays.dir_x, normal, hit.t) * profile_units();
-        vec3 down = footprint(v, rays.dir_y, normal, hit.t) * profile_units();
+        vec3 right = footprint(v, rays.dir_x, normal, t) * profile_units();
+        vec3 down = footprint(v, rays.dir_y, normal, t) * profile_units();
         if (CELLS != 0u) {
             right *= hit.sense * count;
             down *= hit.sense * count;
@@ -93,11 +94,14 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 lit = facing * shaded;
     s.shading_normal = rotate(look.rotation, lit);
     vec3 color = s.albedo * look.ambient;
-    vec3 point = vec3(0.0);
+    vec3 point = vec3(0.0); // from the instance's place, world axes
 #if SHADOWED
-    // A shadow's ray starts a texel off the surface, or it would meet the surface itself.
-    float lift = 1.5 * solid.map.z * length(scale);
-    point = frame.eye.xyz + rotate(look.rotation, hit.t * dir + facing * lift * turned);
+    // A shadow's ray starts off the surface, or it would meet the surface itself: off the exact one by a few roundings, off that of a map
+    // by a texel and a half. Lengths are of object space, which a scale does not shrink alike along all axes.
+    float off = SEARCH == SEARCH_QUADRIC && SHADOW == SHADOW_HARD ? 5e-5 : 1.5 * solid.map.z;
+    float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
+    vec3 place = ray_origin(rays, pixel) + vec3(solid.axis.xy, 0.0) + hit.t * v;
+    point = rotate(look.rotation, place * scale + facing * lift * turned);
 #endif
     // Two in a straight line: a loop costs software drivers a sixth of a frame or more, though none go through it. Shadows are
     // so long that all lights share one loop.

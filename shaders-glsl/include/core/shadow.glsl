@@ -18,7 +18,7 @@ const float PENUMBRA = 0.06;
 float solid_openness(vec3 eye, vec3 v)
 {
     Meridian m;
-    if (!clip_ray(eye, v, m)) {
+    if (!clip_ray(eye, v, 0.0, m)) {
         return 1.0;
     }
     float open = 1.0;
@@ -35,8 +35,8 @@ float solid_openness(vec3 eye, vec3 v)
     return open;
 }
 
-// `point` and `towards` in world space.
-float light_reaching(vec3 point, vec3 towards)
+// `point` is given from `place`, that from the eye; world axes.
+float light_reaching(vec3 place, vec3 point, vec3 towards)
 {
     float open = 1.0;
     Solid own = solid;
@@ -46,13 +46,13 @@ float light_reaching(vec3 point, vec3 towards)
         shadow_map = int(solid.instances.z);
         for (uint n = 0u; n < solid.instances.y && open > 0.0; ++n) {
             Instance i = instances[solid.instances.x + n];
-            vec3 eye = point_to_axis(i, point);
+            vec3 eye = point_to_axis(i, place, point);
             vec3 v = direction_to_object(i, towards);
             if (SHADOW == SHADOW_SOFT && solid.cells.x * solid.cells.y * solid.cells.z == 1u) {
                 open = min(open, solid_openness(eye, v));
             } else {
                 Hit hit;
-                open = trace(eye, v, EVERYWHERE, hit) ? 0.0 : open;
+                open = trace(eye, v, 0.0, EVERYWHERE, hit) ? 0.0 : open;
             }
         }
     }

@@ -41,6 +41,7 @@ bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
     m.b = dot(m.o.xy, v.xy);
     m.c = dot(m.o.xy, m.o.xy);
     m.inverse_speed = inversesqrt(dot(v, v));
+    m.base = 0.0;
     m.t_start = t_in;
     m.s_end = t_out - t_in;
     float s = 0.0;
@@ -52,25 +53,26 @@ bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
     hit.point = m.o + s * v;
     hit.sense = vec3(1.0);
     hit.exhausted = false;
+    hit.at_border = false;
     return end == FOUND;
 }
 #endif
 
-// Whether the ray begins in the solid; `f` is F there, of searches on the map.
-bool begins_within(Meridian m, inout uint steps, out float f)
+// Whether the ray begins in the solid, as it does anyhow where it comes from within, `inside`; `f` is F there, of searches on the map.
+bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 {
     f = 0.0;
 #if SEARCH == SEARCH_QUADRIC
     // Floor and ceiling are patches. Through the sides one enters the solid only where it reaches past them.
     float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
     bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
-    return (m.from_eye || open_side) && starts_within(m);
+    return inside || (m.from_eye || open_side) && starts_within(m);
 #elif READS_TABLES
-    return starts_within_cones(m);
+    return inside || starts_within_cones(m);
 #else
     f = field(point_rz(m, 0.0));
     ++steps;
-    return f <= 0.0;
+    return inside || f <= 0.0;
 #endif
 }
 
@@ -91,17 +93,17 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
     }
     return end;
 #else
-    return search(m, side, max(side * f, 0.0), pixel_width(m.t_start), s, steps);
+    return search(m, side, max(side * f, 0.0), pixel_width(m.base + m.t_start), s, steps);
 #endif
 }
 
 // Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
 //
-// Look-ups are counted in `hit.steps` even when nothing is met. `span`: two t, before and after which nothing of the solid is.
-bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
+// Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid where it enters. `span`: two t, before and after which nothing of the solid is.
+bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
-    if (!clip_ray(eye, v, m)) {
+    if (!clip_ray(eye, v, base, m)) {
         return false;
     }
     if (SPANS && !narrow(m, span)) {
@@ -109,8 +111,9 @@ bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
     }
     float s = 0.0;
     float f;
-    bool within = begins_within(m, hit.steps, f);
-    if (within && m.face_in != FACE_NONE) {
+    bool within = begins_within(m, inside, hit.steps, f);
+    hit.at_border = false;
+    if (within && !inside && m.face_in != FACE_NONE) {
         // The box cuts the solid, and the cut is closed.
         hit.t = m.t_start;
         hit.normal = face_normal(m.face_in, v, -1.0);
@@ -118,11 +121,17 @@ bool trace_solid(vec3 eye, vec3 v, vec2 span, inout Hit hit)
         return true;
     }
     // From within the solid its boundary is seen from behind; unsigned distances know no inside.
-    float side = within && m.from_eye && RGBA8 == 0 ? -1.0 : 1.0;
+    float side = within && (inside || m.from_eye) && RGBA8 == 0 ? -1.0 : 1.0;
     vec4 quadric;
     uint end = search_any(m, side, f, s, hit.steps, quadric);
+#if REPEATED && SEARCH == SEARCH_QUADRIC
+    // A floor or ceiling that lies in a border between cells is a patch, and is closed like the other borders.
+    bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
+    end = CELLS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;
+#endif
     if (end == LEFT && side < 0.0 && m.face_out != FACE_NONE) {
         hit.t = m.t_start + m.s_end;
+        hit.at_border = true;
         hit.normal = face_normal(m.face_out, v, 1.0);
         hit.point = m.o + m.s_end * v;
         return true;

@@ -12,12 +12,11 @@ const float HULL_FLOOR = 1e-3; // beyond the box's height another sheet of a qua
 bool trace_hull(uvec2 pixel, out Hit hit)
 {
     take_over();
-    float base = ray_eye.w;
     PixelRays rays = varying_rays();
     vec3 v = ray_direction(rays, pixel);
     Meridian m;
     m.v = v;
-    m.o = ray_origin(rays, pixel) + base * v;
+    m.o = ray_origin(rays, pixel);
     m.a = dot(v.xy, v.xy);
     m.b = dot(m.o.xy, v.xy);
     m.c = dot(m.o.xy, m.o.xy);
@@ -28,18 +27,19 @@ bool trace_hull(uvec2 pixel, out Hit hit)
         float root = entering_root(m, hull_quadric[k], 1.0);
         float z = m.o.z + root * m.v.z;
         float place = guard.x * z + guard.y * square_at(m, root);
-        bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + HULL_FLOOR && root > -base;
+        bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + HULL_FLOOR && root > -rays.base;
         if (valid && root < best) {
             best = root;
             quadric = hull_quadric[k];
         }
     }
-    hit.t = base + best;
+    hit.t = best;
     hit.normal = quadric_normal(m, best, quadric);
     hit.point = m.o + best * v;
     hit.sense = vec3(1.0);
     hit.steps = PATCHES_PER_CELL;
     hit.exhausted = false;
+    hit.at_border = false;
     return best < 2e38;
 }
 

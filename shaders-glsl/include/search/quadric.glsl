@@ -48,8 +48,8 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
-    // The start is known to a few roundings of the distance from the eye: a face of the box that is the solid's own must not be passed there.
-    float slack = 4e-6 * m.inverse_speed + 4e-7 * m.t_start;
+    // The start is known to a few roundings of the way from the ray's origin: a face of the box that is the solid's own must not be passed there.
+    float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
     int level = DISPATCH == DISPATCH_BEAMS ? 1 : top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
@@ -113,11 +113,12 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     return best < 2e38 ? FOUND : LEFT;
 }
 
-// Outward normal in object space, of any length.
+// Outward normal in object space, of any length. A tip on the axis has none: there it looks back along the ray.
 vec3 quadric_normal(Meridian m, float s, vec4 q)
 {
     vec3 p = m.o + s * m.v;
-    return vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z);
+    vec3 n = vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z);
+    return dot(n, n) > 1e-30 ? n : -m.v;
 }
 
 #endif

@@ -95,15 +95,16 @@ bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
         vec2 span = EVERYWHERE;
 #endif
 #if DISPATCH == DISPATCH_BEAMS && SEARCH == SEARCH_QUADRIC
-        met = trace_between(rays.eye, ray_direction(rays, pixel), span, hit);
+        met = trace_between(ray_origin(rays, pixel), ray_direction(rays, pixel), span, hit);
 #else
-        met = trace(rays.eye, ray_direction(rays, pixel), span, hit);
+        met = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
 #endif
         nearest.steps += hit.steps;
         nearest.exhausted = nearest.exhausted || hit.exhausted;
-        if (met && depth_of(hit.t) < nearest.depth) {
+        float depth = depth_of(rays.base + hit.t);
+        if (met && depth < nearest.depth) {
             found = true;
-            nearest.depth = depth_of(hit.t);
+            nearest.depth = depth;
             nearest.hit = hit;
             nearest.rays = rays;
             nearest.instance = index;

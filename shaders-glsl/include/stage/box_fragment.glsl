@@ -6,7 +6,7 @@
 #include "stage/fragment.glsl"
 #include "core/cells.glsl"
 
-// t at which the fragment's ray enters a convex hull. Roundings grow with t, and so does what they are allowed.
+// Depth at which the fragment's ray enters a convex hull. Roundings grow with it, and so does what they are allowed.
 float entered()
 {
     if (ORTHO != 0) {
@@ -20,8 +20,8 @@ bool trace_box(uvec2 pixel, out Hit hit)
     take_over();
     take_over_box();
     PixelRays rays = varying_rays();
-    vec2 span = vec2(ray_eye.w > 0.0 ? entered() : EVERYWHERE.x, EVERYWHERE.y);
-    return trace(ray_origin(rays, pixel), ray_direction(rays, pixel), span, hit);
+    vec2 span = vec2(ray_dir_00.w < 0.0 ? entered() - rays.base : EVERYWHERE.x, EVERYWHERE.y);
+    return trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
 }
 
 #endif

@@ -8,15 +8,14 @@ void take_over()
 {
     take_frame();
     take_solid();
-    frame.dir_00.w = ray_dir_00.w;
+    frame.dir_00.w = abs(ray_dir_00.w);
     frame.dir_x.w = ray_dir_x.w;
     frame.dir_y.w = ray_dir_y.w;
 }
 
 PixelRays varying_rays()
 {
-    vec3 eye = ray_eye.xyz;
-    return PixelRays(eye, ray_dir_00.xyz, ray_dir_x.xyz, ray_dir_y.xyz);
+    return PixelRays(ray_origin_base.xyz, ray_origin_base.w, ray_dir_00.xyz, ray_dir_x.xyz, ray_dir_y.xyz);
 }
 
 #if OUTPUT != OUTPUT_DEPTH
@@ -26,11 +25,14 @@ Look varying_look()
     look.rotation = look_rotation;
     look.scale_shininess = look_scale_shininess;
     look.albedo_strength = look_albedo_strength;
-    look.ambient = look_ambient;
+    look.ambient = look_ambient.rgb;
     look.light_0.towards.xyz = look_light_0.xyz;
     look.light_0.color.rgb = vec3(look_light_0.w, look_colors.xy);
     look.light_1.towards.xyz = look_light_1.xyz;
     look.light_1.color.rgb = vec3(look_light_1.w, look_colors.zw);
+#if SHADOWED
+    look.position = instances[uint(look_ambient.w)].position_sx.xyz;
+#endif
     return look;
 }
 #endif

@@ -9,15 +9,15 @@
 #define VARYING in
 #endif
 
-layout(location = 1) flat VARYING vec4 ray_eye;    // w: of hulls a depth near the solid; of convex hulls 1, of boxes 0
-layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block; of hulls the sense of depth
+layout(location = 1) flat VARYING vec4 ray_origin_base;
+layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block, of convex hulls its negative; of hulls the sense of depth
 layout(location = 3) flat VARYING vec4 ray_dir_x;  // this and the next: w as in the frame's block
 layout(location = 4) flat VARYING vec4 ray_dir_y;
 #if OUTPUT != OUTPUT_DEPTH
 layout(location = 0) flat VARYING vec4 look_rotation;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;
-layout(location = 7) flat VARYING vec3 look_ambient;
+layout(location = 7) flat VARYING vec4 look_ambient; // w: the instance's number
 layout(location = 8) flat VARYING vec4 look_light_0; // towards it; red of its colour
 layout(location = 9) flat VARYING vec4 look_light_1; // the same
 layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both

@@ -12,11 +12,11 @@ Instance begin()
     return instances[gl_InstanceIndex];
 }
 
-// `base`, `scale`: the fourth components of the eye and of the first direction.
-void hand_over(Instance i, float base, float scale)
+// `scale`: the fourth component of the first direction.
+void hand_over(Instance i, float scale)
 {
     PixelRays rays = pixel_rays(i);
-    ray_eye = vec4(rays.eye, base);
+    ray_origin_base = vec4(rays.origin, rays.base);
     ray_dir_00 = vec4(rays.dir_00, scale);
     ray_dir_x = vec4(rays.dir_x, frame.dir_x.w);
     ray_dir_y = vec4(rays.dir_y, frame.dir_y.w);
@@ -25,7 +25,7 @@ void hand_over(Instance i, float base, float scale)
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
-    look_ambient = look.ambient;
+    look_ambient = vec4(look.ambient, float(gl_InstanceIndex));
     look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
     look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);

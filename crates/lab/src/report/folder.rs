@@ -71,7 +71,7 @@ pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub(super) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
+pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     let charts = folder.join("charts");
     make(&charts)?;
     write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;

@@ -13,4 +13,6 @@ mod planted_faults;
 #[allow(dead_code)]
 mod shapes;
 #[cfg(feature = "report")]
+mod stability;
+#[cfg(feature = "report")]
 mod stand_in;

@@ -1,0 +1,182 @@
+//! `revmap stability`: the cases in which methods fail.
+
+use super::interrupt;
+use super::options::{MethodParser, SOLVERS, name_of};
+use super::output;
+use super::progress::Progress;
+use clap::Args;
+use revmap::error::{Error, Result, Stage};
+use revmap::gpu::Device;
+use revmap::settings::Solver;
+use revmap_lab::method::Method;
+use revmap_lab::report::folder;
+use revmap_lab::report::machine::Machine;
+use revmap_lab::stability::case::SOLVERS as USUAL;
+use revmap_lab::stability::run::{Plan, run};
+use revmap_lab::stability::{cases, random, report};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+/// Draws the cases in which methods fail and holds every search to the reference; fails if the default does
+#[derive(Args)]
+pub struct Stability {
+    /// Names of cases [default: all]
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// The searches [default: circle, live, quadric and the default]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
+    solver: Vec<Method>,
+    /// The first and the last scene of each case, by the papers' loop and the default alone
+    #[arg(long)]
+    quick: bool,
+    /// So many random scenes in place of the cases, by the default; a failing one is written as the smallest scene that still fails
+    #[arg(long, value_name = "N", conflicts_with_all = ["cases", "solver", "quick"])]
+    random: Option<u64>,
+    /// The first random scene's seed
+    #[arg(long, value_name = "S", default_value_t = 1, requires = "random")]
+    seed: u64,
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    device: Option<String>,
+    /// The folder for results [default: results/DATE-DEVICE, made anew]
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Say nothing but results and failures
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl Stability {
+    pub fn run(self) -> Result<()> {
+        let chosen = cases::named(&self.cases)?;
+        let solvers = self.solvers()?;
+        let device = Device::open(self.device.as_deref())?;
+        let about = device.report();
+        let machine = Machine::here(&about.name, about.kind, &about.driver, &self.command());
+        let out = match &self.out {
+            Some(out) => {
+                folder::make(out)?;
+                out.clone()
+            }
+            None => folder::fresh(Path::new("results"), &machine.folder())?,
+        };
+        if !self.quiet {
+            output::note(&format!(
+                "device: {} ({}), driver {}",
+                about.name, about.kind, about.driver
+            ));
+        }
+        if let Some(count) = self.random {
+            return self.random(&device, count, &out);
+        }
+        let progress = Progress::start("stability", self.quiet);
+        let stop = interrupt::flag()?;
+        let plan = Plan {
+            cases: &chosen,
+            solvers: &solvers,
+            quick: self.quick,
+            folder: &out.join("scenes"),
+        };
+        let outcome = run(&device, &plan, &mut |what, done, all| {
+            progress.say(what);
+            progress.report(done, all);
+            !stop.load(Ordering::Relaxed)
+        })?;
+        drop(progress);
+        report::write(&out, &chosen, &solvers, &outcome, &machine)?;
+        for line in report::table(&chosen, &solvers, &outcome).lines() {
+            output::result(line);
+        }
+        output::result(&format!(
+            "{}: {} pictures",
+            out.join("report.html").display(),
+            outcome.trials.len()
+        ));
+        let failures = report::failures(&chosen, &outcome);
+        for line in &failures {
+            output::result(line);
+        }
+        if stop.load(Ordering::Relaxed) {
+            let message = "interrupted; it holds what was drawn until then, run the command again for the rest";
+            return Err(Error::new(Stage::Report, message).in_file(out));
+        }
+        if !failures.is_empty() {
+            let message = format!(
+                "the default search failed {} pictures that are not known to fail; see report.html",
+                failures.len()
+            );
+            return Err(Error::new(Stage::Report, message).in_file(out));
+        }
+        Ok(())
+    }
+
+    fn random(&self, device: &Device, count: u64, out: &Path) -> Result<()> {
+        let progress = Progress::start("random scenes", self.quiet);
+        let stop = interrupt::flag()?;
+        let mut drawn = 0;
+        let failures = random::run(device, (self.seed, count), out, &mut |done| {
+            drawn = done;
+            progress.report(done as usize, count as usize);
+            !stop.load(Ordering::Relaxed)
+        })?;
+        drop(progress);
+        for failure in &failures {
+            let file = out.join(&failure.file);
+            output::result(&format!(
+                "seed {}: {}; {}",
+                failure.seed,
+                failure.what,
+                file.display()
+            ));
+        }
+        let drawn = if stop.load(Ordering::Relaxed) {
+            drawn
+        } else {
+            count
+        };
+        output::result(&format!("{drawn} random scenes, {} failed", failures.len()));
+        if failures.is_empty() {
+            return Ok(());
+        }
+        let message = format!("{} of {drawn} random scenes failed", failures.len());
+        Err(Error::new(Stage::Report, message).in_file(out))
+    }
+
+    fn solvers(&self) -> Result<Vec<Solver>> {
+        if self.solver.is_empty() {
+            let quick = [Solver::Circle, Solver::DEFAULT];
+            return Ok(if self.quick {
+                quick.to_vec()
+            } else {
+                USUAL.to_vec()
+            });
+        }
+        let search = |method: &Method| {
+            method.solver().ok_or_else(|| {
+                Error::new(
+                    Stage::Usage,
+                    format!("{method} is no search; give searches"),
+                )
+                .at_key("--solver")
+            })
+        };
+        self.solver.iter().map(search).collect()
+    }
+
+    /// The command that makes the results again.
+    fn command(&self) -> String {
+        let mut words = vec!["revmap stability".to_owned()];
+        words.extend(self.cases.iter().cloned());
+        if !self.solver.is_empty() {
+            let names: Vec<_> = self.solver.iter().map(|m| name_of(&SOLVERS, m)).collect();
+            words.push(format!("--solver {}", names.join(",")));
+        }
+        if self.quick {
+            words.push("--quick".into());
+        }
+        if let Some(count) = self.random {
+            words.push(format!("--random {count} --seed {}", self.seed));
+        }
+        words.join(" ")
+    }
+}

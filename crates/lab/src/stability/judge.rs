@@ -1,0 +1,270 @@
+//! Errors of a frame against the reference, and what of them counts as a fault.
+//!
+//! A pixel is **wrong** when no solid within the tolerance of the true one could have given it: its ray goes deeper into the
+//! solid than the tolerance before the drawn hit (or without one), or the drawn hit is farther from the surface than the
+//! tolerance. At a silhouette both answers are right as long as the ray comes that near to the surface.
+//!
+//! The tolerance is derived, in object units:
+//!
+//! - a tenth of a texel of 512 rows: what the maps and the pieces promise;
+//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays are 32-bit numbers;
+//! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's direction, of their product, and of the
+//!   reference's own number. Frames store distances in 32 bits.
+//!
+//! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is outside of what the 3 x 3 pixels about
+//! it have in the reference, by more than [`COLOR`]. A shadow's edge may lie a pixel off, and a texture may be filtered.
+
+use crate::compare::{CompareOptions, compare};
+use glam::DVec3;
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::frame::{CHANNELS, Frame};
+use revmap::scene::{CameraFrame, Scene, Shadow};
+use revmap_reference::{Ray, Reference};
+
+/// A texel of 512 rows, object units.
+pub const TEXEL: f64 = 1.0 / 512.0;
+/// Largest difference of a linear colour channel that is none. Normals of pieces and of maps differ by up to a degree, which
+/// a highlight of shininess 32 shows by so much.
+pub const COLOR: f32 = 0.05;
+/// Half a unit in the last place of a 32-bit float.
+const ROUNDING: f64 = 1.0 / 16_777_216.0;
+
+/// What became of one picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Judged {
+    /// Pixels that the reference hits.
+    pub hits: usize,
+    /// Missed pixels, within the tolerance or not.
+    pub missed: usize,
+    /// Ghost pixels, within the tolerance or not.
+    pub ghost: usize,
+    /// Pixels that are wrong.
+    pub wrong: usize,
+    /// 99th percentile of the depth error, texels of 512 rows, object units.
+    pub depth_p99: Option<f64>,
+    /// Error of normals, rms, degrees.
+    pub normal_rms: Option<f64>,
+    /// Pixels with a number that is NaN or infinite, distances of empty pixels aside.
+    pub not_finite: usize,
+    /// Rays that ran out of steps.
+    pub exhausted: usize,
+    /// Pixels whose colour is a fault.
+    pub color: usize,
+    /// Pixels whose colour in the other stage is a fault; 0 in the first stage that is judged.
+    pub stages: usize,
+}
+
+impl Judged {
+    /// The faults that count: none in a case that passes.
+    #[must_use]
+    pub fn faults(&self) -> usize {
+        self.wrong + self.not_finite + self.exhausted + self.color + self.stages
+    }
+
+    /// Faults as a part of the pixels that the reference hits.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.faults() as f64 / self.hits.max(1) as f64
+    }
+
+    /// Whether the picture passes.
+    #[must_use]
+    pub fn passes(&self, limits: &Limits) -> bool {
+        self.not_finite == 0 && self.faults() <= limits.faults
+    }
+}
+
+/// What a picture may have and still pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Faults of the whole picture.
+    pub faults: usize,
+}
+
+impl Limits {
+    /// For a picture of so many pixels: 1 in 10,000, and at least 2.
+    ///
+    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is decided by one rounding; both
+    /// happen on lines. A picture of `n` pixels has of the order of `sqrt(n)` pixels on a line, and one of those in
+    /// about a hundred is decided that way.
+    #[must_use]
+    pub fn of(pixels: usize) -> Self {
+        Self {
+            faults: (pixels / 10_000).max(2),
+        }
+    }
+}
+
+/// A scene's truth: the reference's frame, and the reference itself.
+pub struct Truth {
+    /// The reference's frame.
+    pub frame: Frame,
+    reference: Reference,
+    camera: CameraFrame,
+    eye: DVec3,
+    /// Whether the eye is in a solid.
+    inside: bool,
+    /// Tolerances, object units: of a silhouette, of a drawn hit.
+    tolerance: [f64; 2],
+    /// World length of a texel.
+    texel: f64,
+    /// Whether the reference's colours are the truth: soft shadows have none.
+    colors: bool,
+}
+
+impl Truth {
+    /// Draws the reference.
+    ///
+    /// # Errors
+    /// As [`revmap_reference::draw`].
+    pub fn new(scene: &Scene, size: (u32, u32)) -> Result<Self> {
+        let settings = revmap::settings::Settings {
+            width: size.0,
+            height: size.1,
+            ..Default::default()
+        };
+        let frame = revmap_reference::draw(scene, &settings, &|_, _| {})?;
+        let reference = Reference::new(scene)?;
+        let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
+        let eye = scene.camera.eye;
+        let here = Ray {
+            origin: eye,
+            direction: camera.forward,
+        };
+        let half_diagonal = camera.middle[0].hypot(camera.middle[1]) * camera.right.length();
+        let (mut extent, mut distance, mut texel) = (0.0f64, 0.0f64, f64::INFINITY);
+        for object in &scene.objects {
+            for copy in object.placements() {
+                let local = copy.rotation.conjugate() * (eye - copy.position) / copy.scale;
+                let far = (local - DVec3::new(0.0, 0.0, 0.5)).length();
+                let size = object.profile.radius.hypot(0.5);
+                distance = distance.max(far + size);
+                extent = extent.max(size + half_diagonal * far.min(1e9));
+                texel = texel.min(TEXEL * copy.scale.min_element());
+            }
+        }
+        let silhouette = 0.1 * TEXEL + 8.0 * ROUNDING * extent;
+        Ok(Self {
+            inside: reference.clearance_within(here, [0.0, 0.0], 1e-9) < 0.0,
+            frame,
+            reference,
+            camera,
+            eye,
+            tolerance: [silhouette, silhouette + 4.0 * ROUNDING * distance],
+            texel: if texel.is_finite() { texel } else { TEXEL },
+            colors: scene.shadow != Shadow::Soft,
+        })
+    }
+
+    /// World length of a texel of 512 rows of the smallest object.
+    #[must_use]
+    pub fn texel(&self) -> f64 {
+        self.texel
+    }
+
+    /// Judges a frame; `other` is the same picture by the other stage.
+    ///
+    /// # Errors
+    /// When the frames differ in size.
+    pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<Judged> {
+        let options = CompareOptions {
+            texel: self.texel,
+            pixels_per_degree: None,
+        };
+        let errors = compare(&self.frame, frame, &options)?;
+        let wrong: Vec<bool> = (0..frame.pixels())
+            .into_par_iter()
+            .map(|k| self.is_wrong(frame, k))
+            .collect();
+        let strange = |truth: &Frame| {
+            (0..frame.pixels())
+                .into_par_iter()
+                .filter(|&k| {
+                    !wrong[k] && frame.hits(k) && truth.hits(k) && !has_color(truth, frame, k)
+                })
+                .count()
+        };
+        Ok(Judged {
+            hits: errors.hits,
+            missed: errors.missed,
+            ghost: errors.ghost,
+            wrong: wrong.iter().filter(|w| **w).count(),
+            depth_p99: errors.depth.map(|d| d.p99),
+            normal_rms: errors.normal.map(|n| n.rms),
+            not_finite: not_finite(frame),
+            exhausted: frame.exhausted,
+            color: if self.colors { strange(&self.frame) } else { 0 },
+            stages: other.map_or(0, strange),
+        })
+    }
+
+    fn is_wrong(&self, frame: &Frame, k: usize) -> bool {
+        let (hit, drawn) = (self.frame.hits(k), frame.hits(k));
+        let (truth, z) = (
+            f64::from(self.frame.distance[k]),
+            f64::from(frame.distance[k]),
+        );
+        if !hit && !drawn || truth == z {
+            return false;
+        }
+        let width = self.frame.width as usize;
+        let ray = Ray {
+            origin: self.eye,
+            direction: self
+                .camera
+                .pixel((k % width) as u32, (k / width) as u32)
+                .normalize(),
+        };
+        let [silhouette, tolerance] = self.tolerance;
+        let fine = 0.05 * silhouette;
+        if drawn {
+            let there = self.reference.clearance_within(ray, [z, z], fine);
+            if there > tolerance {
+                return true;
+            }
+            if self.inside {
+                // From within all is solid before the hit: what counts is the distance to the true hit's tangent plane.
+                let n = DVec3::from(self.frame.normal[k].map(f64::from));
+                let steep = n.dot(ray.direction).abs().max(0.02);
+                return !hit || (z - truth).abs() * steep > 4.0 * tolerance;
+            }
+            return hit && z > truth && self.reference.goes_deeper(ray, [0.0, z], tolerance, fine);
+        }
+        if self.inside {
+            return true;
+        }
+        self.reference
+            .goes_deeper(ray, [0.0, f64::INFINITY], silhouette, fine)
+    }
+}
+
+fn not_finite(frame: &Frame) -> usize {
+    let bad = |k: usize| {
+        let values = frame.pixel(k);
+        CHANNELS
+            .iter()
+            .zip(values)
+            .any(|(name, v)| !v.is_finite() && !(*name == "Z" && v == f32::INFINITY))
+    };
+    (0..frame.pixels())
+        .into_par_iter()
+        .filter(|&k| bad(k))
+        .count()
+}
+
+/// Whether the colour of `frame` at `k` lies among those of the 3 x 3 pixels about `k` in `truth`.
+fn has_color(truth: &Frame, frame: &Frame, k: usize) -> bool {
+    let (w, h) = (frame.width as usize, frame.height as usize);
+    let (x, y) = (k % w, k / w);
+    (0..3).all(|c| {
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for j in y.saturating_sub(1)..=(y + 1).min(h - 1) {
+            for i in x.saturating_sub(1)..=(x + 1).min(w - 1) {
+                let v = truth.color[j * w + i][c];
+                (low, high) = (low.min(v), high.max(v));
+            }
+        }
+        (low - COLOR..=high + COLOR).contains(&frame.color[k][c])
+    })
+}

@@ -1,0 +1,419 @@
+//! Random scenes, held to the reference; one that fails is reduced to the smallest that still fails.
+
+use super::case::Step;
+use super::judge::{Judged, Limits, Truth};
+use super::run::{STAGES, draw};
+use crate::report::folder::write_text;
+use revmap::error::Result;
+use revmap::gpu::Device;
+use revmap::settings::Solver;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Pixels of a random scene.
+const SIZE: (u32, u32) = (96, 72);
+
+/// A scene in the making: parts that can be left out one by one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draft {
+    seed: u64,
+    camera: String,
+    /// Lines of the scene and lights.
+    lines: Vec<String>,
+    lights: Vec<[f64; 3]>,
+    objects: Vec<DraftObject>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct DraftObject {
+    polygon: Vec<[f64; 2]>,
+    keys: Vec<String>,
+    /// Rows of its file of instances.
+    copies: Vec<[f64; 10]>,
+}
+
+/// A random scene that failed.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The seed that gave it.
+    pub seed: u64,
+    /// What failed, in the smallest scene.
+    pub what: String,
+    /// The file that holds the smallest scene.
+    pub file: String,
+}
+
+/// Numbers by SplitMix64.
+struct Random(u64);
+
+impl Random {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    /// True once in so many times.
+    fn once_in(&mut self, times: f64) -> bool {
+        self.next() * times < 1.0
+    }
+
+    /// Evenly among the logarithms.
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        (self.within(low.ln(), high.ln())).exp()
+    }
+
+    fn direction(&mut self) -> [f64; 3] {
+        let z = self.within(-1.0, 1.0);
+        let angle = self.within(0.0, TAU);
+        let r = (1.0 - z * z).sqrt();
+        [r * angle.cos(), r * angle.sin(), z]
+    }
+
+    fn rotation(&mut self) -> [f64; 4] {
+        let [x, y, z] = self.direction();
+        let (s, c) = self.within(0.0, PI).sin_cos();
+        [x * s, y * s, z * s, c]
+    }
+
+    fn polygon(&mut self) -> Vec<[f64; 2]> {
+        let count = 3 + (9.0 * self.next()) as usize;
+        let last = count as f64;
+        match (4.0 * self.next()) as u32 {
+            // Half a star, both ends on the axis.
+            0 => (0..=count)
+                .map(|k| {
+                    let angle = PI * (k as f64 / last - 0.5);
+                    let radius = self.within(0.15, 0.48);
+                    let r = if k == 0 || k == count {
+                        0.0
+                    } else {
+                        radius * angle.cos()
+                    };
+                    [r, 0.5 + radius * angle.sin()]
+                })
+                .collect(),
+            // A whole star off the axis: a ring.
+            1 => (0..count)
+                .map(|k| {
+                    let angle = TAU * k as f64 / last;
+                    let radius = self.within(0.05, 0.22);
+                    [0.26 + radius * angle.cos(), 0.5 + radius * angle.sin()]
+                })
+                .collect(),
+            // Discs, cones and cylinders on top of each other.
+            2 => {
+                let mut points = vec![[0.0, 0.04]];
+                for k in 0..count {
+                    let z = 0.04 + 0.9 * k as f64 / last;
+                    let (low, high) = (self.within(0.08, 0.46), self.within(0.08, 0.46));
+                    points.push([low, z]);
+                    points.push([if self.once_in(2.0) { low } else { high }, z + 0.9 / last]);
+                }
+                points.push([0.0, 0.94]);
+                points
+            }
+            // Anything, its edges crossing.
+            _ => (0..count.min(6))
+                .map(|_| [self.within(0.0, 0.48), self.within(0.02, 0.98)])
+                .collect(),
+        }
+    }
+
+    fn object(&mut self, scale: f64, at: [f64; 3]) -> DraftObject {
+        let mut keys = Vec::new();
+        let mut copies = Vec::new();
+        let sides = [(); 3].map(|()| {
+            scale
+                * if self.once_in(3.0) {
+                    self.log(0.25, 4.0)
+                } else {
+                    1.0
+                }
+        });
+        let turn = if self.once_in(3.0) {
+            self.rotation()
+        } else {
+            [0.0, 0.0, 0.0, 1.0]
+        };
+        keys.push(format!("position = {at:?}"));
+        keys.push(format!("scale = {sides:?}"));
+        keys.push(format!("rotation = {turn:?}"));
+        keys.push(format!(
+            "color = {:?}",
+            [self.next(), self.next(), self.next()]
+        ));
+        if self.once_in(3.0) {
+            keys.push(format!("extend = {:?}", self.within(-0.05, 0.1)));
+        }
+        if self.once_in(3.0) {
+            keys.push(format!("bevel = {:?}", self.log(0.05, 2.0)));
+            keys.push(format!("chamfer = {:?}", self.within(0.05, 0.3)));
+        }
+        if self.once_in(6.0) {
+            keys.push(format!("axis = {:?}", [self.next(), self.next()]));
+        }
+        if self.once_in(6.0) {
+            let n = [(); 3].map(|()| 1 + (3.0 * self.next()) as u32);
+            keys.push(format!("repeat = {n:?}"));
+            keys.push(format!(
+                "mirror = {:?}",
+                [(); 3].map(|()| self.once_in(2.0))
+            ));
+        }
+        if self.once_in(6.0) {
+            for _ in 0..3 {
+                let [x, y, z] = self.direction().map(|d| 0.6 * scale * d);
+                let [a, b, c, d] = self.rotation();
+                let s = scale * self.within(0.3, 1.0);
+                copies.push([at[0] + x, at[1] + y, at[2] + z, a, b, c, d, s, s, s]);
+            }
+        }
+        DraftObject {
+            polygon: self.polygon(),
+            keys,
+            copies,
+        }
+    }
+}
+
+impl Draft {
+    /// The scene of a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
+        let r = &mut random;
+        let scale = if r.once_in(3.0) {
+            r.log(1e-4, 1e4)
+        } else {
+            1.0
+        };
+        let middle = if r.once_in(4.0) {
+            let far = r.log(1.0, 1e5);
+            r.direction().map(|d| far * d)
+        } else {
+            [0.0; 3]
+        };
+        let count = 1 + (2.0 * r.next() * r.next() * 2.0) as usize;
+        let objects = (0..count)
+            .map(|k| {
+                let aside = r
+                    .direction()
+                    .map(|d| if k == 0 { 0.0 } else { 0.5 * scale * d });
+                r.object(scale, [0, 1, 2].map(|c| middle[c] + aside[c]))
+            })
+            .collect();
+        let away = if r.once_in(8.0) {
+            r.within(0.05, 0.8)
+        } else {
+            r.log(1.2, 1e3)
+        };
+        let way = r.direction();
+        let target = [0, 1, 2].map(|c| middle[c] + if c == 2 { 0.5 * scale } else { 0.0 });
+        let eye = [0, 1, 2].map(|c| target[c] + away * scale * way[c]);
+        let fov = (2.0 * (0.8 / away).atan().to_degrees()).min(80.0);
+        let camera = format!(
+            "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
+        );
+        let mut lines = Vec::new();
+        if r.once_in(6.0) {
+            lines.push("shadow = \"hard\"".to_owned());
+        }
+        let lights = (0..1 + (2.0 * r.next()) as usize)
+            .map(|_| r.direction())
+            .collect();
+        Self {
+            seed,
+            camera,
+            lines,
+            lights,
+            objects,
+        }
+    }
+
+    fn file(&self, object: usize) -> String {
+        format!("random-{}-{object}.csv", self.seed)
+    }
+
+    /// The scene as TOML.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        for line in &self.lines {
+            let _ = writeln!(out, "{line}");
+        }
+        let _ = writeln!(out, "{}", self.camera);
+        for light in &self.lights {
+            let _ = writeln!(out, "[[light]]\ndirection = {light:?}");
+        }
+        for (k, object) in self.objects.iter().enumerate() {
+            let _ = writeln!(out, "[[object]]\npolygon = {:?}", object.polygon);
+            for key in &object.keys {
+                let _ = writeln!(out, "{key}");
+            }
+            if !object.copies.is_empty() {
+                let _ = writeln!(out, "instances = {:?}", self.file(k));
+            }
+        }
+        out
+    }
+
+    /// Writes the files that the text names.
+    fn write(&self, folder: &Path) -> Result<()> {
+        for (k, object) in self.objects.iter().enumerate() {
+            if object.copies.is_empty() {
+                continue;
+            }
+            let mut rows = String::new();
+            for row in &object.copies {
+                let row: Vec<String> = row.iter().map(|v| format!("{v:?}")).collect();
+                let _ = writeln!(rows, "{}", row.join(","));
+            }
+            write_text(&folder.join(self.file(k)), &rows)?;
+        }
+        Ok(())
+    }
+
+    /// The same with one part less, in every way there is.
+    fn smaller(&self) -> Vec<Self> {
+        let mut all = Vec::new();
+        let mut with = |change: &dyn Fn(&mut Self)| {
+            let mut one = self.clone();
+            change(&mut one);
+            all.push(one);
+        };
+        for k in 0..self.objects.len() {
+            if self.objects.len() > 1 {
+                with(&|d| drop(d.objects.remove(k)));
+            }
+        }
+        for k in 0..self.lines.len() {
+            with(&|d| drop(d.lines.remove(k)));
+        }
+        for k in 0..self.lights.len() {
+            with(&|d| drop(d.lights.remove(k)));
+        }
+        for (k, object) in self.objects.iter().enumerate() {
+            for n in 0..object.keys.len() {
+                with(&|d| drop(d.objects[k].keys.remove(n)));
+            }
+            for n in 0..object.copies.len() {
+                with(&|d| drop(d.objects[k].copies.remove(n)));
+            }
+            for n in 0..object.polygon.len() {
+                with(&|d| drop(d.objects[k].polygon.remove(n)));
+            }
+        }
+        all
+    }
+
+    /// What the default fails in this scene, in either stage; `None` where it passes, or where the scene is refused.
+    ///
+    /// # Errors
+    /// Of files, and of the device's validation.
+    pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
+        self.write(folder)?;
+        let step = Step::new(0.0, self.text()).sized(SIZE.0, SIZE.1);
+        // A part less may be a scene that is refused, as a polygon of two points.
+        let Ok(scene) = step.read(folder) else {
+            return Ok(None);
+        };
+        let Ok(truth) = Truth::new(&scene, SIZE) else {
+            return Ok(None);
+        };
+        let limits = Limits::of((SIZE.0 * SIZE.1) as usize);
+        let mut first = None;
+        for stage in STAGES {
+            let frame = match draw(device, &step, &scene, Solver::DEFAULT, stage) {
+                Ok(frame) => frame,
+                Err(error) => {
+                    device.check()?;
+                    return Ok(Some(format!("{stage:?}: {error}")));
+                }
+            };
+            let judged = truth.judge(&frame, first.as_ref())?;
+            if !judged.passes(&limits) {
+                return Ok(Some(format!("{stage:?}: {}", told(&judged))));
+            }
+            first.get_or_insert(frame);
+        }
+        Ok(None)
+    }
+
+    /// The smallest scene that still fails, taking away one part at a time.
+    ///
+    /// # Errors
+    /// As [`Draft::fails`].
+    pub fn reduced(&self, device: &Device, folder: &Path) -> Result<Self> {
+        let mut now = self.clone();
+        'again: loop {
+            for smaller in now.smaller() {
+                if smaller.fails(device, folder)?.is_some() {
+                    now = smaller;
+                    continue 'again;
+                }
+            }
+            return Ok(now);
+        }
+    }
+}
+
+fn told(j: &Judged) -> String {
+    format!(
+        "{} wrong ({} missed, {} ghost), {} with a NaN, {} of another colour, {} unlike the other stage, of {} hit",
+        j.wrong, j.missed, j.ghost, j.not_finite, j.color, j.stages, j.hits
+    )
+}
+
+/// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into `folder` as `random-SEED.toml`.
+/// `progress` is told how many are done, and ends it by `false`.
+///
+/// # Errors
+/// As [`Draft::fails`].
+pub fn run(
+    device: &Device,
+    (seed, count): (u64, u64),
+    folder: &Path,
+    progress: &mut dyn FnMut(u64) -> bool,
+) -> Result<Vec<Failure>> {
+    let mut failures = Vec::new();
+    for done in 0..count {
+        if !progress(done) {
+            break;
+        }
+        let draft = Draft::new(seed.wrapping_add(done));
+        if draft.fails(device, folder)?.is_none() {
+            draft.clean(folder);
+            continue;
+        }
+        let least = draft.reduced(device, folder)?;
+        let what = least.fails(device, folder)?.unwrap_or_default();
+        let file = format!("random-{}.toml", draft.seed);
+        write_text(&folder.join(&file), &least.text())?;
+        failures.push(Failure {
+            seed: draft.seed,
+            what,
+            file,
+        });
+    }
+    Ok(failures)
+}
+
+impl Draft {
+    /// Takes away the files of a scene that passed.
+    fn clean(&self, folder: &Path) {
+        for (k, object) in self.objects.iter().enumerate() {
+            if !object.copies.is_empty() {
+                let _ = std::fs::remove_file(folder.join(self.file(k)));
+            }
+        }
+    }
+}

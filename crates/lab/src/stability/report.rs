@@ -1,0 +1,322 @@
+//! What a run of the catalogue writes: the table, `results.csv`, `report.html`.
+
+use super::case::Case;
+use super::run::{Outcome, Sheet, Trial, Verdict};
+use crate::method::{Method, MethodSettings};
+use crate::report::chart::Figure;
+use crate::report::chart::axis::Axis;
+use crate::report::chart::xy::{Guide, Point, Series, XyChart};
+use crate::report::csv::Table;
+use crate::report::folder::{keep_figure, write_text};
+use crate::report::looks;
+use crate::report::machine::Machine;
+use crate::report::names::{number, stage};
+use crate::report::page::Page;
+use crate::report::pictures::{Shot, png};
+use revmap::error::Result;
+use revmap::frame::Picture;
+use revmap::settings::Solver;
+use std::fmt::Write;
+use std::path::Path;
+
+/// What shares of faults are drawn at where there are none, percent.
+const FLOOR: f64 = 1e-3;
+
+/// Trials of a case by a search, in both stages.
+fn of<'a>(outcome: &'a Outcome, case: usize, solver: Solver) -> impl Iterator<Item = &'a Trial> {
+    let own = move |t: &&Trial| t.case == case && t.solver == solver;
+    outcome.trials.iter().filter(own)
+}
+
+/// The worst of some trials: most faults first, then what its verdict says.
+fn worst<'a>(trials: impl Iterator<Item = &'a Trial>) -> Option<&'a Trial> {
+    let rank = |t: &Trial| {
+        let verdict = match t.verdict {
+            Verdict::Failed => 4.0,
+            Verdict::Known => 3.0,
+            Verdict::Healed => 2.0,
+            Verdict::Refused => 1.0,
+            Verdict::Passed => 0.0,
+        };
+        verdict * 1e3 + t.judged.as_ref().map_or(0.0, |j| j.share())
+    };
+    trials.max_by(|a, b| rank(a).total_cmp(&rank(b)))
+}
+
+/// A share of faults with its verdict.
+fn cell(trial: Option<&Trial>) -> String {
+    let Some(trial) = trial else {
+        return String::new();
+    };
+    match &trial.judged {
+        Err(_) => trial.verdict.name().to_owned(),
+        Ok(judged) => {
+            let mark = match trial.verdict {
+                Verdict::Passed => "",
+                Verdict::Failed => " FAILED",
+                Verdict::Known => " known",
+                Verdict::Healed => " healed",
+                Verdict::Refused => " refused",
+            };
+            format!("{} %{mark}", number(100.0 * judged.share(), 2))
+        }
+    }
+}
+
+/// The table of cases and searches: the worst share of faults in each, and the verdict.
+#[must_use]
+pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> String {
+    let widest = cases.iter().map(|c| c.name.len()).max().unwrap_or(0).max(4);
+    let mut out = String::new();
+    let _ = write!(out, "{:widest$}", "case");
+    for solver in solvers {
+        let _ = write!(out, "  {:>15}", solver.name());
+    }
+    out.push('\n');
+    for (k, case) in cases.iter().enumerate() {
+        if !outcome.trials.iter().any(|t| t.case == k) {
+            continue;
+        }
+        let _ = write!(out, "{:widest$}", case.name);
+        for &solver in solvers {
+            let _ = write!(out, "  {:>15}", cell(worst(of(outcome, k, solver))));
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// What the default fails, a line for each.
+#[must_use]
+pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
+    let told = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
+    let line = |t: &Trial| {
+        let case = &cases[t.case];
+        let what = match &t.judged {
+            Err(message) => message.clone(),
+            Ok(j) => format!(
+                "{} wrong, {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, of {} hit",
+                j.wrong, j.not_finite, j.exhausted, j.color, j.stages, j.hits
+            ),
+        };
+        format!(
+            "{} at {}, {}: {what}",
+            case.name,
+            number(case.steps[t.step].value, 6),
+            stage(t.stage)
+        )
+    };
+    outcome.trials.iter().filter(told).map(line).collect()
+}
+
+/// `results.csv`: a record for each trial.
+#[must_use]
+pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
+    let mut table = Table::new(&[
+        "case",
+        "parameter",
+        "value",
+        "solver",
+        "stage",
+        "verdict",
+        "hits",
+        "missed",
+        "ghost",
+        "wrong",
+        "depth_p99_texels",
+        "normal_rms_degrees",
+        "not_finite",
+        "exhausted",
+        "color_faults",
+        "stage_faults",
+        "limit",
+        "ms",
+        "error",
+        "device",
+        "driver",
+    ]);
+    for trial in &outcome.trials {
+        let case = &cases[trial.case];
+        let mut record = vec![
+            case.name.to_owned(),
+            case.parameter.to_owned(),
+            number(case.steps[trial.step].value, 6),
+            trial.solver.name().to_owned(),
+            stage(trial.stage).to_owned(),
+            trial.verdict.name().to_owned(),
+        ];
+        let optional = |v: Option<f64>| v.map(|v| number(v, 5)).unwrap_or_default();
+        match &trial.judged {
+            Ok(j) => record.extend([
+                j.hits.to_string(),
+                j.missed.to_string(),
+                j.ghost.to_string(),
+                j.wrong.to_string(),
+                optional(j.depth_p99),
+                optional(j.normal_rms),
+                j.not_finite.to_string(),
+                j.exhausted.to_string(),
+                j.color.to_string(),
+                j.stages.to_string(),
+            ]),
+            Err(_) => record.extend(std::iter::repeat_n(String::new(), 10)),
+        }
+        record.extend([
+            trial.limits.faults.to_string(),
+            number(trial.ms, 4),
+            trial.judged.as_ref().err().cloned().unwrap_or_default(),
+            machine.device.clone(),
+            machine.driver.clone(),
+        ]);
+        table.records.push(record);
+    }
+    table
+}
+
+/// Share of faults over the case's parameter, a line for each search and stage.
+fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -> Figure {
+    let mut series = Vec::new();
+    let values = || case.steps.iter().map(|s| s.value);
+    let log = values().all(|v| v > 0.0)
+        && values().fold(0.0, f64::max) > 20.0 * values().fold(f64::INFINITY, f64::min);
+    for &solver in solvers {
+        for each in super::run::STAGES {
+            let settings = MethodSettings {
+                method: Method::Search(solver),
+                stage: each,
+                ..MethodSettings::default()
+            };
+            let points: Vec<Point> = of(outcome, number_of, solver)
+                .filter(|t| t.stage == each)
+                .filter_map(|t| {
+                    let judged = t.judged.as_ref().ok()?;
+                    Some(Point {
+                        x: case.steps[t.step].value,
+                        y: (100.0 * judged.share()).max(FLOOR),
+                        label: None,
+                    })
+                })
+                .collect();
+            if !points.is_empty() {
+                series.push(Series {
+                    name: solver.name().to_owned(),
+                    style: looks::style(&settings),
+                    points,
+                    joined: true,
+                });
+            }
+        }
+    }
+    let x = if log {
+        Axis::log(case.parameter)
+    } else {
+        Axis::linear(case.parameter)
+    };
+    XyChart {
+        title: case.name.to_owned(),
+        x,
+        y: Axis::log("faults (% of hit pixels)").from(FLOOR).with(1.0),
+        series,
+        guides: Vec::<Guide>::new(),
+    }
+    .figure()
+}
+
+fn shot(case: usize, picture: &Picture, caption: String) -> Result<Shot> {
+    Ok(Shot {
+        view: case,
+        caption,
+        small: png(picture)?,
+        size: (picture.width, picture.height),
+    })
+}
+
+fn shots(sheet: &Sheet) -> Result<Vec<Shot>> {
+    let [drawn, truth, heat] = &sheet.own;
+    let default = Solver::DEFAULT.name();
+    let mut all = vec![
+        shot(sheet.case, truth, "the reference".to_owned())?,
+        shot(
+            sheet.case,
+            drawn,
+            format!("{default}, {}", stage(sheet.stage)),
+        )?,
+        shot(sheet.case, heat, format!("{default}: difference"))?,
+    ];
+    if let Some((solver, [drawn, heat])) = &sheet.other {
+        all.push(shot(sheet.case, drawn, solver.name().to_owned())?);
+        all.push(shot(sheet.case, heat, format!("{solver}: difference"))?);
+    }
+    Ok(all)
+}
+
+/// Writes `results.csv`, `report.html`, the charts and the pictures.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(
+    folder: &Path,
+    cases: &[Case],
+    solvers: &[Solver],
+    outcome: &Outcome,
+    machine: &Machine,
+) -> Result<()> {
+    write_text(
+        &folder.join("results.csv"),
+        &results(cases, outcome, machine).text(),
+    )?;
+    let mut page = Page::new("revmap: stability");
+    page.facts(&machine.lines());
+    page.text(
+        "Each case is a scene in which methods break, swept over the parameter that decides. A fault is a pixel that no solid within the tolerance could have given, a \
+         number that is none, a ray out of steps, a colour that the reference does not have there, or a pixel in which both stages differ. The table has the worst \
+         share of faults in each case.",
+    );
+    page.chapter("All cases");
+    let mut header = vec!["case", "swept over"];
+    header.extend(solvers.iter().map(|s| s.name()));
+    let drawn = |k: usize| outcome.trials.iter().any(|t| t.case == k);
+    let records: Vec<Vec<String>> = (0..cases.len())
+        .filter(|&k| drawn(k))
+        .map(|k| {
+            let mut record = vec![cases[k].name.to_owned(), cases[k].parameter.to_owned()];
+            record.extend(solvers.iter().map(|&s| cell(worst(of(outcome, k, s)))));
+            record
+        })
+        .collect();
+    page.table(&header, &records, &[0, 1]);
+    for (k, case) in cases.iter().enumerate().filter(|(k, _)| drawn(*k)) {
+        page.chapter(case.name);
+        page.text(case.why);
+        page.text(&format!("Cure: {}", case.cure));
+        for known in &case.known {
+            page.note(&format!("The default fails here: {}", known.reason));
+        }
+        if let Some(sheet) = outcome.sheets.iter().find(|s| s.case == k) {
+            page.text(&format!("At {}:", number(sheet.value, 6)));
+            let all = shots(sheet)?;
+            page.shots(&all.iter().collect::<Vec<_>>());
+            for one in &all {
+                let name = one.caption.replace([',', ':', ' '], "-").replace("--", "-");
+                crate::report::folder::make(&folder.join("pictures"))?;
+                let file = format!("{}-{name}.png", case.name);
+                crate::report::folder::write_bytes(
+                    &folder.join("pictures").join(file),
+                    &one.small,
+                )?;
+            }
+        }
+        let figure = chart(case, k, solvers, outcome);
+        keep_figure(folder, case.name, &figure)?;
+        page.figure(&figure, &format!("Faults against the {}. Filled markers: fragment, hollow: compute. No faults are drawn at {FLOOR} %.", case.parameter));
+        page.command(
+            "One of its scenes:",
+            &format!(
+                "revmap render scenes/{}-{}.toml -o frame.png",
+                case.name,
+                case.steps.last().map_or(0.0, |s| s.value)
+            ),
+        );
+    }
+    write_text(&folder.join("report.html"), &page.html())
+}

@@ -1,0 +1,131 @@
+//! The catalogue of cases in which methods fail: what the default passes, what is known, and that the judge can fail.
+
+use glam::DVec3;
+use revmap::frame::Frame;
+use revmap::gpu::Device;
+use revmap::settings::Solver;
+use revmap_lab::stability::case::{Step, Text};
+use revmap_lab::stability::judge::{Limits, Truth};
+use revmap_lab::stability::run::{Plan, Verdict, run};
+use revmap_lab::stability::{cases, random, report};
+
+const BALL: &str = "polygon = [[0.0, 0.1], [0.3, 0.1], [0.4, 0.5], [0.3, 0.9], [0.0, 0.9]]";
+
+/// Neither a failure that is not listed, nor one that is listed and has healed.
+#[test]
+fn the_default_fails_what_is_known_and_nothing_else() {
+    let device = Device::open_validated(None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let all = cases::named(&[]).unwrap();
+    let plan = Plan {
+        cases: &all,
+        solvers: &[Solver::Circle, Solver::DEFAULT],
+        quick: true,
+        folder: folder.path(),
+    };
+    let outcome = run(&device, &plan, &mut |_, _, _| true).unwrap();
+    println!("{}", report::table(&all, plan.solvers, &outcome));
+    let failures = report::failures(&all, &outcome);
+    assert!(failures.is_empty(), "{failures:#?}");
+    for trial in outcome
+        .trials
+        .iter()
+        .filter(|t| t.solver == Solver::DEFAULT)
+    {
+        let case = all[trial.case].name;
+        assert_ne!(
+            trial.verdict,
+            Verdict::Healed,
+            "{case}: take it off the list"
+        );
+    }
+    // A catalogue that the papers' loop passes is too easy.
+    let circle = |t: &&_| {
+        matches!(
+            t,
+            revmap_lab::stability::run::Trial {
+                solver: Solver::Circle,
+                verdict: Verdict::Failed,
+                ..
+            }
+        )
+    };
+    assert!(outcome.trials.iter().filter(circle).count() > all.len());
+    device.check().unwrap();
+}
+
+fn step() -> Step {
+    Step::new(
+        0.0,
+        Text::seen([2.0, 0.3, 0.9], [0.0, 0.0, 0.5])
+            .object(BALL)
+            .done(),
+    )
+}
+
+/// Faults that are planted in the reference's own frame, one kind at a time.
+#[test]
+fn planted_faults_fail() {
+    let step = step();
+    let scene = step.read(std::path::Path::new("")).unwrap();
+    let truth = Truth::new(&scene, step.size).unwrap();
+    let limits = Limits::of((step.size.0 * step.size.1) as usize);
+    let hit: Vec<usize> = (0..truth.frame.pixels())
+        .filter(|&k| truth.frame.hits(k))
+        .collect();
+    let middle = hit[hit.len() / 2];
+    let spots: Vec<usize> = (0..5).map(|k| middle + 5 * k - 10).collect();
+    let judged = |change: &dyn Fn(&mut Frame, usize)| {
+        let mut frame = truth.frame.clone();
+        spots.iter().for_each(|&k| change(&mut frame, k));
+        truth.judge(&frame, None).unwrap()
+    };
+    let same = judged(&|_, _| {});
+    assert_eq!((same.faults(), same.passes(&limits)), (0, true));
+    let missed = judged(&|f, k| f.distance[k] = f32::INFINITY);
+    assert_eq!((missed.wrong, missed.passes(&limits)), (5, false));
+    let behind = judged(&|f, k| f.distance[k] += 0.01);
+    assert_eq!((behind.wrong, behind.passes(&limits)), (5, false));
+    let before = judged(&|f, k| f.distance[k] -= 0.01);
+    assert_eq!((before.wrong, before.passes(&limits)), (5, false));
+    let rounded = judged(&|f, k| f.distance[k] *= 1.0 + 1e-6);
+    assert_eq!(rounded.wrong, 0);
+    let dark = judged(&|f, k| f.color[k] = [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!((dark.color, dark.passes(&limits)), (5, false));
+    let nan = judged(&|f, k| f.normal[k][1] = f32::NAN);
+    assert_eq!((nan.not_finite, nan.passes(&limits)), (5, false));
+    let mut other = truth.frame.clone();
+    spots
+        .iter()
+        .for_each(|&k| other.color[k] = [1.0, 0.0, 1.0, 1.0]);
+    let stages = truth.judge(&other, Some(&truth.frame)).unwrap();
+    assert_eq!(stages.stages, 5);
+}
+
+/// A seed gives one scene; its text is one that the program reads.
+#[test]
+fn random_scenes_are_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut read = 0;
+    for seed in 0..60 {
+        let draft = random::Draft::new(seed);
+        assert_eq!(draft, random::Draft::new(seed));
+        if draft.text().contains("instances") {
+            continue;
+        }
+        let scene = Step::new(0.0, draft.text()).read(folder.path());
+        let Ok(scene) = scene else { continue };
+        assert!(scene.camera.eye.is_finite() && scene.camera.eye != DVec3::ZERO);
+        read += 1;
+    }
+    assert!(read > 30, "{read}");
+}
+
+#[test]
+fn random_scenes_are_as_the_reference_has_them() {
+    let device = Device::open_validated(None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let failures = random::run(&device, (1, 40), folder.path(), &mut |_| true).unwrap();
+    assert!(failures.is_empty(), "{failures:#?}");
+    device.check().unwrap();
+}
