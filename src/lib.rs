@@ -122,4 +122,9 @@ pub mod surface;
 #[cfg(all(test, not(any(feature = "drawing", feature = "exr", feature = "jpeg"))))]
 mod lean_tests;
 
+/// The document's example is tested with those of the library.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/embedding.md")]
+mod embedding {}
+
 pub use error::{Error, Result};

@@ -92,9 +92,10 @@ impl Offscreen {
             let message = "depth alone is drawn in a host's pass; give color or all";
             return Err(Error::new(Stage::Usage, message));
         }
+        let size = (settings.width, settings.height);
+        let view = view_of(scene, size)?;
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
-        let size = (settings.width, settings.height);
         let raw = match settings.stage {
             DrawStage::Compute => vk::RenderPass::null(),
             _ => shared.pipelines()?.own_pass(settings.planes)?,
@@ -120,7 +121,7 @@ impl Offscreen {
             commands,
             clock: Clock::new(&shared)?,
             ids: Vec::new(),
-            view: view_of(scene, size)?,
+            view,
             background: scene.background,
             settings: *settings,
             guests_only,

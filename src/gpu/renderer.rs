@@ -91,6 +91,24 @@ pub struct ObjectId {
     generation: u32,
 }
 
+impl ObjectId {
+    /// The id as one number, never 0, for interfaces that carry plain numbers.
+    #[must_use]
+    pub const fn to_bits(self) -> u64 {
+        (self.generation as u64) << 32 | (self.number as u64 + 1)
+    }
+
+    /// The id of [`ObjectId::to_bits`]. Any other number is the id of no object.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation)] // the two halves
+    pub const fn from_bits(bits: u64) -> Self {
+        Self {
+            number: (bits as u32).wrapping_sub(1),
+            generation: (bits >> 32) as u32,
+        }
+    }
+}
+
 /// One object.
 pub(super) struct Entry {
     pub object: Object,

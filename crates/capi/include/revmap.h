@@ -1,0 +1,2260 @@
+/*
+ * revmap: solids of revolution, drawn on Vulkan from flat profiles, without a mesh.
+ *
+ * Made from the sources in crates/capi/src: change those.
+ *
+ * Results. Every function that can fail returns a RevmapResult. revmap_last_error_text() says why the
+ * last one of the calling thread failed. A function that fails leaves what its pointers point to as it
+ * was. No function lets an exception or a panic out.
+ *
+ * Structures. Most begin with their size, which the caller sets before anything else, also of those
+ * that a function fills in: `RevmapScene scene = {.size = sizeof scene}; revmap_scene_defaults(&scene);`
+ * Nested structures have sizes of their own, which the functions named *_defaults set. Pointers
+ * within structures are followed during a call and not kept.
+ *
+ * Handles. Each is destroyed once, by the function of its name, in any order; the library keeps
+ * what other handles still need. A handle that is null, destroyed or of another kind is refused
+ * with REVMAP_RESULT_HANDLE.
+ *
+ * Threads. Each function says from which threads it may be called. Two threads that use a handle
+ * at once, where one at a time may, are refused with REVMAP_RESULT_BUSY: nothing is harmed.
+ */
+
+#ifndef REVMAP_H
+#define REVMAP_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <vulkan/vulkan.h>
+
+/**
+ * Number of this interface. It grows when a function or a field is taken away or changes its
+ * meaning.
+ */
+#define REVMAP_ABI 1
+
+/**
+ * What a function says of itself. Everything but REVMAP_RESULT_OK is a failure, which changes
+ * nothing else than the failing function's documentation says, and leaves a text for
+ * revmap_last_error_text().
+ */
+enum RevmapResult
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Done.
+     */
+    REVMAP_RESULT_OK = 0,
+    /**
+     * Arguments that make no sense: a null pointer, a wrong size, an unknown number, a call out of
+     * order.
+     */
+    REVMAP_RESULT_USAGE = 1,
+    /**
+     * A value out of its range; the text begins with its name.
+     */
+    REVMAP_RESULT_SCENE = 2,
+    /**
+     * A profile that cannot be read, or is none.
+     */
+    REVMAP_RESULT_PROFILE = 3,
+    /**
+     * A texture that cannot be read.
+     */
+    REVMAP_RESULT_MAP = 4,
+    /**
+     * No Vulkan device, or one that lacks what is needed.
+     */
+    REVMAP_RESULT_DEVICE = 5,
+    /**
+     * A Vulkan call, or work on the device.
+     */
+    REVMAP_RESULT_DRAW = 6,
+    /**
+     * A picture that cannot be made or written.
+     */
+    REVMAP_RESULT_FRAME = 7,
+    /**
+     * A handle that is null, destroyed or of another kind.
+     */
+    REVMAP_RESULT_HANDLE = 8,
+    /**
+     * A handle that another thread uses at this moment.
+     */
+    REVMAP_RESULT_BUSY = 9,
+    /**
+     * A fault of the library. The handles of the call can only be destroyed.
+     */
+    REVMAP_RESULT_INTERNAL = 10,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapResult RevmapResult;
+#else
+typedef int32_t RevmapResult;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Which part of a picture or a drawing is the half-plane that is turned.
+ */
+enum RevmapAxis
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+     */
+    REVMAP_AXIS_CENTER = 0,
+    /**
+     * The axis is the left edge: the picture is a half profile.
+     */
+    REVMAP_AXIS_LEFT = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapAxis RevmapAxis;
+#else
+typedef uint32_t RevmapAxis;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How the first hit along a ray is found.
+ */
+enum RevmapSolver
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * What this version takes where none is named: REVMAP_SOLVER_HULL.
+     */
+    REVMAP_SOLVER_DEFAULT = 0,
+    /**
+     * Equal steps along the ray.
+     */
+    REVMAP_SOLVER_LINEAR = 1,
+    /**
+     * Equal steps, then halvings: relief mapping.
+     */
+    REVMAP_SOLVER_RELIEF = 2,
+    /**
+     * Equal steps, then secants: interval mapping.
+     */
+    REVMAP_SOLVER_SECANT = 3,
+    /**
+     * Circle tracing with 20 steps, as published.
+     */
+    REVMAP_SOLVER_CIRCLE = 4,
+    /**
+     * Safe steps on the map alone, under every offset; rebuilds nothing when an offset changes.
+     */
+    REVMAP_SOLVER_LIVE = 5,
+    /**
+     * Cone step mapping, for profiles that are single-valued in z.
+     */
+    REVMAP_SOLVER_CONE = 6,
+    /**
+     * Relaxed cone step mapping.
+     */
+    REVMAP_SOLVER_RELAXED = 7,
+    /**
+     * The boundary as pieces of quadrics, solved exactly.
+     */
+    REVMAP_SOLVER_QUADRIC = 8,
+    /**
+     * The same pieces, found by the rasteriser or by tiles of pixels.
+     */
+    REVMAP_SOLVER_HULL = 9,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapSolver RevmapSolver;
+#else
+typedef uint32_t RevmapSolver;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Where the distances of a shape map come from.
+ */
+enum RevmapMapSource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * The most accurate for the profile.
+     */
+    REVMAP_MAP_SOURCE_DEFAULT = 0,
+    /**
+     * Distance to the nearest solid pixel's centre of a binary image.
+     */
+    REVMAP_MAP_SOURCE_BINARY = 1,
+    /**
+     * Distance to the outline traced from 8 bits of coverage.
+     */
+    REVMAP_MAP_SOURCE_COVERAGE = 2,
+    /**
+     * Exact distance to the outline.
+     */
+    REVMAP_MAP_SOURCE_EXACT = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapMapSource RevmapMapSource;
+#else
+typedef uint32_t RevmapMapSource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How the distances of a shape map are stored on the device.
+ */
+enum RevmapMapFormat
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Signed distance as a 32-bit float.
+     */
+    REVMAP_MAP_FORMAT_R32 = 0,
+    /**
+     * Signed distance as a 16-bit float.
+     */
+    REVMAP_MAP_FORMAT_R16 = 1,
+    /**
+     * Gradient, distance and form, 8 bits each.
+     */
+    REVMAP_MAP_FORMAT_RGBA8 = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapMapFormat RevmapMapFormat;
+#else
+typedef uint32_t RevmapMapFormat;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Which planes of a picture are drawn.
+ */
+enum RevmapPlanes
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Colour alone, 8-bit sRGB.
+     */
+    REVMAP_PLANES_COLOR = 0,
+    /**
+     * Every plane of RevmapPlane, in 32-bit floats.
+     */
+    REVMAP_PLANES_ALL = 1,
+    /**
+     * Depth alone, for shadow maps, in a host's pass.
+     */
+    REVMAP_PLANES_DEPTH = 2,
+    /**
+     * The same along parallel rays.
+     */
+    REVMAP_PLANES_DEPTH_PARALLEL = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapPlanes RevmapPlanes;
+#else
+typedef uint32_t RevmapPlanes;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A plane that revmap_offscreen_read() gives. Row 0 is on top.
+ */
+enum RevmapPlane
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * 4 bytes a pixel: sRGB, alpha linear.
+     */
+    REVMAP_PLANE_SRGB8 = 0,
+    /**
+     * 4 floats a pixel: linear colour, not multiplied by alpha.
+     */
+    REVMAP_PLANE_COLOR = 1,
+    /**
+     * 1 float a pixel: distance from the eye along the ray, world units; infinite where nothing is
+     * hit.
+     */
+    REVMAP_PLANE_DISTANCE = 2,
+    /**
+     * 3 floats a pixel: unit world normal, without bump.
+     */
+    REVMAP_PLANE_NORMAL = 3,
+    /**
+     * 3 floats a pixel: the normal that was shaded.
+     */
+    REVMAP_PLANE_SHADING_NORMAL = 4,
+    /**
+     * 3 floats a pixel: colour of the surface before light, linear.
+     */
+    REVMAP_PLANE_ALBEDO = 5,
+    /**
+     * 2 floats a pixel: texture coordinates before the texture's repetition.
+     */
+    REVMAP_PLANE_UV = 6,
+    /**
+     * 1 float a pixel: look-ups that the search made.
+     */
+    REVMAP_PLANE_STEPS = 7,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapPlane RevmapPlane;
+#else
+typedef uint32_t RevmapPlane;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Which end of the depth range is near.
+ */
+enum RevmapDepthOrder
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * 0 is near, fragments pass that are less.
+     */
+    REVMAP_DEPTH_ORDER_NORMAL = 0,
+    /**
+     * 1 is near, fragments pass that are greater.
+     */
+    REVMAP_DEPTH_ORDER_REVERSED = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapDepthOrder RevmapDepthOrder;
+#else
+typedef uint32_t RevmapDepthOrder;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How a host begins its pass.
+ */
+enum RevmapPassKind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * By vkCmdBeginRendering.
+     */
+    REVMAP_PASS_KIND_DYNAMIC = 0,
+    /**
+     * By vkCmdBeginRenderPass.
+     */
+    REVMAP_PASS_KIND_RENDER_PASS = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapPassKind RevmapPassKind;
+#else
+typedef uint32_t RevmapPassKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Where rays are traced.
+ */
+enum RevmapStage
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * In fragment shaders.
+     */
+    REVMAP_STAGE_FRAGMENT = 0,
+    /**
+     * In compute shaders.
+     */
+    REVMAP_STAGE_COMPUTE = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapStage RevmapStage;
+#else
+typedef uint32_t RevmapStage;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How texture coordinates follow from the surface's points.
+ */
+enum RevmapProjection
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Azimuth and height.
+     */
+    REVMAP_PROJECTION_CYLINDRICAL = 0,
+    /**
+     * From above: x and y of the box.
+     */
+    REVMAP_PROJECTION_PLANAR = 1,
+    /**
+     * Azimuth and polar angle about the middle of the box.
+     */
+    REVMAP_PROJECTION_SPHERICAL = 2,
+    /**
+     * Azimuth and length along the profile.
+     */
+    REVMAP_PROJECTION_ARC = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapProjection RevmapProjection;
+#else
+typedef uint32_t RevmapProjection;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How a height map tilts the normal.
+ */
+enum RevmapBumpForm
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * By the gradient along the surface.
+     */
+    REVMAP_BUMP_FORM_SURFACE_GRADIENT = 0,
+    /**
+     * As published, without the factor of the azimuth.
+     */
+    REVMAP_BUMP_FORM_PAPERS = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapBumpForm RevmapBumpForm;
+#else
+typedef uint32_t RevmapBumpForm;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How slopes are taken from heights.
+ */
+enum RevmapSlopeFilter
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Scharr's.
+     */
+    REVMAP_SLOPE_FILTER_SCHARR = 0,
+    /**
+     * Difference of the two neighbours.
+     */
+    REVMAP_SLOPE_FILTER_CENTRAL = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapSlopeFilter RevmapSlopeFilter;
+#else
+typedef uint32_t RevmapSlopeFilter;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Shadows, by tracing from the surface towards each light.
+ */
+enum RevmapShadow
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * None; nothing is traced.
+     */
+    REVMAP_SHADOW_OFF = 0,
+    /**
+     * Lit or not.
+     */
+    REVMAP_SHADOW_HARD = 1,
+    /**
+     * With a penumbra.
+     */
+    REVMAP_SHADOW_SOFT = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapShadow RevmapShadow;
+#else
+typedef uint32_t RevmapShadow;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A texture of colours.
+ */
+typedef struct RevmapColorMap RevmapColorMap;
+
+/**
+ * A Vulkan device, opened by the library or borrowed from a host. What is made on it keeps what it
+ * needs of it.
+ */
+typedef struct RevmapDevice RevmapDevice;
+
+/**
+ * The slopes of a height map, for bump mapping.
+ */
+typedef struct RevmapHeightMap RevmapHeightMap;
+
+/**
+ * A scene on a device and a picture that it is drawn into.
+ */
+typedef struct RevmapOffscreen RevmapOffscreen;
+
+/**
+ * Pipelines that a renderer may come to need.
+ */
+typedef struct RevmapPrewarm RevmapPrewarm;
+
+/**
+ * A profile: the solid region of the half-plane (r, z) that is turned about the axis r = 0.
+ * Objects keep what they use of it.
+ */
+typedef struct RevmapProfile RevmapProfile;
+
+/**
+ * Objects on a device, drawn into whatever the host draws into, with several frames in flight,
+ * which take turns in slots. It must not be destroyed before the frames that it recorded are done.
+ */
+typedef struct RevmapRenderer RevmapRenderer;
+
+/**
+ * What a host has to enable on a device that it lends. No device extension is needed.
+ */
+typedef struct RevmapRequirements {
+    /**
+     * sizeof(RevmapRequirements).
+     */
+    uint32_t size;
+    /**
+     * Least Vulkan version of the instance and the device, as VK_MAKE_API_VERSION.
+     */
+    uint32_t api_version;
+    /**
+     * The first queue family with graphics and compute.
+     */
+    uint32_t queue_family;
+    /**
+     * Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass needs none
+     * of them.
+     */
+    VkPhysicalDeviceFeatures features;
+} RevmapRequirements;
+
+/**
+ * A host's device.
+ */
+typedef struct RevmapHostDevice {
+    /**
+     * sizeof(RevmapHostDevice).
+     */
+    uint32_t size;
+    /**
+     * The family of the queues to which recorded commands are submitted.
+     */
+    uint32_t queue_family;
+    /**
+     * The host's vkGetInstanceProcAddr, through which all functions are found.
+     */
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+    /**
+     * The instance.
+     */
+    VkInstance instance;
+    /**
+     * The physical device.
+     */
+    VkPhysicalDevice physical_device;
+    /**
+     * The device, of Vulkan 1.2 or later.
+     */
+    VkDevice device;
+    /**
+     * A queue for RevmapOffscreen, which submits by itself; renderers need none. May be null.
+     */
+    VkQueue queue;
+    /**
+     * The features that the device was opened with; null: none.
+     */
+    const VkPhysicalDeviceFeatures *features;
+    /**
+     * A pipeline cache of the host's; may be null.
+     */
+    VkPipelineCache pipeline_cache;
+} RevmapHostDevice;
+
+/**
+ * What a device is.
+ */
+typedef struct RevmapDeviceInfo {
+    /**
+     * sizeof(RevmapDeviceInfo).
+     */
+    uint32_t size;
+    /**
+     * 1 where the library has opened it with the validation layers, else 0.
+     */
+    uint32_t validated;
+    /**
+     * Pipelines compiled on it so far.
+     */
+    uint64_t pipelines_compiled;
+    /**
+     * Its name, UTF-8, ended by 0.
+     */
+    char name[256];
+    /**
+     * Driver's name and version, UTF-8, ended by 0.
+     */
+    char driver[256];
+} RevmapDeviceInfo;
+
+/**
+ * How far the surface stands off the profile: extend + bevel * min(1 - z, chamfer), object units.
+ */
+typedef struct RevmapOffset {
+    /**
+     * Object units; negative insets.
+     */
+    double extend;
+    /**
+     * Slope.
+     */
+    double bevel;
+    /**
+     * Depth in [0, 1] below the top to which the bevel reaches. It is 1 by default.
+     */
+    double chamfer;
+} RevmapOffset;
+
+/**
+ * Where the box of a solid is. Its scale of (1, 1, 1) makes it one world unit high.
+ */
+typedef struct RevmapPlacement {
+    /**
+     * Of the middle of the box's lower face, world units.
+     */
+    double position[3];
+    /**
+     * Unit quaternion: x, y, z, w.
+     */
+    double rotation[4];
+    /**
+     * Factors along the object's axes, each positive.
+     */
+    double scale[3];
+} RevmapPlacement;
+
+/**
+ * One solid of revolution, once or as many copies. Defaults: revmap_object_defaults().
+ */
+typedef struct RevmapObjectInfo {
+    /**
+     * sizeof(RevmapObjectInfo).
+     */
+    uint32_t size;
+    /**
+     * Rows of its shape map.
+     */
+    uint32_t map_rows;
+    /**
+     * What is turned. Objects that share a profile share its maps.
+     */
+    const struct RevmapProfile *profile;
+    /**
+     * What messages call it, UTF-8; may be null.
+     */
+    const char *name;
+    /**
+     * Colours in place of color; may be null.
+     */
+    const struct RevmapColorMap *color_map;
+    /**
+     * Heights for bump mapping; may be null.
+     */
+    const struct RevmapHeightMap *height_map;
+    /**
+     * Linear RGB.
+     */
+    float color[3];
+    /**
+     * Weight of the Blinn-Phong highlight, linear.
+     */
+    float specular_strength;
+    /**
+     * Exponent of the highlight.
+     */
+    float specular_shininess;
+    /**
+     * A RevmapProjection.
+     */
+    uint32_t projection;
+    /**
+     * A RevmapBumpForm.
+     */
+    uint32_t bump_form;
+    /**
+     * Depth by which the slopes of height_map are scaled.
+     */
+    double bump;
+    /**
+     * How often textures repeat around and along the solid.
+     */
+    double texture_repeat[2];
+    /**
+     * Extension, bevel and chamfer.
+     */
+    struct RevmapOffset offset;
+    /**
+     * Where the axis stands in the box, each in [0, 1]; the middle is (0.5, 0.5).
+     */
+    double axis[2];
+    /**
+     * How many replicas the box holds along x, y, z; at least 1 each.
+     */
+    uint32_t repeat[3];
+    /**
+     * Whether every second replica along x, y, z is reflected: 0 or 1.
+     */
+    uint32_t mirror[3];
+    /**
+     * Where it is, if it has no instances.
+     */
+    struct RevmapPlacement placement;
+    /**
+     * Where its copies are; read during the call; null where there are none.
+     */
+    const struct RevmapPlacement *instances;
+    /**
+     * Number of copies; 0: one, at placement.
+     */
+    size_t instance_count;
+} RevmapObjectInfo;
+
+/**
+ * How rays find the surface. Defaults: revmap_search_defaults().
+ */
+typedef struct RevmapSearch {
+    /**
+     * sizeof(RevmapSearch).
+     */
+    uint32_t size;
+    /**
+     * A RevmapSolver.
+     */
+    uint32_t solver;
+    /**
+     * Bound on the search's steps; 0 takes the solver's own.
+     */
+    uint32_t max_steps;
+    /**
+     * Rows of every shape map; 0 takes each object's own.
+     */
+    uint32_t map_rows;
+    /**
+     * A RevmapMapSource.
+     */
+    uint32_t map_source;
+    /**
+     * A RevmapMapFormat.
+     */
+    uint32_t map_format;
+    /**
+     * Smallest projected area, in pixels per visible band of an object's hull, at which the hull
+     * is drawn; below it the box is. UINT32_MAX: boxes alone.
+     */
+    uint32_t proxy_min_pixels;
+} RevmapSearch;
+
+/**
+ * How a picture is drawn. Defaults: revmap_picture_defaults().
+ */
+typedef struct RevmapPicture {
+    /**
+     * sizeof(RevmapPicture).
+     */
+    uint32_t size;
+    /**
+     * Pixels across.
+     */
+    uint32_t width;
+    /**
+     * Pixels down.
+     */
+    uint32_t height;
+    /**
+     * A RevmapStage.
+     */
+    uint32_t stage;
+    /**
+     * REVMAP_PLANES_COLOR or REVMAP_PLANES_ALL.
+     */
+    uint32_t planes;
+    /**
+     * How rays find the surface.
+     */
+    struct RevmapSearch search;
+} RevmapPicture;
+
+/**
+ * A pinhole camera. Defaults: revmap_camera_defaults().
+ */
+typedef struct RevmapCamera {
+    /**
+     * sizeof(RevmapCamera).
+     */
+    uint32_t size;
+    /**
+     * World units.
+     */
+    double eye[3];
+    /**
+     * What it looks at.
+     */
+    double target[3];
+    /**
+     * Which way is up.
+     */
+    double up[3];
+    /**
+     * Vertical field of view, degrees, between 0 and 180.
+     */
+    double fov_y;
+} RevmapCamera;
+
+/**
+ * A light from afar.
+ */
+typedef struct RevmapLight {
+    /**
+     * The way the light travels; any length but zero.
+     */
+    double direction[3];
+    /**
+     * Linear RGB.
+     */
+    float color[3];
+} RevmapLight;
+
+/**
+ * What lights all objects. Defaults: revmap_lighting_defaults().
+ */
+typedef struct RevmapLighting {
+    /**
+     * sizeof(RevmapLighting).
+     */
+    uint32_t size;
+    /**
+     * A RevmapShadow.
+     */
+    uint32_t shadow;
+    /**
+     * Light that comes from everywhere, linear RGB.
+     */
+    float ambient[3];
+    /**
+     * Number of lights.
+     */
+    uint32_t light_count;
+    /**
+     * The lights; read during the call.
+     */
+    const struct RevmapLight *lights;
+} RevmapLighting;
+
+/**
+ * What is drawn. Defaults: revmap_scene_defaults().
+ */
+typedef struct RevmapScene {
+    /**
+     * sizeof(RevmapScene).
+     */
+    uint32_t size;
+    /**
+     * Linear RGBA behind everything.
+     */
+    float background[4];
+    /**
+     * The eye.
+     */
+    struct RevmapCamera camera;
+    /**
+     * Lights and shadows.
+     */
+    struct RevmapLighting lighting;
+    /**
+     * The objects; read during the call.
+     */
+    const struct RevmapObjectInfo *objects;
+    /**
+     * Number of objects.
+     */
+    size_t object_count;
+} RevmapScene;
+
+/**
+ * What a picture cost.
+ */
+typedef struct RevmapTimes {
+    /**
+     * sizeof(RevmapTimes).
+     */
+    uint32_t size;
+    /**
+     * Milliseconds that the CPU took to take over changes and to record.
+     */
+    double prepare_ms;
+    /**
+     * Milliseconds between timestamps of the device around the work; negative where it has none.
+     */
+    double gpu_ms;
+    /**
+     * Milliseconds from submission to completion by the clock.
+     */
+    double frame_ms;
+} RevmapTimes;
+
+/**
+ * The pass in which fragments are drawn.
+ */
+typedef struct RevmapPass {
+    /**
+     * sizeof(RevmapPass).
+     */
+    uint32_t size;
+    /**
+     * A RevmapPassKind.
+     */
+    uint32_t kind;
+    /**
+     * Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
+     * number.
+     */
+    uint32_t samples;
+    /**
+     * A RevmapDepthOrder.
+     */
+    uint32_t depth_order;
+    /**
+     * A RevmapPlanes: what the fragment shader writes, one plane an attachment.
+     */
+    uint32_t planes;
+    /**
+     * Of a render pass: the subpass, which has a depth attachment.
+     */
+    uint32_t subpass;
+    /**
+     * Of a render pass: the pass. It must live as long as the renderer. Passes that are compatible
+     * with it may be begun instead.
+     */
+    VkRenderPass render_pass;
+    /**
+     * Of dynamic rendering: formats of the colour attachments; read during the call.
+     */
+    const VkFormat *color_formats;
+    /**
+     * Of dynamic rendering: number of the colour attachments.
+     */
+    uint32_t color_format_count;
+    /**
+     * Of dynamic rendering: format of the depth attachment.
+     */
+    VkFormat depth_format;
+    /**
+     * Of dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED where there is
+     * none.
+     */
+    VkFormat stencil_format;
+} RevmapPass;
+
+/**
+ * An object of a renderer; never 0. It stays the same object whatever is set, and is never
+ * another's once removed.
+ */
+typedef uint64_t RevmapObject;
+
+/**
+ * What compute shaders write to.
+ */
+typedef struct RevmapComputeTarget {
+    /**
+     * sizeof(RevmapComputeTarget).
+     */
+    uint32_t size;
+    /**
+     * Number of images: 4 for REVMAP_PLANES_ALL, else 0.
+     */
+    uint32_t image_count;
+    /**
+     * A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
+     * pixels, as bits of floats; then a second word of each, which is the colour, packed as
+     * R8G8B8A8_SRGB, for REVMAP_PLANES_COLOR, else a count of look-ups. The host clears it before
+     * a frame, depths to 1.0 and colours to its background, or fills in what is already drawn.
+     */
+    VkBuffer words;
+    /**
+     * Storage images of all planes, R32G32B32A32_SFLOAT in the layout GENERAL; read during the
+     * call.
+     */
+    const VkImageView *images;
+} RevmapComputeTarget;
+
+/**
+ * What a renderer holds and did.
+ */
+typedef struct RevmapStatistics {
+    /**
+     * sizeof(RevmapStatistics).
+     */
+    uint32_t size;
+    /**
+     * Objects.
+     */
+    uint32_t objects;
+    /**
+     * Surfaces made so far: one for each profile under each offset that no object had in the frame
+     * before.
+     */
+    uint64_t surfaces_made;
+    /**
+     * Bytes of shape maps with their tables of lengths, on the device.
+     */
+    uint64_t shape_map_bytes;
+    /**
+     * Bytes of colour and height maps, on the device.
+     */
+    uint64_t texture_bytes;
+    /**
+     * Objects that the last prepared frame does not draw at all (compute alone).
+     */
+    uint32_t drawn_not;
+    /**
+     * Objects that it draws by their boxes.
+     */
+    uint32_t drawn_by_box;
+    /**
+     * By hulls.
+     */
+    uint32_t drawn_by_hull;
+    /**
+     * By rectangles of the screen.
+     */
+    uint32_t drawn_by_rectangle;
+    /**
+     * By bins of the screen.
+     */
+    uint32_t drawn_by_bins;
+    /**
+     * By beams.
+     */
+    uint32_t drawn_by_beams;
+    /**
+     * Notes that revmap_renderer_note() gives.
+     */
+    uint32_t notes;
+} RevmapStatistics;
+
+/**
+ * A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
+ * (0 <= z <= w).
+ */
+typedef struct RevmapView {
+    /**
+     * sizeof(RevmapView).
+     */
+    uint32_t size;
+    /**
+     * A RevmapDepthOrder: the one of the renderer's output.
+     */
+    uint32_t depth_order;
+    /**
+     * From world to view space.
+     */
+    double view[16];
+    /**
+     * From view to clip space.
+     */
+    double projection[16];
+    /**
+     * Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
+     * Vulkan 1.1.
+     */
+    double viewport[4];
+} RevmapView;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * Version of the library, such as "0.1.0".
+ *
+ * Thread: any.
+ */
+const char *revmap_version(void);
+
+/**
+ * REVMAP_ABI of the library, to be compared with that of the header.
+ *
+ * Thread: any.
+ */
+uint32_t revmap_abi(void);
+
+/**
+ * Tells what a host has to enable on a physical device. The size of requirements must be set.
+ *
+ * Fails with REVMAP_RESULT_DEVICE for a device that lacks something; the text says what.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                 VkInstance instance,
+                                 VkPhysicalDevice physical_device,
+                                 struct RevmapRequirements *requirements);
+
+/**
+ * Opens a device of the library's own. choice is its index or a part of its name; null takes the
+ * environment's REVMAP_DEVICE, else the first of discrete, integrated, virtual and CPU devices.
+ * validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
+ * environment.
+ *
+ * Fails with REVMAP_RESULT_DEVICE where there is none that has what is needed.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_open(const char *choice,
+                                uint32_t validate,
+                                struct RevmapDevice **device);
+
+/**
+ * Borrows a host's device. All handles belong together. They must stay valid until this handle and
+ * all that is made with it are destroyed, and the device is idle.
+ *
+ * Fails with REVMAP_RESULT_DEVICE for a device that lacks something.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_borrow(const struct RevmapHostDevice *host,
+                                  struct RevmapDevice **device);
+
+/**
+ * Tells what a device is. The size of info must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_info(const struct RevmapDevice *device, struct RevmapDeviceInfo *info);
+
+/**
+ * Fails with REVMAP_RESULT_DRAW if the validation layers have had anything to say since the last
+ * call. A borrowed device's host has its own messenger, and this function always succeeds.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_check(const struct RevmapDevice *device);
+
+/**
+ * Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
+ * another driver is passed over.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_add_pipeline_cache(const struct RevmapDevice *device,
+                                              const void *bytes,
+                                              size_t count);
+
+/**
+ * Gives the driver's compiled pipelines. With null bytes count becomes their number; else as many
+ * are written as count says, which must not be fewer, and count becomes what was written. The
+ * number grows as pipelines are compiled.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_pipeline_cache(const struct RevmapDevice *device,
+                                          void *bytes,
+                                          size_t *count);
+
+/**
+ * Destroys a device; null is none. What was made with it stays usable.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_destroy(struct RevmapDevice *device);
+
+/**
+ * What the last call of this thread that failed has returned; REVMAP_RESULT_OK if none has.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_last_error(void);
+
+/**
+ * Why the last call of this thread that failed did so: one line of UTF-8 that says what is wrong
+ * and what would be right. Empty if none has failed. It lasts until the next failure on this
+ * thread, or the thread's end.
+ *
+ * Thread: any.
+ */
+const char *revmap_last_error_text(void);
+
+/**
+ * Fills in an object without a profile: light grey, plain, at the origin, one world unit high. The
+ * size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_object_defaults(struct RevmapObjectInfo *object);
+
+/**
+ * Fills in 800x600 pixels, REVMAP_STAGE_FRAGMENT, REVMAP_PLANES_COLOR and the default search. The
+ * size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_picture_defaults(struct RevmapPicture *picture);
+
+/**
+ * Fills in a scene without objects before transparent black, with the default camera and lights.
+ * The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_scene_defaults(struct RevmapScene *scene);
+
+/**
+ * Takes a scene onto a device, with a picture to draw it into. A borrowed device must have a
+ * queue, which nobody else uses while a picture is drawn or read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_offscreen_create(const struct RevmapDevice *device,
+                                     const struct RevmapPicture *picture,
+                                     const struct RevmapScene *scene,
+                                     struct RevmapOffscreen **offscreen);
+
+/**
+ * Takes over another scene. Its cost follows what differs from the scene before. If it fails, what
+ * was drawn before can be drawn on.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_update(struct RevmapOffscreen *offscreen,
+                                     const struct RevmapScene *scene);
+
+/**
+ * Compiles every pipeline that updates can come to need, as long as no object's technique changes.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_prewarm(struct RevmapOffscreen *offscreen);
+
+/**
+ * Draws the picture and waits for it. times may be null; else its size must be set.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_draw(struct RevmapOffscreen *offscreen, struct RevmapTimes *times);
+
+/**
+ * Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
+ * top. plane is a RevmapPlane; of REVMAP_PLANES_COLOR REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR
+ * are there. count is the number of bytes, which must be exact.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_read(struct RevmapOffscreen *offscreen,
+                                   uint32_t plane,
+                                   void *bytes,
+                                   size_t count);
+
+/**
+ * Writes the picture that was drawn last as a PNG file of 8-bit sRGB with alpha. The path is
+ * UTF-8.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_write_png(struct RevmapOffscreen *offscreen, const char *path);
+
+/**
+ * Destroys a picture; null is none.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_destroy(struct RevmapOffscreen *offscreen);
+
+/**
+ * Makes a profile from a closed polygon: count points, each r and z in object units. The box
+ * reaches from z = 0 to z = 1 and to the given radius.
+ *
+ * Fails with REVMAP_RESULT_PROFILE for fewer than 3 points, a point with r < 0, no area, or
+ * numbers that are not finite.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_points(const double (*points)[2],
+                                        size_t count,
+                                        double radius,
+                                        struct RevmapProfile **profile);
+
+/**
+ * Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it. What
+ * is darker than one half over white is solid; the picture's height is one object unit. axis is a
+ * RevmapAxis.
+ *
+ * Fails with REVMAP_RESULT_PROFILE where that is not possible.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_bytes(const void *bytes,
+                                       size_t count,
+                                       uint32_t axis,
+                                       struct RevmapProfile **profile);
+
+/**
+ * As revmap_profile_from_bytes(), of a file. The path is UTF-8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_file(const char *path,
+                                      uint32_t axis,
+                                      struct RevmapProfile **profile);
+
+/**
+ * Gives the radius of the profile's box, object units.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_radius(const struct RevmapProfile *profile, double *radius);
+
+/**
+ * Destroys a profile; null is none. Objects that were made from it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_destroy(struct RevmapProfile *profile);
+
+/**
+ * Makes a renderer without objects that draws fragments in a host's pass. A null search is the
+ * default one. frames is the number of frames in flight, 1 to 8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create(const struct RevmapDevice *device,
+                                    const struct RevmapPass *pass,
+                                    const struct RevmapSearch *search,
+                                    uint32_t frames,
+                                    struct RevmapRenderer **renderer);
+
+/**
+ * Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
+ * planes is a RevmapPlanes. A null search is the default one. frames is the number of frames in
+ * flight, 1 to 8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create_compute(const struct RevmapDevice *device,
+                                            uint32_t planes,
+                                            const struct RevmapSearch *search,
+                                            uint32_t frames,
+                                            struct RevmapRenderer **renderer);
+
+/**
+ * Adds an object, which is drawn from the next prepared frame on.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_add(struct RevmapRenderer *renderer,
+                                 const struct RevmapObjectInfo *info,
+                                 RevmapObject *object);
+
+/**
+ * Takes an object away. What frames in flight read of it is kept until they are done.
+ *
+ * Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
+ * one.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObject object);
+
+/**
+ * Gives an object other values, all of them. Values that are equal cost nothing.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
+                                 RevmapObject object,
+                                 const struct RevmapObjectInfo *info);
+
+/**
+ * Moves the surface of an object: extension, bevel and chamfer.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_offset(struct RevmapRenderer *renderer,
+                                        RevmapObject object,
+                                        const struct RevmapOffset *offset);
+
+/**
+ * Moves an object that is one copy.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_placement(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *placement);
+
+/**
+ * Gives an object other copies; with a count of 0 it is one, at its placement.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_instances(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *instances,
+                                           size_t count);
+
+/**
+ * Sets lights and shadows for all objects.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_lighting(struct RevmapRenderer *renderer,
+                                          const struct RevmapLighting *lighting);
+
+/**
+ * Sets what compute writes to, from the next prepared frame on. The handles are of the renderer's
+ * device, large enough for every view's viewport, which begins at 0. They live until another
+ * target is set and the frames recorded before are done.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
+                                                const struct RevmapComputeTarget *target);
+
+/**
+ * Tells what a renderer holds and did. The size of statistics must be set.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
+                                        struct RevmapStatistics *statistics);
+
+/**
+ * Gives a note: what was done in another way than asked for, and why. The text lasts as long as
+ * the renderer.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
+                                  uint32_t number,
+                                  const char **note);
+
+/**
+ * Destroys a renderer; null is none. The frames that it recorded must be done.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_destroy(struct RevmapRenderer *renderer);
+
+/**
+ * Prepares the frame of a slot: takes over what was set, writes what changed, records copies of
+ * new textures. To be called in every frame before revmap_renderer_record(). It neither submits
+ * nor waits.
+ *
+ * The command buffer is recording, outside of a pass, for a queue of the device's family. The
+ * commands recorded for this slot before have run or were never submitted. Commands of other slots
+ * that were recorded before are submitted before these.
+ *
+ * Fails with REVMAP_RESULT_SCENE or REVMAP_RESULT_PROFILE for what cannot be drawn: it stays as it
+ * was before it was set. The text begins with the object's number.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prepare(struct RevmapRenderer *renderer,
+                                     VkCommandBuffer command_buffer,
+                                     uint32_t slot,
+                                     const struct RevmapView *view);
+
+/**
+ * As revmap_renderer_prepare(), seen by a camera in pictures of width * height pixels, with depth
+ * 0 at near and 1 at far, both along the view. The output's depth order is
+ * REVMAP_DEPTH_ORDER_NORMAL.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prepare_camera(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot,
+                                            const struct RevmapCamera *camera,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            double near,
+                                            double far);
+
+/**
+ * Records the draws of the frame that was prepared for a slot. It binds pipelines, descriptor sets
+ * 0 to 2 and an index buffer; it sets neither viewport nor scissor, which are dynamic.
+ *
+ * The command buffer is recording, within a pass that is compatible with the output, with the
+ * view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
+ * the commands have run.
+ *
+ * Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared, or objects
+ * were added or removed since.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record(struct RevmapRenderer *renderer,
+                                    VkCommandBuffer command_buffer,
+                                    uint32_t slot);
+
+/**
+ * Records the dispatches of the frame that was prepared for a slot, into a target that was
+ * cleared. It records barriers between its own dispatches, none before its first and after its
+ * last write.
+ *
+ * The command buffer is recording, outside of a pass; writes to the target before are made
+ * available to compute shaders. The renderer lives, and the slot is not prepared again, until the
+ * commands have run.
+ *
+ * Fails as revmap_renderer_record().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot);
+
+/**
+ * Lists every pipeline that the objects can reach while parameters, lights, placements and the
+ * view change. Other techniques make others necessary: textures where there were none, replicas,
+ * shadows; in compute also more objects or copies than one. Nothing is compiled yet.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prewarm(struct RevmapRenderer *renderer,
+                                     struct RevmapPrewarm **prewarm);
+
+/**
+ * Compiles those that are not compiled yet. The renderer must live until this returns.
+ *
+ * Thread: any, also while another thread uses the renderer.
+ */
+RevmapResult revmap_prewarm_compile(const struct RevmapPrewarm *prewarm);
+
+/**
+ * Gives the number of pipelines, compiled or not.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_prewarm_count(const struct RevmapPrewarm *prewarm, size_t *count);
+
+/**
+ * Destroys the list; null is none. What was compiled stays.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_prewarm_destroy(struct RevmapPrewarm *prewarm);
+
+/**
+ * Records draws of no pixel, or dispatches of no group, with every pipeline of
+ * revmap_renderer_prewarm(): some drivers compile shaders at the first draw, and do it when these
+ * commands run. In a pass it sets the scissor, too, to nothing.
+ *
+ * The slot is prepared; the caller sees to what revmap_renderer_record() or
+ * revmap_renderer_record_compute() ask for.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot);
+
+/**
+ * Makes a colour map from a PNG or JPEG file. The path is UTF-8.
+ *
+ * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_from_file(const char *path, struct RevmapColorMap **color_map);
+
+/**
+ * Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
+ * from the top.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_from_texels(uint32_t width,
+                                          uint32_t height,
+                                          const uint8_t (*texels)[4],
+                                          struct RevmapColorMap **color_map);
+
+/**
+ * Destroys a colour map; null is none. Objects that use it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_destroy(struct RevmapColorMap *color_map);
+
+/**
+ * Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
+ * filter is a RevmapSlopeFilter.
+ *
+ * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_from_file(const char *path,
+                                         uint32_t filter,
+                                         struct RevmapHeightMap **height_map);
+
+/**
+ * Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
+ * RevmapSlopeFilter.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_from_heights(uint32_t width,
+                                            uint32_t height,
+                                            const float *heights,
+                                            uint32_t filter,
+                                            struct RevmapHeightMap **height_map);
+
+/**
+ * Destroys a height map; null is none. Objects that use it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_destroy(struct RevmapHeightMap *height_map);
+
+/**
+ * Fills in a little ambient light, REVMAP_SHADOW_OFF, and one white light from above, which lasts
+ * as long as the program. The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_lighting_defaults(struct RevmapLighting *lighting);
+
+/**
+ * Fills in a camera at (2, 0, 0.5) that looks at (0, 0, 0.5), z up, 40 degrees. The size must be
+ * set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_camera_defaults(struct RevmapCamera *camera);
+
+/**
+ * Fills in the search that is taken where none is named. The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_search_defaults(struct RevmapSearch *search);
+
+/**
+ * What the last call of this thread that failed has returned; REVMAP_RESULT_OK if none has.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_last_error(void);
+
+/**
+ * Why the last call of this thread that failed did so: one line of UTF-8 that says what is wrong
+ * and what would be right. Empty if none has failed. It lasts until the next failure on this
+ * thread, or the thread's end.
+ *
+ * Thread: any.
+ */
+const char *revmap_last_error_text(void);
+
+/**
+ * Fills in a little ambient light, REVMAP_SHADOW_OFF, and one white light from above, which lasts
+ * as long as the program. The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_lighting_defaults(struct RevmapLighting *lighting);
+
+/**
+ * Fills in a camera at (2, 0, 0.5) that looks at (0, 0, 0.5), z up, 40 degrees. The size must be
+ * set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_camera_defaults(struct RevmapCamera *camera);
+
+/**
+ * Fills in the search that is taken where none is named. The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_search_defaults(struct RevmapSearch *search);
+
+/**
+ * Tells what a host has to enable on a physical device. The size of requirements must be set.
+ *
+ * Fails with REVMAP_RESULT_DEVICE for a device that lacks something; the text says what.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                 VkInstance instance,
+                                 VkPhysicalDevice physical_device,
+                                 struct RevmapRequirements *requirements);
+
+/**
+ * Opens a device of the library's own. choice is its index or a part of its name; null takes the
+ * environment's REVMAP_DEVICE, else the first of discrete, integrated, virtual and CPU devices.
+ * validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
+ * environment.
+ *
+ * Fails with REVMAP_RESULT_DEVICE where there is none that has what is needed.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_open(const char *choice,
+                                uint32_t validate,
+                                struct RevmapDevice **device);
+
+/**
+ * Borrows a host's device. All handles belong together. They must stay valid until this handle and
+ * all that is made with it are destroyed, and the device is idle.
+ *
+ * Fails with REVMAP_RESULT_DEVICE for a device that lacks something.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_borrow(const struct RevmapHostDevice *host,
+                                  struct RevmapDevice **device);
+
+/**
+ * Tells what a device is. The size of info must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_info(const struct RevmapDevice *device, struct RevmapDeviceInfo *info);
+
+/**
+ * Fails with REVMAP_RESULT_DRAW if the validation layers have had anything to say since the last
+ * call. A borrowed device's host has its own messenger, and this function always succeeds.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_check(const struct RevmapDevice *device);
+
+/**
+ * Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
+ * another driver is passed over.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_add_pipeline_cache(const struct RevmapDevice *device,
+                                              const void *bytes,
+                                              size_t count);
+
+/**
+ * Gives the driver's compiled pipelines. With null bytes count becomes their number; else as many
+ * are written as count says, which must not be fewer, and count becomes what was written. The
+ * number grows as pipelines are compiled.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_pipeline_cache(const struct RevmapDevice *device,
+                                          void *bytes,
+                                          size_t *count);
+
+/**
+ * Destroys a device; null is none. What was made with it stays usable.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_destroy(struct RevmapDevice *device);
+
+/**
+ * Makes a profile from a closed polygon: count points, each r and z in object units. The box
+ * reaches from z = 0 to z = 1 and to the given radius.
+ *
+ * Fails with REVMAP_RESULT_PROFILE for fewer than 3 points, a point with r < 0, no area, or
+ * numbers that are not finite.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_points(const double (*points)[2],
+                                        size_t count,
+                                        double radius,
+                                        struct RevmapProfile **profile);
+
+/**
+ * Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it. What
+ * is darker than one half over white is solid; the picture's height is one object unit. axis is a
+ * RevmapAxis.
+ *
+ * Fails with REVMAP_RESULT_PROFILE where that is not possible.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_bytes(const void *bytes,
+                                       size_t count,
+                                       uint32_t axis,
+                                       struct RevmapProfile **profile);
+
+/**
+ * As revmap_profile_from_bytes(), of a file. The path is UTF-8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_from_file(const char *path,
+                                      uint32_t axis,
+                                      struct RevmapProfile **profile);
+
+/**
+ * Gives the radius of the profile's box, object units.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_radius(const struct RevmapProfile *profile, double *radius);
+
+/**
+ * Destroys a profile; null is none. Objects that were made from it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_profile_destroy(struct RevmapProfile *profile);
+
+/**
+ * Makes a colour map from a PNG or JPEG file. The path is UTF-8.
+ *
+ * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_from_file(const char *path, struct RevmapColorMap **color_map);
+
+/**
+ * Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
+ * from the top.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_from_texels(uint32_t width,
+                                          uint32_t height,
+                                          const uint8_t (*texels)[4],
+                                          struct RevmapColorMap **color_map);
+
+/**
+ * Destroys a colour map; null is none. Objects that use it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_color_map_destroy(struct RevmapColorMap *color_map);
+
+/**
+ * Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
+ * filter is a RevmapSlopeFilter.
+ *
+ * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_from_file(const char *path,
+                                         uint32_t filter,
+                                         struct RevmapHeightMap **height_map);
+
+/**
+ * Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
+ * RevmapSlopeFilter.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_from_heights(uint32_t width,
+                                            uint32_t height,
+                                            const float *heights,
+                                            uint32_t filter,
+                                            struct RevmapHeightMap **height_map);
+
+/**
+ * Destroys a height map; null is none. Objects that use it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_height_map_destroy(struct RevmapHeightMap *height_map);
+
+/**
+ * Fills in an object without a profile: light grey, plain, at the origin, one world unit high. The
+ * size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_object_defaults(struct RevmapObjectInfo *object);
+
+/**
+ * Makes a renderer without objects that draws fragments in a host's pass. A null search is the
+ * default one. frames is the number of frames in flight, 1 to 8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create(const struct RevmapDevice *device,
+                                    const struct RevmapPass *pass,
+                                    const struct RevmapSearch *search,
+                                    uint32_t frames,
+                                    struct RevmapRenderer **renderer);
+
+/**
+ * Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
+ * planes is a RevmapPlanes. A null search is the default one. frames is the number of frames in
+ * flight, 1 to 8.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create_compute(const struct RevmapDevice *device,
+                                            uint32_t planes,
+                                            const struct RevmapSearch *search,
+                                            uint32_t frames,
+                                            struct RevmapRenderer **renderer);
+
+/**
+ * Adds an object, which is drawn from the next prepared frame on.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_add(struct RevmapRenderer *renderer,
+                                 const struct RevmapObjectInfo *info,
+                                 RevmapObject *object);
+
+/**
+ * Takes an object away. What frames in flight read of it is kept until they are done.
+ *
+ * Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
+ * one.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObject object);
+
+/**
+ * Gives an object other values, all of them. Values that are equal cost nothing.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
+                                 RevmapObject object,
+                                 const struct RevmapObjectInfo *info);
+
+/**
+ * Moves the surface of an object: extension, bevel and chamfer.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_offset(struct RevmapRenderer *renderer,
+                                        RevmapObject object,
+                                        const struct RevmapOffset *offset);
+
+/**
+ * Moves an object that is one copy.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_placement(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *placement);
+
+/**
+ * Gives an object other copies; with a count of 0 it is one, at its placement.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_instances(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *instances,
+                                           size_t count);
+
+/**
+ * Sets lights and shadows for all objects.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_lighting(struct RevmapRenderer *renderer,
+                                          const struct RevmapLighting *lighting);
+
+/**
+ * Sets what compute writes to, from the next prepared frame on. The handles are of the renderer's
+ * device, large enough for every view's viewport, which begins at 0. They live until another
+ * target is set and the frames recorded before are done.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
+                                                const struct RevmapComputeTarget *target);
+
+/**
+ * Tells what a renderer holds and did. The size of statistics must be set.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
+                                        struct RevmapStatistics *statistics);
+
+/**
+ * Gives a note: what was done in another way than asked for, and why. The text lasts as long as
+ * the renderer.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
+                                  uint32_t number,
+                                  const char **note);
+
+/**
+ * Destroys a renderer; null is none. The frames that it recorded must be done.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_destroy(struct RevmapRenderer *renderer);
+
+/**
+ * Prepares the frame of a slot: takes over what was set, writes what changed, records copies of
+ * new textures. To be called in every frame before revmap_renderer_record(). It neither submits
+ * nor waits.
+ *
+ * The command buffer is recording, outside of a pass, for a queue of the device's family. The
+ * commands recorded for this slot before have run or were never submitted. Commands of other slots
+ * that were recorded before are submitted before these.
+ *
+ * Fails with REVMAP_RESULT_SCENE or REVMAP_RESULT_PROFILE for what cannot be drawn: it stays as it
+ * was before it was set. The text begins with the object's number.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prepare(struct RevmapRenderer *renderer,
+                                     VkCommandBuffer command_buffer,
+                                     uint32_t slot,
+                                     const struct RevmapView *view);
+
+/**
+ * As revmap_renderer_prepare(), seen by a camera in pictures of width * height pixels, with depth
+ * 0 at near and 1 at far, both along the view. The output's depth order is
+ * REVMAP_DEPTH_ORDER_NORMAL.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prepare_camera(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot,
+                                            const struct RevmapCamera *camera,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            double near,
+                                            double far);
+
+/**
+ * Records the draws of the frame that was prepared for a slot. It binds pipelines, descriptor sets
+ * 0 to 2 and an index buffer; it sets neither viewport nor scissor, which are dynamic.
+ *
+ * The command buffer is recording, within a pass that is compatible with the output, with the
+ * view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
+ * the commands have run.
+ *
+ * Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared, or objects
+ * were added or removed since.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record(struct RevmapRenderer *renderer,
+                                    VkCommandBuffer command_buffer,
+                                    uint32_t slot);
+
+/**
+ * Records the dispatches of the frame that was prepared for a slot, into a target that was
+ * cleared. It records barriers between its own dispatches, none before its first and after its
+ * last write.
+ *
+ * The command buffer is recording, outside of a pass; writes to the target before are made
+ * available to compute shaders. The renderer lives, and the slot is not prepared again, until the
+ * commands have run.
+ *
+ * Fails as revmap_renderer_record().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot);
+
+/**
+ * Lists every pipeline that the objects can reach while parameters, lights, placements and the
+ * view change. Other techniques make others necessary: textures where there were none, replicas,
+ * shadows; in compute also more objects or copies than one. Nothing is compiled yet.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_prewarm(struct RevmapRenderer *renderer,
+                                     struct RevmapPrewarm **prewarm);
+
+/**
+ * Compiles those that are not compiled yet. The renderer must live until this returns.
+ *
+ * Thread: any, also while another thread uses the renderer.
+ */
+RevmapResult revmap_prewarm_compile(const struct RevmapPrewarm *prewarm);
+
+/**
+ * Gives the number of pipelines, compiled or not.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_prewarm_count(const struct RevmapPrewarm *prewarm, size_t *count);
+
+/**
+ * Destroys the list; null is none. What was compiled stays.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_prewarm_destroy(struct RevmapPrewarm *prewarm);
+
+/**
+ * Records draws of no pixel, or dispatches of no group, with every pipeline of
+ * revmap_renderer_prewarm(): some drivers compile shaders at the first draw, and do it when these
+ * commands run. In a pass it sets the scissor, too, to nothing.
+ *
+ * The slot is prepared; the caller sees to what revmap_renderer_record() or
+ * revmap_renderer_record_compute() ask for.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
+                                            VkCommandBuffer command_buffer,
+                                            uint32_t slot);
+
+/**
+ * Fills in 800x600 pixels, REVMAP_STAGE_FRAGMENT, REVMAP_PLANES_COLOR and the default search. The
+ * size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_picture_defaults(struct RevmapPicture *picture);
+
+/**
+ * Fills in a scene without objects before transparent black, with the default camera and lights.
+ * The size must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_scene_defaults(struct RevmapScene *scene);
+
+/**
+ * Takes a scene onto a device, with a picture to draw it into. A borrowed device must have a
+ * queue, which nobody else uses while a picture is drawn or read.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_offscreen_create(const struct RevmapDevice *device,
+                                     const struct RevmapPicture *picture,
+                                     const struct RevmapScene *scene,
+                                     struct RevmapOffscreen **offscreen);
+
+/**
+ * Takes over another scene. Its cost follows what differs from the scene before. If it fails, what
+ * was drawn before can be drawn on.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_update(struct RevmapOffscreen *offscreen,
+                                     const struct RevmapScene *scene);
+
+/**
+ * Compiles every pipeline that updates can come to need, as long as no object's technique changes.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_prewarm(struct RevmapOffscreen *offscreen);
+
+/**
+ * Draws the picture and waits for it. times may be null; else its size must be set.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_draw(struct RevmapOffscreen *offscreen, struct RevmapTimes *times);
+
+/**
+ * Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
+ * top. plane is a RevmapPlane; of REVMAP_PLANES_COLOR REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR
+ * are there. count is the number of bytes, which must be exact.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_read(struct RevmapOffscreen *offscreen,
+                                   uint32_t plane,
+                                   void *bytes,
+                                   size_t count);
+
+/**
+ * Writes the picture that was drawn last as a PNG file of 8-bit sRGB with alpha. The path is
+ * UTF-8.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_write_png(struct RevmapOffscreen *offscreen, const char *path);
+
+/**
+ * Destroys a picture; null is none.
+ *
+ * Thread: one at a time for a picture.
+ */
+RevmapResult revmap_offscreen_destroy(struct RevmapOffscreen *offscreen);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* REVMAP_H */

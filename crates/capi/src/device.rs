@@ -1,0 +1,302 @@
+//! Devices: what they must offer, opening one, borrowing a host's.
+
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::handle::{Handle, handle};
+use crate::pointers::{described, fill, list, put, read, take, text};
+use crate::values::size;
+use ash::vk;
+use ash::vk::Handle as _;
+use revmap::gpu::{Device, HostDevice, Requirements};
+use std::ffi::{c_char, c_void};
+
+/// A Vulkan device, opened by the library or borrowed from a host. What is made on it keeps what it
+/// needs of it.
+pub struct RevmapDevice;
+handle!(RevmapDevice, "device", Device);
+
+/// `PFN_vkGetInstanceProcAddr`, which may be null.
+#[repr(transparent)]
+#[derive(Clone, Copy)]
+pub struct GetInstanceProcAddr(pub Option<vk::PFN_vkGetInstanceProcAddr>);
+
+/// What a host has to enable on a device that it lends. No device extension is needed.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RevmapRequirements {
+    /// sizeof(RevmapRequirements).
+    pub size: u32,
+    /// Least Vulkan version of the instance and the device, as VK_MAKE_API_VERSION.
+    pub api_version: u32,
+    /// The first queue family with graphics and compute.
+    pub queue_family: u32,
+    /// Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass needs none
+    /// of them.
+    pub features: vk::PhysicalDeviceFeatures,
+}
+
+/// A host's device.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RevmapHostDevice {
+    /// sizeof(RevmapHostDevice).
+    pub size: u32,
+    /// The family of the queues to which recorded commands are submitted.
+    pub queue_family: u32,
+    /// The host's vkGetInstanceProcAddr, through which all functions are found.
+    pub get_instance_proc_addr: GetInstanceProcAddr,
+    /// The instance.
+    pub instance: vk::Instance,
+    /// The physical device.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device, of Vulkan 1.2 or later.
+    pub device: vk::Device,
+    /// A queue for RevmapOffscreen, which submits by itself; renderers need none. May be null.
+    pub queue: vk::Queue,
+    /// The features that the device was opened with; null: none.
+    pub features: *const vk::PhysicalDeviceFeatures,
+    /// A pipeline cache of the host's; may be null.
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+/// What a device is.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RevmapDeviceInfo {
+    /// sizeof(RevmapDeviceInfo).
+    pub size: u32,
+    /// 1 where the library has opened it with the validation layers, else 0.
+    pub validated: u32,
+    /// Pipelines compiled on it so far.
+    pub pipelines_compiled: u64,
+    /// Its name, UTF-8, ended by 0.
+    pub name: [c_char; 256],
+    /// Driver's name and version, UTF-8, ended by 0.
+    pub driver: [c_char; 256],
+}
+
+described!(RevmapRequirements, RevmapHostDevice, RevmapDeviceInfo);
+
+/// The functions of a host's instance.
+unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outcome<ash::Instance> {
+    let get_instance_proc_addr = get
+        .0
+        .ok_or_else(|| Fault::usage("get_instance_proc_addr is null"))?;
+    if instance.is_null() {
+        return Err(Fault::usage("the VkInstance is null"));
+    }
+    // SAFETY: the host's own function and instance.
+    let known = unsafe { get_instance_proc_addr(instance, c"vkGetDeviceProcAddr".as_ptr()) };
+    if known.is_none() {
+        return Err(Fault::usage(
+            "get_instance_proc_addr does not know vkGetDeviceProcAddr of this instance",
+        ));
+    }
+    let functions = ash::StaticFn {
+        get_instance_proc_addr,
+    };
+    // SAFETY: as above.
+    Ok(unsafe { ash::Instance::load(&functions, instance) })
+}
+
+/// Tells what a host has to enable on a physical device. The size of requirements must be set.
+///
+/// Fails with REVMAP_RESULT_DEVICE for a device that lacks something; the text says what.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_requirements(
+    get_instance_proc_addr: GetInstanceProcAddr,
+    instance: vk::Instance,
+    physical_device: vk::PhysicalDevice,
+    requirements: *mut RevmapRequirements,
+) -> RevmapResult {
+    // SAFETY: the caller's handles and pointer.
+    enter(|| unsafe {
+        let functions = instance_of(get_instance_proc_addr, instance)?;
+        if physical_device.is_null() {
+            return Err(Fault::usage("the VkPhysicalDevice is null"));
+        }
+        let needs = Requirements::of(&functions, physical_device)?;
+        if !needs.extensions.is_empty() {
+            return Err(Fault::new(
+                RevmapResult::Internal,
+                "device extensions are needed, which this interface cannot name",
+            ));
+        }
+        let value = RevmapRequirements {
+            size: size(size_of::<RevmapRequirements>()),
+            api_version: needs.api_version,
+            queue_family: needs.queue_family,
+            features: needs.features,
+        };
+        fill(requirements, value)
+    })
+}
+
+/// Opens a device of the library's own. choice is its index or a part of its name; null takes the
+/// environment's REVMAP_DEVICE, else the first of discrete, integrated, virtual and CPU devices.
+/// validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
+/// environment.
+///
+/// Fails with REVMAP_RESULT_DEVICE where there is none that has what is needed.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_open(
+    choice: *const c_char,
+    validate: u32,
+    device: *mut *mut RevmapDevice,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(device, "device", || {
+            let choice = if choice.is_null() {
+                None
+            } else {
+                Some(text(choice, "choice")?)
+            };
+            let opened = if validate == 0 {
+                Device::open(choice)?
+            } else {
+                Device::open_validated(choice)?
+            };
+            Ok(Handle::create(opened))
+        })
+    })
+}
+
+/// Borrows a host's device. All handles belong together. They must stay valid until this handle and
+/// all that is made with it are destroyed, and the device is idle.
+///
+/// Fails with REVMAP_RESULT_DEVICE for a device that lacks something.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_borrow(
+    host: *const RevmapHostDevice,
+    device: *mut *mut RevmapDevice,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    enter(|| unsafe {
+        put(device, "device", || {
+            let host = read(host)?;
+            let instance = instance_of(host.get_instance_proc_addr, host.instance)?;
+            if host.physical_device.is_null() || host.device.is_null() {
+                return Err(Fault::usage("the VkPhysicalDevice or the VkDevice is null"));
+            }
+            let functions = ash::Device::load(instance.fp_v1_0(), host.device);
+            let features = if host.features.is_null() {
+                vk::PhysicalDeviceFeatures::default()
+            } else {
+                take(host.features, "features")?
+            };
+            let borrowed = Device::borrow(&HostDevice {
+                instance: &instance,
+                physical: host.physical_device,
+                device: &functions,
+                queue_family: host.queue_family,
+                queue: (!host.queue.is_null()).then_some(host.queue),
+                features,
+                allocator: None,
+                pipeline_cache: (!host.pipeline_cache.is_null()).then_some(host.pipeline_cache),
+            })?;
+            Ok(Handle::create(borrowed))
+        })
+    })
+}
+
+/// Tells what a device is. The size of info must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_info(
+    device: *const RevmapDevice,
+    info: *mut RevmapDeviceInfo,
+) -> RevmapResult {
+    enter(|| {
+        let device = RevmapDevice::get(device)?;
+        let value = RevmapDeviceInfo {
+            size: size(size_of::<RevmapDeviceInfo>()),
+            validated: u32::from(device.validated()),
+            pipelines_compiled: device.pipelines_compiled(),
+            name: short(&device.report().name),
+            driver: short(&device.report().driver),
+        };
+        // SAFETY: the caller's structure.
+        unsafe { fill(info, value) }
+    })
+}
+
+/// As much of a text as fits, ended by 0.
+fn short(text: &str) -> [c_char; 256] {
+    let mut all = [0; 256];
+    let end = text.floor_char_boundary(all.len() - 1);
+    for (to, byte) in all.iter_mut().zip(text[..end].bytes()) {
+        *to = byte.cast_signed() as c_char;
+    }
+    all
+}
+
+/// Fails with REVMAP_RESULT_DRAW if the validation layers have had anything to say since the last
+/// call. A borrowed device's host has its own messenger, and this function always succeeds.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> RevmapResult {
+    enter(|| Ok(RevmapDevice::get(device)?.check()?))
+}
+
+/// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
+/// another driver is passed over.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
+    device: *const RevmapDevice,
+    bytes: *const c_void,
+    count: usize,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's bytes.
+        let bytes = unsafe { list(bytes.cast::<u8>(), count, "bytes") }?;
+        Ok(RevmapDevice::get(device)?.add_pipeline_cache(bytes)?)
+    })
+}
+
+/// Gives the driver's compiled pipelines. With null bytes count becomes their number; else as many
+/// are written as count says, which must not be fewer, and count becomes what was written. The
+/// number grows as pipelines are compiled.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_pipeline_cache(
+    device: *const RevmapDevice,
+    bytes: *mut c_void,
+    count: *mut usize,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers; the bytes are as many as it says.
+    enter(|| unsafe {
+        let room = take(count, "count")?;
+        let data = RevmapDevice::get(device)?.pipeline_cache_data()?;
+        if !bytes.is_null() {
+            if room < data.len() {
+                return Err(Fault::usage(format!(
+                    "{} bytes do not fit into {room}",
+                    data.len()
+                )));
+            }
+            bytes
+                .cast::<u8>()
+                .copy_from_nonoverlapping(data.as_ptr(), data.len());
+        }
+        put(count, "count", || Ok(data.len()))
+    })
+}
+
+/// Destroys a device; null is none. What was made with it stays usable.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_device_destroy(device: *mut RevmapDevice) -> RevmapResult {
+    enter(|| RevmapDevice::destroy(device))
+}

@@ -1,0 +1,235 @@
+//! Numbers of the header, and what they stand for. Structures hold them as `uint32_t`, as C may
+//! write any number.
+
+use crate::fault::{Fault, Outcome};
+use revmap::gpu::DepthOrder;
+use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
+use revmap::profile::ProfileAxis;
+use revmap::scene::{BumpForm, Shadow};
+use revmap::settings::{DrawStage, Planes, Solver};
+
+/// Which part of a picture or a drawing is the half-plane that is turned.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapAxis {
+    /// The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+    Center = 0,
+    /// The axis is the left edge: the picture is a half profile.
+    Left = 1,
+}
+
+/// How the first hit along a ray is found.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapSolver {
+    /// What this version takes where none is named: REVMAP_SOLVER_HULL.
+    Default = 0,
+    /// Equal steps along the ray.
+    Linear = 1,
+    /// Equal steps, then halvings: relief mapping.
+    Relief = 2,
+    /// Equal steps, then secants: interval mapping.
+    Secant = 3,
+    /// Circle tracing with 20 steps, as published.
+    Circle = 4,
+    /// Safe steps on the map alone, under every offset; rebuilds nothing when an offset changes.
+    Live = 5,
+    /// Cone step mapping, for profiles that are single-valued in z.
+    Cone = 6,
+    /// Relaxed cone step mapping.
+    Relaxed = 7,
+    /// The boundary as pieces of quadrics, solved exactly.
+    Quadric = 8,
+    /// The same pieces, found by the rasteriser or by tiles of pixels.
+    Hull = 9,
+}
+
+/// Where the distances of a shape map come from.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapMapSource {
+    /// The most accurate for the profile.
+    Default = 0,
+    /// Distance to the nearest solid pixel's centre of a binary image.
+    Binary = 1,
+    /// Distance to the outline traced from 8 bits of coverage.
+    Coverage = 2,
+    /// Exact distance to the outline.
+    Exact = 3,
+}
+
+/// How the distances of a shape map are stored on the device.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapMapFormat {
+    /// Signed distance as a 32-bit float.
+    R32 = 0,
+    /// Signed distance as a 16-bit float.
+    R16 = 1,
+    /// Gradient, distance and form, 8 bits each.
+    Rgba8 = 2,
+}
+
+/// Which planes of a picture are drawn.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapPlanes {
+    /// Colour alone, 8-bit sRGB.
+    Color = 0,
+    /// Every plane of RevmapPlane, in 32-bit floats.
+    All = 1,
+    /// Depth alone, for shadow maps, in a host's pass.
+    Depth = 2,
+    /// The same along parallel rays.
+    DepthParallel = 3,
+}
+
+/// A plane that revmap_offscreen_read() gives. Row 0 is on top.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapPlane {
+    /// 4 bytes a pixel: sRGB, alpha linear.
+    Srgb8 = 0,
+    /// 4 floats a pixel: linear colour, not multiplied by alpha.
+    Color = 1,
+    /// 1 float a pixel: distance from the eye along the ray, world units; infinite where nothing is
+    /// hit.
+    Distance = 2,
+    /// 3 floats a pixel: unit world normal, without bump.
+    Normal = 3,
+    /// 3 floats a pixel: the normal that was shaded.
+    ShadingNormal = 4,
+    /// 3 floats a pixel: colour of the surface before light, linear.
+    Albedo = 5,
+    /// 2 floats a pixel: texture coordinates before the texture's repetition.
+    Uv = 6,
+    /// 1 float a pixel: look-ups that the search made.
+    Steps = 7,
+}
+
+/// Which end of the depth range is near.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapDepthOrder {
+    /// 0 is near, fragments pass that are less.
+    Normal = 0,
+    /// 1 is near, fragments pass that are greater.
+    Reversed = 1,
+}
+
+/// How a host begins its pass.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapPassKind {
+    /// By vkCmdBeginRendering.
+    Dynamic = 0,
+    /// By vkCmdBeginRenderPass.
+    RenderPass = 1,
+}
+
+/// Where rays are traced.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapStage {
+    /// In fragment shaders.
+    Fragment = 0,
+    /// In compute shaders.
+    Compute = 1,
+}
+
+/// How texture coordinates follow from the surface's points.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapProjection {
+    /// Azimuth and height.
+    Cylindrical = 0,
+    /// From above: x and y of the box.
+    Planar = 1,
+    /// Azimuth and polar angle about the middle of the box.
+    Spherical = 2,
+    /// Azimuth and length along the profile.
+    Arc = 3,
+}
+
+/// How a height map tilts the normal.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapBumpForm {
+    /// By the gradient along the surface.
+    SurfaceGradient = 0,
+    /// As published, without the factor of the azimuth.
+    Papers = 1,
+}
+
+/// How slopes are taken from heights.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapSlopeFilter {
+    /// Scharr's.
+    Scharr = 0,
+    /// Difference of the two neighbours.
+    Central = 1,
+}
+
+/// Shadows, by tracing from the surface towards each light.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapShadow {
+    /// None; nothing is traced.
+    Off = 0,
+    /// Lit or not.
+    Hard = 1,
+    /// With a penumbra.
+    Soft = 2,
+}
+
+/// A function from the numbers of an enumeration to what they stand for.
+macro_rules! numbers {
+    ($($function:ident: $from:ident => $to:ty { $($name:ident => $value:expr),* $(,)? })*) => {
+        $(pub(crate) fn $function(number: u32) -> Outcome<$to> {
+            let all = [$(($from::$name as u32, $value)),*];
+            let found = all.into_iter().find(|(n, _)| *n == number);
+            let unknown = || Fault::usage(format!("{number} is no {}", stringify!($from)));
+            found.map(|(_, value)| value).ok_or_else(unknown)
+        })*
+    };
+}
+
+numbers! {
+    axis: RevmapAxis => ProfileAxis { Center => ProfileAxis::Center, Left => ProfileAxis::Left }
+    solver: RevmapSolver => Solver {
+        Default => Solver::DEFAULT, Linear => Solver::Linear, Relief => Solver::Relief, Secant => Solver::Secant,
+        Circle => Solver::Circle, Live => Solver::Live, Cone => Solver::Cone, Relaxed => Solver::Relaxed,
+        Quadric => Solver::Quadric, Hull => Solver::Hull,
+    }
+    map_source: RevmapMapSource => Option<MapSource> {
+        Default => None, Binary => Some(MapSource::Binary), Coverage => Some(MapSource::Coverage),
+        Exact => Some(MapSource::Exact),
+    }
+    map_format: RevmapMapFormat => MapFormat {
+        R32 => MapFormat::R32, R16 => MapFormat::R16, Rgba8 => MapFormat::Rgba8,
+    }
+    planes: RevmapPlanes => Planes {
+        Color => Planes::Color, All => Planes::All, Depth => Planes::Depth { parallel: false },
+        DepthParallel => Planes::Depth { parallel: true },
+    }
+    plane: RevmapPlane => RevmapPlane {
+        Srgb8 => RevmapPlane::Srgb8, Color => RevmapPlane::Color, Distance => RevmapPlane::Distance,
+        Normal => RevmapPlane::Normal, ShadingNormal => RevmapPlane::ShadingNormal, Albedo => RevmapPlane::Albedo,
+        Uv => RevmapPlane::Uv, Steps => RevmapPlane::Steps,
+    }
+    depth_order: RevmapDepthOrder => DepthOrder { Normal => DepthOrder::Normal, Reversed => DepthOrder::Reversed }
+    pass_kind: RevmapPassKind => RevmapPassKind {
+        Dynamic => RevmapPassKind::Dynamic, RenderPass => RevmapPassKind::RenderPass,
+    }
+    stage: RevmapStage => DrawStage { Fragment => DrawStage::Fragment, Compute => DrawStage::Compute }
+    projection: RevmapProjection => Projection {
+        Cylindrical => Projection::Cylindrical, Planar => Projection::Planar, Spherical => Projection::Spherical,
+        Arc => Projection::Arc,
+    }
+    bump_form: RevmapBumpForm => BumpForm {
+        SurfaceGradient => BumpForm::SurfaceGradient, Papers => BumpForm::Papers,
+    }
+    slope_filter: RevmapSlopeFilter => SlopeFilter { Scharr => SlopeFilter::Scharr, Central => SlopeFilter::Central }
+    shadow: RevmapShadow => Shadow { Off => Shadow::Off, Hard => Shadow::Hard, Soft => Shadow::Soft }
+}

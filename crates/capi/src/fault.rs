@@ -1,0 +1,158 @@
+//! Results, and the last failure of each thread.
+
+use revmap::error::Stage;
+use std::any::Any;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What a function says of itself. Everything but REVMAP_RESULT_OK is a failure, which changes
+/// nothing else than the failing function's documentation says, and leaves a text for
+/// revmap_last_error_text().
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RevmapResult {
+    /// Done.
+    Ok = 0,
+    /// Arguments that make no sense: a null pointer, a wrong size, an unknown number, a call out of
+    /// order.
+    Usage = 1,
+    /// A value out of its range; the text begins with its name.
+    Scene = 2,
+    /// A profile that cannot be read, or is none.
+    Profile = 3,
+    /// A texture that cannot be read.
+    Map = 4,
+    /// No Vulkan device, or one that lacks what is needed.
+    Device = 5,
+    /// A Vulkan call, or work on the device.
+    Draw = 6,
+    /// A picture that cannot be made or written.
+    Frame = 7,
+    /// A handle that is null, destroyed or of another kind.
+    Handle = 8,
+    /// A handle that another thread uses at this moment.
+    Busy = 9,
+    /// A fault of the library. The handles of the call can only be destroyed.
+    Internal = 10,
+}
+
+/// Why a call fails.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub result: RevmapResult,
+    pub text: String,
+}
+
+impl Fault {
+    pub fn new(result: RevmapResult, text: impl Into<String>) -> Self {
+        Self {
+            result,
+            text: text.into(),
+        }
+    }
+
+    pub fn usage(text: impl Into<String>) -> Self {
+        Self::new(RevmapResult::Usage, text)
+    }
+}
+
+impl From<revmap::Error> for Fault {
+    fn from(error: revmap::Error) -> Self {
+        let result = match error.stage {
+            Stage::Usage => RevmapResult::Usage,
+            Stage::Scene => RevmapResult::Scene,
+            Stage::Profile => RevmapResult::Profile,
+            Stage::Map => RevmapResult::Map,
+            Stage::Device => RevmapResult::Device,
+            Stage::Draw => RevmapResult::Draw,
+            Stage::Frame | Stage::Report => RevmapResult::Frame,
+        };
+        Self::new(result, error.to_string())
+    }
+}
+
+pub(crate) type Outcome<T> = std::result::Result<T, Fault>;
+
+thread_local! {
+    static LAST: RefCell<(RevmapResult, Option<CString>)> = const { RefCell::new((RevmapResult::Ok, None)) };
+}
+
+/// Runs the body of an entry point: keeps its failure for this thread, and makes one of a panic.
+pub(crate) fn enter(body: impl FnOnce() -> Outcome<()>) -> RevmapResult {
+    let fault = match catch_unwind(AssertUnwindSafe(body)) {
+        Ok(Ok(())) => return RevmapResult::Ok,
+        Ok(Err(fault)) => fault,
+        Err(panic) => Fault::new(RevmapResult::Internal, panic_text(panic.as_ref())),
+    };
+    let text = CString::new(fault.text.replace('\0', " ")).ok();
+    // A thread that ends has no last failure any more.
+    let _ = LAST.try_with(|last| last.replace((fault.result, text)));
+    fault.result
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let said = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!(
+        "a fault of the library: {}",
+        said.unwrap_or("it says no more")
+    )
+}
+
+/// What the last call of this thread that failed has returned; REVMAP_RESULT_OK if none has.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_last_error() -> RevmapResult {
+    LAST.try_with(|last| last.borrow().0)
+        .unwrap_or(RevmapResult::Ok)
+}
+
+/// Why the last call of this thread that failed did so: one line of UTF-8 that says what is wrong
+/// and what would be right. Empty if none has failed. It lasts until the next failure on this
+/// thread, or the thread's end.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_last_error_text() -> *const c_char {
+    const NONE: &CStr = c"";
+    LAST.try_with(|last| last.borrow().1.as_ref().map(|text| text.as_ptr()))
+        .ok()
+        .flatten()
+        .unwrap_or(NONE.as_ptr())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::panic)]
+    use super::*;
+
+    fn last() -> (RevmapResult, String) {
+        // SAFETY: the text lasts until the next failure of this thread.
+        let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
+        (revmap_last_error(), text.to_string_lossy().into_owned())
+    }
+
+    #[test]
+    fn a_panic_stays_within_and_each_thread_has_its_own_failure() {
+        assert_eq!(last(), (RevmapResult::Ok, String::new()));
+        assert_eq!(enter(|| panic!("planted")), RevmapResult::Internal);
+        let (result, text) = last();
+        assert_eq!(result, RevmapResult::Internal);
+        assert!(text.ends_with("planted"), "{text}");
+        std::thread::spawn(|| {
+            assert_eq!(last(), (RevmapResult::Ok, String::new()));
+            assert_eq!(enter(|| Err(Fault::usage("a\0b"))), RevmapResult::Usage);
+            assert_eq!(last(), (RevmapResult::Usage, "a b".into()));
+        })
+        .join()
+        .unwrap();
+        assert_eq!(last().0, RevmapResult::Internal);
+        // What succeeds says nothing.
+        assert_eq!(enter(|| Ok(())), RevmapResult::Ok);
+        assert_eq!(last().0, RevmapResult::Internal);
+    }
+}

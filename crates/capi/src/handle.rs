@@ -1,0 +1,166 @@
+//! Handles: numbers that C holds in place of addresses.
+//!
+//! A number is given once and never again, so that a handle that was destroyed is never taken for
+//! another.
+
+use crate::fault::{Fault, Outcome, RevmapResult};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError, RwLock, TryLockError};
+
+/// What lives behind the handles of one kind.
+pub(crate) struct Registry<T> {
+    live: RwLock<BTreeMap<usize, T>>,
+}
+
+/// The type that the header shows a handle to.
+pub(crate) trait Handle: Sized + 'static {
+    /// What it stands for. Clones are the same thing.
+    type Value: Clone + 'static;
+    /// What messages call it.
+    const NAME: &'static str;
+    fn registry() -> &'static Registry<Self::Value>;
+
+    /// A new handle.
+    fn create(value: Self::Value) -> *mut Self {
+        // Steps as between addresses: tools that look at alignment find nothing odd.
+        static NEXT: AtomicUsize = AtomicUsize::new(16);
+        let number = NEXT.fetch_add(16, Ordering::Relaxed);
+        let mut live = Self::registry()
+            .live
+            .write()
+            .unwrap_or_else(PoisonError::into_inner);
+        live.insert(number, value);
+        std::ptr::without_provenance_mut(number)
+    }
+
+    fn get(handle: *const Self) -> Outcome<Self::Value> {
+        let live = Self::registry()
+            .live
+            .read()
+            .unwrap_or_else(PoisonError::into_inner);
+        live.get(&handle.addr())
+            .cloned()
+            .ok_or_else(|| missing(Self::NAME, handle.is_null()))
+    }
+
+    /// As `get`; none of a null handle.
+    fn get_optional(handle: *const Self) -> Outcome<Option<Self::Value>> {
+        if handle.is_null() {
+            return Ok(None);
+        }
+        Self::get(handle).map(Some)
+    }
+
+    /// Takes a handle away. Null is none.
+    fn destroy(handle: *mut Self) -> Outcome<()> {
+        if handle.is_null() {
+            return Ok(());
+        }
+        let value = {
+            let mut live = Self::registry()
+                .live
+                .write()
+                .unwrap_or_else(PoisonError::into_inner);
+            live.remove(&handle.addr())
+        };
+        // Dropped without the lock: it may take long.
+        value.map(drop).ok_or_else(|| missing(Self::NAME, false))
+    }
+}
+
+fn missing(name: &str, null: bool) -> Fault {
+    let why = if null {
+        "is null"
+    } else {
+        "was destroyed, or never was one"
+    };
+    Fault::new(RevmapResult::Handle, format!("the {name} {why}"))
+}
+
+impl<T> Registry<T> {
+    pub const fn new() -> Self {
+        Self {
+            live: RwLock::new(BTreeMap::new()),
+        }
+    }
+}
+
+/// Calls `work` with what one thread at a time may use.
+pub(crate) fn alone<T, R>(
+    shared: &Mutex<T>,
+    name: &str,
+    work: impl FnOnce(&mut T) -> Outcome<R>,
+) -> Outcome<R> {
+    match shared.try_lock() {
+        Ok(mut value) => work(&mut value),
+        Err(TryLockError::WouldBlock) => Err(Fault::new(
+            RevmapResult::Busy,
+            format!("the {name} is in use by another thread; use it in one at a time"),
+        )),
+        Err(TryLockError::Poisoned(_)) => Err(Fault::new(
+            RevmapResult::Internal,
+            format!("the {name} has met a fault of the library before; destroy it"),
+        )),
+    }
+}
+
+/// Declares the type of a handle.
+macro_rules! handle {
+    ($name:ident, $text:literal, $value:ty) => {
+        impl crate::handle::Handle for $name {
+            type Value = $value;
+            const NAME: &'static str = $text;
+
+            fn registry() -> &'static crate::handle::Registry<$value> {
+                static REGISTRY: crate::handle::Registry<$value> = crate::handle::Registry::new();
+                &REGISTRY
+            }
+        }
+    };
+}
+pub(crate) use handle;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    struct Thing;
+    handle!(Thing, "thing", Arc<Mutex<u32>>);
+
+    #[test]
+    fn handles_are_found_until_they_are_destroyed() {
+        let shared = Arc::new(Mutex::new(7));
+        let first = Thing::create(shared.clone());
+        let second = Thing::create(shared.clone());
+        assert_ne!(first, second);
+        assert!(Arc::ptr_eq(&Thing::get(first).unwrap(), &shared));
+        Thing::destroy(first).unwrap();
+        for wrong in [first, std::ptr::null_mut()] {
+            assert_eq!(Thing::get(wrong).unwrap_err().result, RevmapResult::Handle);
+        }
+        assert_eq!(
+            Thing::destroy(first).unwrap_err().result,
+            RevmapResult::Handle
+        );
+        assert!(Thing::destroy(std::ptr::null_mut()).is_ok());
+        assert!(Thing::get_optional(std::ptr::null()).unwrap().is_none());
+        assert!(Thing::get_optional(first).is_err());
+        Thing::destroy(second).unwrap();
+        assert_eq!(Arc::strong_count(&shared), 1);
+    }
+
+    #[test]
+    fn two_threads_at_once_are_refused() {
+        let shared = Mutex::new(0);
+        let inner = alone(&shared, "thing", |_| {
+            Ok(std::thread::scope(|s| {
+                s.spawn(|| alone(&shared, "thing", |_| Ok(())).unwrap_err().result)
+                    .join()
+            }))
+        });
+        assert_eq!(inner.unwrap().unwrap(), RevmapResult::Busy);
+        assert!(alone(&shared, "thing", |_| Ok(())).is_ok());
+    }
+}

@@ -1,0 +1,135 @@
+//! Objects as C describes them.
+
+use crate::enums;
+use crate::fault::{Outcome, RevmapResult, enter};
+use crate::handle::Handle;
+use crate::pointers::{described, fill, list, text};
+use crate::profile::RevmapProfile;
+use crate::texture::{RevmapColorMap, RevmapHeightMap};
+use crate::values::{RevmapOffset, RevmapPlacement, UPRIGHT, size};
+use revmap::scene::{Object, Offset, Placement, Specular, Texturing};
+use std::ffi::c_char;
+use std::ptr::null;
+
+/// One solid of revolution, once or as many copies. Defaults: revmap_object_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapObjectInfo {
+    /// sizeof(RevmapObjectInfo).
+    pub size: u32,
+    /// Rows of its shape map.
+    pub map_rows: u32,
+    /// What is turned. Objects that share a profile share its maps.
+    pub profile: *const RevmapProfile,
+    /// What messages call it, UTF-8; may be null.
+    pub name: *const c_char,
+    /// Colours in place of color; may be null.
+    pub color_map: *const RevmapColorMap,
+    /// Heights for bump mapping; may be null.
+    pub height_map: *const RevmapHeightMap,
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Weight of the Blinn-Phong highlight, linear.
+    pub specular_strength: f32,
+    /// Exponent of the highlight.
+    pub specular_shininess: f32,
+    /// A RevmapProjection.
+    pub projection: u32,
+    /// A RevmapBumpForm.
+    pub bump_form: u32,
+    /// Depth by which the slopes of height_map are scaled.
+    pub bump: f64,
+    /// How often textures repeat around and along the solid.
+    pub texture_repeat: [f64; 2],
+    /// Extension, bevel and chamfer.
+    pub offset: RevmapOffset,
+    /// Where the axis stands in the box, each in [0, 1]; the middle is (0.5, 0.5).
+    pub axis: [f64; 2],
+    /// How many replicas the box holds along x, y, z; at least 1 each.
+    pub repeat: [u32; 3],
+    /// Whether every second replica along x, y, z is reflected: 0 or 1.
+    pub mirror: [u32; 3],
+    /// Where it is, if it has no instances.
+    pub placement: RevmapPlacement,
+    /// Where its copies are; read during the call; null where there are none.
+    pub instances: *const RevmapPlacement,
+    /// Number of copies; 0: one, at placement.
+    pub instance_count: usize,
+}
+
+described!(RevmapObjectInfo);
+
+impl RevmapObjectInfo {
+    pub(crate) unsafe fn object(&self) -> Outcome<Object> {
+        let profile = RevmapProfile::get(self.profile)?;
+        let name = if self.name.is_null() {
+            "object"
+        } else {
+            // SAFETY: the caller's text.
+            unsafe { text(self.name, "name") }?
+        };
+        // SAFETY: the caller's, as many as it says.
+        let instances = unsafe { list(self.instances, self.instance_count, "instances") }?;
+        let mut object = Object::new(name, profile);
+        object.map_rows = self.map_rows;
+        object.color = self.color;
+        object.specular = Specular {
+            strength: self.specular_strength,
+            shininess: self.specular_shininess,
+        };
+        object.texturing = Texturing {
+            color_map: RevmapColorMap::get_optional(self.color_map)?,
+            displacement_map: RevmapHeightMap::get_optional(self.height_map)?,
+            bump: self.bump,
+            bump_form: enums::bump_form(self.bump_form)?,
+            projection: enums::projection(self.projection)?,
+            repeat: self.texture_repeat,
+        };
+        object.offset = self.offset.into();
+        object.axis = self.axis;
+        object.repeat = self.repeat;
+        object.mirror = self.mirror.map(|flag| flag != 0);
+        object.placement = self.placement.into();
+        object.instances = placements(instances);
+        Ok(object)
+    }
+}
+
+pub(crate) fn placements(from: &[RevmapPlacement]) -> Vec<Placement> {
+    from.iter().map(|&placement| placement.into()).collect()
+}
+
+/// Fills in an object without a profile: light grey, plain, at the origin, one world unit high. The
+/// size must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -> RevmapResult {
+    enter(|| {
+        let (specular, texturing) = (Specular::default(), Texturing::default());
+        let value = RevmapObjectInfo {
+            size: size(size_of::<RevmapObjectInfo>()),
+            map_rows: Object::MAP_ROWS,
+            profile: null(),
+            name: null(),
+            color_map: null(),
+            height_map: null(),
+            color: Object::COLOR,
+            specular_strength: specular.strength,
+            specular_shininess: specular.shininess,
+            projection: 0,
+            bump_form: 0,
+            bump: texturing.bump,
+            texture_repeat: texturing.repeat,
+            offset: Offset::default().into(),
+            axis: [0.5; 2],
+            repeat: [1; 3],
+            mirror: [0; 3],
+            placement: UPRIGHT,
+            instances: null(),
+            instance_count: 0,
+        };
+        // SAFETY: the caller's structure.
+        unsafe { fill(object, value) }
+    })
+}

@@ -1,0 +1,347 @@
+//! Pictures without a host: drawn, waited for, read back.
+
+use crate::device::RevmapDevice;
+use crate::enums::{self, RevmapPlane};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::handle::{Handle, alone, handle};
+use crate::object::RevmapObjectInfo;
+use crate::pointers::{described, fill, put, read, text};
+use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
+use revmap::frame::{Frame, Picture};
+use revmap::gpu::Offscreen;
+use revmap::scene::Scene;
+use revmap::settings::Settings;
+use std::ffi::{c_char, c_void};
+use std::sync::{Arc, Mutex};
+
+/// A scene on a device and a picture that it is drawn into.
+pub struct RevmapOffscreen;
+handle!(RevmapOffscreen, "off-screen picture", Arc<Mutex<Drawing>>);
+
+pub(crate) struct Drawing {
+    offscreen: Offscreen,
+    planes: revmap::settings::Planes,
+    /// What was read back of the last picture.
+    frame: Option<Frame>,
+    drawn: bool,
+}
+
+/// How a picture is drawn. Defaults: revmap_picture_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapPicture {
+    /// sizeof(RevmapPicture).
+    pub size: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// A RevmapStage.
+    pub stage: u32,
+    /// REVMAP_PLANES_COLOR or REVMAP_PLANES_ALL.
+    pub planes: u32,
+    /// How rays find the surface.
+    pub search: RevmapSearch,
+}
+
+/// What is drawn. Defaults: revmap_scene_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapScene {
+    /// sizeof(RevmapScene).
+    pub size: u32,
+    /// Linear RGBA behind everything.
+    pub background: [f32; 4],
+    /// The eye.
+    pub camera: RevmapCamera,
+    /// Lights and shadows.
+    pub lighting: RevmapLighting,
+    /// The objects; read during the call.
+    pub objects: *const RevmapObjectInfo,
+    /// Number of objects.
+    pub object_count: usize,
+}
+
+/// What a picture cost.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapTimes {
+    /// sizeof(RevmapTimes).
+    pub size: u32,
+    /// Milliseconds that the CPU took to take over changes and to record.
+    pub prepare_ms: f64,
+    /// Milliseconds between timestamps of the device around the work; negative where it has none.
+    pub gpu_ms: f64,
+    /// Milliseconds from submission to completion by the clock.
+    pub frame_ms: f64,
+}
+
+described!(RevmapPicture, RevmapScene, RevmapTimes);
+
+impl RevmapPicture {
+    fn settings(&self) -> Outcome<Settings> {
+        // SAFETY: a live structure, whose size is looked at.
+        let search = unsafe { read(&raw const self.search) }?.settings()?;
+        Ok(Settings {
+            width: self.width,
+            height: self.height,
+            stage: enums::stage(self.stage)?,
+            solver: search.solver,
+            max_steps: search.max_steps,
+            map_rows: search.map_rows,
+            map_source: search.map_source,
+            map_format: search.map_format,
+            planes: enums::planes(self.planes)?,
+            proxy_min_pixels: search.proxy_min_pixels,
+        })
+    }
+}
+
+impl RevmapScene {
+    unsafe fn scene(&self) -> Outcome<Scene> {
+        // SAFETY: live structures, whose sizes are looked at; the caller's lights and objects, as many as it says.
+        unsafe {
+            let mut scene = Scene::new(read(&raw const self.camera)?.camera());
+            let lighting = read(&raw const self.lighting)?.lighting()?;
+            scene.background = self.background;
+            scene.ambient = lighting.ambient;
+            scene.lights = lighting.lights;
+            scene.shadow = lighting.shadow;
+            for number in 0..self.object_count {
+                let info = read(self.objects.wrapping_add(number))?;
+                scene.objects.push(info.object()?);
+            }
+            Ok(scene)
+        }
+    }
+}
+
+impl Drawing {
+    /// What the last picture holds.
+    fn frame(&mut self) -> Outcome<&Frame> {
+        if !self.drawn {
+            return Err(Fault::usage(
+                "nothing is drawn yet; call revmap_offscreen_draw",
+            ));
+        }
+        match &mut self.frame {
+            Some(frame) => Ok(frame),
+            none => Ok(none.insert(self.offscreen.read()?)),
+        }
+    }
+}
+
+fn with<R>(
+    offscreen: *const RevmapOffscreen,
+    work: impl FnOnce(&mut Drawing) -> Outcome<R>,
+) -> Outcome<R> {
+    let shared = RevmapOffscreen::get(offscreen)?;
+    alone(&shared, RevmapOffscreen::NAME, work)
+}
+
+/// Fills in 800x600 pixels, REVMAP_STAGE_FRAGMENT, REVMAP_PLANES_COLOR and the default search. The
+/// size must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_picture_defaults(picture: *mut RevmapPicture) -> RevmapResult {
+    let settings = Settings::default();
+    let value = RevmapPicture {
+        size: size(size_of::<RevmapPicture>()),
+        width: settings.width,
+        height: settings.height,
+        stage: enums::RevmapStage::Fragment as u32,
+        planes: enums::RevmapPlanes::Color as u32,
+        search: RevmapSearch::defaults(),
+    };
+    // SAFETY: the caller's structure.
+    enter(|| unsafe { fill(picture, value) })
+}
+
+/// Fills in a scene without objects before transparent black, with the default camera and lights.
+/// The size must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_scene_defaults(scene: *mut RevmapScene) -> RevmapResult {
+    enter(|| {
+        let value = RevmapScene {
+            size: size(size_of::<RevmapScene>()),
+            background: [0.0; 4],
+            camera: RevmapCamera::defaults(),
+            lighting: RevmapLighting::defaults(),
+            objects: std::ptr::null(),
+            object_count: 0,
+        };
+        // SAFETY: the caller's structure.
+        unsafe { fill(scene, value) }
+    })
+}
+
+/// Takes a scene onto a device, with a picture to draw it into. A borrowed device must have a
+/// queue, which nobody else uses while a picture is drawn or read.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_offscreen_create(
+    device: *const RevmapDevice,
+    picture: *const RevmapPicture,
+    scene: *const RevmapScene,
+    offscreen: *mut *mut RevmapOffscreen,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(offscreen, "off-screen picture", || {
+            let settings = read(picture)?.settings()?;
+            let scene = read(scene)?.scene()?;
+            let device = RevmapDevice::get(device)?;
+            Ok(Handle::create(Arc::new(Mutex::new(Drawing {
+                offscreen: Offscreen::new(&device, &scene, &settings)?,
+                planes: settings.planes,
+                frame: None,
+                drawn: false,
+            }))))
+        })
+    })
+}
+
+/// Takes over another scene. Its cost follows what differs from the scene before. If it fails, what
+/// was drawn before can be drawn on.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_offscreen_update(
+    offscreen: *mut RevmapOffscreen,
+    scene: *const RevmapScene,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointers.
+        let scene = unsafe { read(scene)?.scene() }?;
+        with(offscreen, |d| Ok(d.offscreen.update(&scene)?))
+    })
+}
+
+/// Compiles every pipeline that updates can come to need, as long as no object's technique changes.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_offscreen_prewarm(offscreen: *mut RevmapOffscreen) -> RevmapResult {
+    enter(|| {
+        with(offscreen, |d| {
+            d.drawn = false;
+            d.frame = None;
+            Ok(d.offscreen.prewarm()?)
+        })
+    })
+}
+
+/// Draws the picture and waits for it. times may be null; else its size must be set.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_offscreen_draw(
+    offscreen: *mut RevmapOffscreen,
+    times: *mut RevmapTimes,
+) -> RevmapResult {
+    enter(|| {
+        let drawn = with(offscreen, |d| {
+            d.drawn = false;
+            d.frame = None;
+            let drawn = d.offscreen.draw()?;
+            d.drawn = true;
+            Ok(drawn)
+        })?;
+        if times.is_null() {
+            return Ok(());
+        }
+        let value = RevmapTimes {
+            size: size(size_of::<RevmapTimes>()),
+            prepare_ms: drawn.prepare_ms,
+            gpu_ms: drawn.gpu_ms.unwrap_or(-1.0),
+            frame_ms: drawn.frame_ms,
+        };
+        // SAFETY: the caller's structure.
+        unsafe { fill(times, value) }
+    })
+}
+
+/// Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
+/// top. plane is a RevmapPlane; of REVMAP_PLANES_COLOR REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR
+/// are there. count is the number of bytes, which must be exact.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_offscreen_read(
+    offscreen: *mut RevmapOffscreen,
+    plane: u32,
+    bytes: *mut c_void,
+    count: usize,
+) -> RevmapResult {
+    enter(|| {
+        let plane = enums::plane(plane)?;
+        with(offscreen, |d| {
+            let of_color = matches!(plane, RevmapPlane::Srgb8 | RevmapPlane::Color);
+            if !of_color && d.planes != revmap::settings::Planes::All {
+                return Err(Fault::usage(
+                    "the picture holds colours alone; give it REVMAP_PLANES_ALL",
+                ));
+            }
+            let frame = d.frame()?;
+            // SAFETY: the caller's bytes, as many as it says.
+            unsafe {
+                match plane {
+                    RevmapPlane::Srgb8 => copy(&Picture::of(frame).rgba, bytes, count),
+                    RevmapPlane::Color => copy(&frame.color, bytes, count),
+                    RevmapPlane::Distance => copy(&frame.distance, bytes, count),
+                    RevmapPlane::Normal => copy(&frame.normal, bytes, count),
+                    RevmapPlane::ShadingNormal => copy(&frame.shading_normal, bytes, count),
+                    RevmapPlane::Albedo => copy(&frame.albedo, bytes, count),
+                    RevmapPlane::Uv => copy(&frame.uv, bytes, count),
+                    RevmapPlane::Steps => copy(&frame.steps, bytes, count),
+                }
+            }
+        })
+    })
+}
+
+/// Copies a whole plane.
+unsafe fn copy<T: Copy>(from: &[T], to: *mut c_void, count: usize) -> Outcome<()> {
+    let whole = size_of_val(from);
+    if to.is_null() || count != whole {
+        return Err(Fault::usage(format!(
+            "the plane has {whole} bytes; give room for as many, not {count}"
+        )));
+    }
+    // SAFETY: the caller's room is as large; bytes need no alignment.
+    unsafe {
+        to.cast::<u8>()
+            .copy_from_nonoverlapping(from.as_ptr().cast(), whole);
+    }
+    Ok(())
+}
+
+/// Writes the picture that was drawn last as a PNG file of 8-bit sRGB with alpha. The path is
+/// UTF-8.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_offscreen_write_png(
+    offscreen: *mut RevmapOffscreen,
+    path: *const c_char,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's text.
+        let path = unsafe { text(path, "path") }?;
+        with(offscreen, |d| {
+            Ok(revmap::frame::write_png(d.frame()?, path)?)
+        })
+    })
+}
+
+/// Destroys a picture; null is none.
+///
+/// Thread: one at a time for a picture.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_offscreen_destroy(offscreen: *mut RevmapOffscreen) -> RevmapResult {
+    enter(|| RevmapOffscreen::destroy(offscreen))
+}

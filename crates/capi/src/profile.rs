@@ -1,0 +1,99 @@
+//! Profiles.
+
+use crate::enums;
+use crate::fault::{RevmapResult, enter};
+use crate::handle::{Handle, handle};
+use crate::pointers::{list, put, text};
+use revmap::profile::Profile;
+use std::ffi::{c_char, c_void};
+use std::sync::Arc;
+
+/// A profile: the solid region of the half-plane (r, z) that is turned about the axis r = 0.
+/// Objects keep what they use of it.
+pub struct RevmapProfile;
+handle!(RevmapProfile, "profile", Arc<Profile>);
+
+/// Makes a profile from a closed polygon: count points, each r and z in object units. The box
+/// reaches from z = 0 to z = 1 and to the given radius.
+///
+/// Fails with REVMAP_RESULT_PROFILE for fewer than 3 points, a point with r < 0, no area, or
+/// numbers that are not finite.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_profile_from_points(
+    points: *const [f64; 2],
+    count: usize,
+    radius: f64,
+    profile: *mut *mut RevmapProfile,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(profile, "profile", || {
+            let points = list(points, count, "points")?;
+            Ok(Handle::create(Arc::new(Profile::polygon(points, radius)?)))
+        })
+    })
+}
+
+/// Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it. What
+/// is darker than one half over white is solid; the picture's height is one object unit. axis is a
+/// RevmapAxis.
+///
+/// Fails with REVMAP_RESULT_PROFILE where that is not possible.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_profile_from_bytes(
+    bytes: *const c_void,
+    count: usize,
+    axis: u32,
+    profile: *mut *mut RevmapProfile,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(profile, "profile", || {
+            let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
+            let made = Profile::from_bytes(bytes, enums::axis(axis)?)?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// As revmap_profile_from_bytes(), of a file. The path is UTF-8.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_profile_from_file(
+    path: *const c_char,
+    axis: u32,
+    profile: *mut *mut RevmapProfile,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(profile, "profile", || {
+            let made = Profile::load(text(path, "path")?, enums::axis(axis)?)?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// Gives the radius of the profile's box, object units.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_profile_radius(
+    profile: *const RevmapProfile,
+    radius: *mut f64,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe { put(radius, "radius", || Ok(RevmapProfile::get(profile)?.radius)) })
+}
+
+/// Destroys a profile; null is none. Objects that were made from it stay as they are.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_profile_destroy(profile: *mut RevmapProfile) -> RevmapResult {
+    enter(|| RevmapProfile::destroy(profile))
+}

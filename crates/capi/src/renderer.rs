@@ -1,0 +1,464 @@
+//! Renderers: objects that are recorded into a host's command buffers.
+
+pub mod frame;
+pub mod prewarm;
+
+use crate::device::RevmapDevice;
+use crate::enums::{self, RevmapPassKind};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::handle::{Handle, alone, handle};
+use crate::object::{RevmapObjectInfo, placements};
+use crate::pointers::{described, fill, list, put, read, take};
+use crate::values::{RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch, size};
+use ash::vk;
+use revmap::gpu::{ComputeTarget, DrawPath, ObjectId, Output, PassFormats, PassKind, Renderer};
+use std::ffi::{CString, c_char};
+use std::sync::{Arc, Mutex};
+
+/// Objects on a device, drawn into whatever the host draws into, with several frames in flight,
+/// which take turns in slots. It must not be destroyed before the frames that it recorded are done.
+pub struct RevmapRenderer;
+handle!(RevmapRenderer, "renderer", Arc<Mutex<Recorder>>);
+
+/// A renderer, and which of its slots may be recorded.
+pub(crate) struct Recorder {
+    renderer: Renderer,
+    /// Whether fragments are drawn, in a pass.
+    in_pass: bool,
+    /// Whether each slot was prepared since objects came or went.
+    prepared: Vec<bool>,
+    /// The renderer's notes that were asked for.
+    notes: Vec<CString>,
+}
+
+/// An object of a renderer; never 0. It stays the same object whatever is set, and is never
+/// another's once removed.
+pub type RevmapObject = u64;
+
+/// The pass in which fragments are drawn.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RevmapPass {
+    /// sizeof(RevmapPass).
+    pub size: u32,
+    /// A RevmapPassKind.
+    pub kind: u32,
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
+    /// number.
+    pub samples: u32,
+    /// A RevmapDepthOrder.
+    pub depth_order: u32,
+    /// A RevmapPlanes: what the fragment shader writes, one plane an attachment.
+    pub planes: u32,
+    /// Of a render pass: the subpass, which has a depth attachment.
+    pub subpass: u32,
+    /// Of a render pass: the pass. It must live as long as the renderer. Passes that are compatible
+    /// with it may be begun instead.
+    pub render_pass: vk::RenderPass,
+    /// Of dynamic rendering: formats of the colour attachments; read during the call.
+    pub color_formats: *const vk::Format,
+    /// Of dynamic rendering: number of the colour attachments.
+    pub color_format_count: u32,
+    /// Of dynamic rendering: format of the depth attachment.
+    pub depth_format: vk::Format,
+    /// Of dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED where there is
+    /// none.
+    pub stencil_format: vk::Format,
+}
+
+/// What compute shaders write to.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RevmapComputeTarget {
+    /// sizeof(RevmapComputeTarget).
+    pub size: u32,
+    /// Number of images: 4 for REVMAP_PLANES_ALL, else 0.
+    pub image_count: u32,
+    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
+    /// pixels, as bits of floats; then a second word of each, which is the colour, packed as
+    /// R8G8B8A8_SRGB, for REVMAP_PLANES_COLOR, else a count of look-ups. The host clears it before
+    /// a frame, depths to 1.0 and colours to its background, or fills in what is already drawn.
+    pub words: vk::Buffer,
+    /// Storage images of all planes, R32G32B32A32_SFLOAT in the layout GENERAL; read during the
+    /// call.
+    pub images: *const vk::ImageView,
+}
+
+/// What a renderer holds and did.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapStatistics {
+    /// sizeof(RevmapStatistics).
+    pub size: u32,
+    /// Objects.
+    pub objects: u32,
+    /// Surfaces made so far: one for each profile under each offset that no object had in the frame
+    /// before.
+    pub surfaces_made: u64,
+    /// Bytes of shape maps with their tables of lengths, on the device.
+    pub shape_map_bytes: u64,
+    /// Bytes of colour and height maps, on the device.
+    pub texture_bytes: u64,
+    /// Objects that the last prepared frame does not draw at all (compute alone).
+    pub drawn_not: u32,
+    /// Objects that it draws by their boxes.
+    pub drawn_by_box: u32,
+    /// By hulls.
+    pub drawn_by_hull: u32,
+    /// By rectangles of the screen.
+    pub drawn_by_rectangle: u32,
+    /// By bins of the screen.
+    pub drawn_by_bins: u32,
+    /// By beams.
+    pub drawn_by_beams: u32,
+    /// Notes that revmap_renderer_note() gives.
+    pub notes: u32,
+}
+
+described!(RevmapPass, RevmapComputeTarget, RevmapStatistics);
+
+impl RevmapPass {
+    unsafe fn formats(&self) -> Outcome<PassFormats> {
+        let begun = match enums::pass_kind(self.kind)? {
+            RevmapPassKind::RenderPass => PassKind::RenderPass {
+                pass: self.render_pass,
+                subpass: self.subpass,
+            },
+            RevmapPassKind::Dynamic => PassKind::Dynamic {
+                // SAFETY: the caller's, as many as it says.
+                color: unsafe {
+                    list(
+                        self.color_formats,
+                        self.color_format_count as usize,
+                        "color formats",
+                    )
+                }?
+                .to_vec(),
+                depth: self.depth_format,
+                stencil: self.stencil_format,
+            },
+        };
+        if let PassKind::RenderPass { pass, .. } = &begun
+            && *pass == vk::RenderPass::null()
+        {
+            return Err(Fault::usage("the VkRenderPass is null"));
+        }
+        Ok(PassFormats {
+            begun,
+            samples: self.samples,
+            depth: enums::depth_order(self.depth_order)?,
+            planes: enums::planes(self.planes)?,
+        })
+    }
+}
+
+/// Calls `work` with a renderer.
+fn with<R>(
+    renderer: *const RevmapRenderer,
+    work: impl FnOnce(&mut Recorder) -> Outcome<R>,
+) -> Outcome<R> {
+    let shared = RevmapRenderer::get(renderer)?;
+    alone(&shared, RevmapRenderer::NAME, work)
+}
+
+fn create(
+    device: *const RevmapDevice,
+    output: Output,
+    settings: &revmap::settings::SearchSettings,
+    frames: u32,
+) -> Outcome<*mut RevmapRenderer> {
+    let device = RevmapDevice::get(device)?;
+    let in_pass = matches!(output, Output::Pass(_));
+    let renderer = Renderer::new(&device, output, settings, frames as usize)?;
+    Ok(Handle::create(Arc::new(Mutex::new(Recorder {
+        renderer,
+        in_pass,
+        prepared: vec![false; frames as usize],
+        notes: Vec::new(),
+    }))))
+}
+
+/// Makes a renderer without objects that draws fragments in a host's pass. A null search is the
+/// default one. frames is the number of frames in flight, 1 to 8.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_create(
+    device: *const RevmapDevice,
+    pass: *const RevmapPass,
+    search: *const RevmapSearch,
+    frames: u32,
+    renderer: *mut *mut RevmapRenderer,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    enter(|| unsafe {
+        put(renderer, "renderer", || {
+            let output = Output::Pass(read(pass)?.formats()?);
+            create(device, output, &crate::values::search(search)?, frames)
+        })
+    })
+}
+
+/// Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
+/// planes is a RevmapPlanes. A null search is the default one. frames is the number of frames in
+/// flight, 1 to 8.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_create_compute(
+    device: *const RevmapDevice,
+    planes: u32,
+    search: *const RevmapSearch,
+    frames: u32,
+    renderer: *mut *mut RevmapRenderer,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(renderer, "renderer", || {
+            let output = Output::Compute(enums::planes(planes)?);
+            create(device, output, &crate::values::search(search)?, frames)
+        })
+    })
+}
+
+/// Adds an object, which is drawn from the next prepared frame on.
+///
+/// Fails with REVMAP_RESULT_SCENE for values out of range.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_add(
+    renderer: *mut RevmapRenderer,
+    info: *const RevmapObjectInfo,
+    object: *mut RevmapObject,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(object, "object", || {
+            let added = read(info)?.object()?;
+            with(renderer, |r| {
+                r.prepared.fill(false);
+                Ok(r.renderer.add(added)?.to_bits())
+            })
+        })
+    })
+}
+
+/// Takes an object away. What frames in flight read of it is kept until they are done.
+///
+/// Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
+/// one.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_remove(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.prepared.fill(false);
+            Ok(r.renderer.remove(ObjectId::from_bits(object))?)
+        })
+    })
+}
+
+/// Gives an object other values, all of them. Values that are equal cost nothing.
+///
+/// Fails with REVMAP_RESULT_SCENE for values out of range.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    info: *const RevmapObjectInfo,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointers.
+        let values = unsafe { read(info)?.object() }?;
+        let id = ObjectId::from_bits(object);
+        with(renderer, |r| Ok(r.renderer.set(id, values)?))
+    })
+}
+
+/// Moves the surface of an object: extension, bevel and chamfer.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_offset(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    offset: *const RevmapOffset,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointer.
+        let offset = unsafe { take(offset, "offset") }?;
+        let id = ObjectId::from_bits(object);
+        with(renderer, |r| {
+            Ok(r.renderer.set_offset(id, offset.into())?)
+        })
+    })
+}
+
+/// Moves an object that is one copy.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_placement(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    placement: *const RevmapPlacement,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointer.
+        let placement = unsafe { take(placement, "placement") }?;
+        let id = ObjectId::from_bits(object);
+        with(renderer, |r| {
+            Ok(r.renderer.set_placement(id, placement.into())?)
+        })
+    })
+}
+
+/// Gives an object other copies; with a count of 0 it is one, at its placement.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_instances(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    instances: *const RevmapPlacement,
+    count: usize,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's, as many as it says.
+        let all = placements(unsafe { list(instances, count, "instances") }?);
+        let id = ObjectId::from_bits(object);
+        with(renderer, |r| Ok(r.renderer.set_instances(id, all)?))
+    })
+}
+
+/// Sets lights and shadows for all objects.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_lighting(
+    renderer: *mut RevmapRenderer,
+    lighting: *const RevmapLighting,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointers.
+        let lighting = unsafe { read(lighting)?.lighting() }?;
+        with(renderer, |r| Ok(r.renderer.set_lighting(&lighting)?))
+    })
+}
+
+/// Sets what compute writes to, from the next prepared frame on. The handles are of the renderer's
+/// device, large enough for every view's viewport, which begins at 0. They live until another
+/// target is set and the frames recorded before are done.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_compute_target(
+    renderer: *mut RevmapRenderer,
+    target: *const RevmapComputeTarget,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    enter(|| unsafe {
+        let target = read(target)?;
+        let images = list(target.images, target.image_count as usize, "images")?.to_vec();
+        if target.words == vk::Buffer::null() {
+            return Err(Fault::usage("the VkBuffer of words is null"));
+        }
+        let words = target.words;
+        with(renderer, |r| {
+            if r.in_pass {
+                return Err(Fault::usage(
+                    "this renderer draws in a pass; make one with revmap_renderer_create_compute",
+                ));
+            }
+            r.renderer
+                .set_compute_target(ComputeTarget { words, images });
+            Ok(())
+        })
+    })
+}
+
+impl Recorder {
+    fn statistics(&self) -> RevmapStatistics {
+        let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let paths = self.renderer.draw_paths();
+        let drawn = |path| number(paths.iter().filter(|p| **p == path).count());
+        let [shape_map_bytes, texture_bytes] = self.renderer.map_bytes();
+        RevmapStatistics {
+            size: size(size_of::<RevmapStatistics>()),
+            objects: number(paths.len()),
+            surfaces_made: self.renderer.rebuild_count(),
+            shape_map_bytes,
+            texture_bytes,
+            drawn_not: drawn(DrawPath::Nothing),
+            drawn_by_box: drawn(DrawPath::Box),
+            drawn_by_hull: drawn(DrawPath::Hull),
+            drawn_by_rectangle: drawn(DrawPath::Rectangle),
+            drawn_by_bins: drawn(DrawPath::Bins),
+            drawn_by_beams: drawn(DrawPath::Beams),
+            notes: number(self.renderer.notes().len()),
+        }
+    }
+}
+
+/// Tells what a renderer holds and did. The size of statistics must be set.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_statistics(
+    renderer: *const RevmapRenderer,
+    statistics: *mut RevmapStatistics,
+) -> RevmapResult {
+    enter(|| {
+        let value = with(renderer, |r| Ok(r.statistics()))?;
+        // SAFETY: the caller's structure.
+        unsafe { fill(statistics, value) }
+    })
+}
+
+/// Gives a note: what was done in another way than asked for, and why. The text lasts as long as
+/// the renderer.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_note(
+    renderer: *const RevmapRenderer,
+    number: u32,
+    note: *mut *const c_char,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe {
+        put(note, "note", || {
+            with(renderer, |r| {
+                let Recorder {
+                    renderer, notes, ..
+                } = r;
+                for text in &renderer.notes()[notes.len()..] {
+                    notes.push(CString::new(text.replace('\0', " ")).unwrap_or_default());
+                }
+                let note = notes.get(number as usize).map(|text| text.as_ptr());
+                note.ok_or_else(|| Fault::usage(format!("there is no note {number}")))
+            })
+        })
+    })
+}
+
+/// Destroys a renderer; null is none. The frames that it recorded must be done.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_destroy(renderer: *mut RevmapRenderer) -> RevmapResult {
+    enter(|| RevmapRenderer::destroy(renderer))
+}

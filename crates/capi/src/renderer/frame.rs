@@ -1,0 +1,153 @@
+//! A frame of a renderer: prepared, then recorded.
+
+use super::{Recorder, RevmapRenderer, with};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::pointers::read;
+use crate::values::{RevmapCamera, RevmapView};
+use ash::vk;
+use ash::vk::Handle as _;
+use revmap::gpu::View;
+
+impl Recorder {
+    unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, slot: u32, view: &View) -> Outcome<()> {
+        if cmd.is_null() {
+            return Err(Fault::usage("the VkCommandBuffer is null"));
+        }
+        let slot = slot as usize;
+        if let Some(prepared) = self.prepared.get_mut(slot) {
+            *prepared = false;
+        }
+        // SAFETY: the caller of the entry point has promised it.
+        unsafe { self.renderer.prepare(cmd, slot, view) }?;
+        if let Some(prepared) = self.prepared.get_mut(slot) {
+            *prepared = true;
+        }
+        Ok(())
+    }
+
+    /// Fails unless `slot` can be recorded in a pass, or outside.
+    pub(super) fn check(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<()> {
+        if cmd.is_null() {
+            return Err(Fault::usage("the VkCommandBuffer is null"));
+        }
+        if self.prepared.get(slot as usize) == Some(&true) {
+            return Ok(());
+        }
+        Err(Fault::usage(format!(
+            "slot {slot} is not prepared; call revmap_renderer_prepare first, after objects were added or removed, too"
+        )))
+    }
+}
+
+/// Prepares the frame of a slot: takes over what was set, writes what changed, records copies of
+/// new textures. To be called in every frame before revmap_renderer_record(). It neither submits
+/// nor waits.
+///
+/// The command buffer is recording, outside of a pass, for a queue of the device's family. The
+/// commands recorded for this slot before have run or were never submitted. Commands of other slots
+/// that were recorded before are submitted before these.
+///
+/// Fails with REVMAP_RESULT_SCENE or REVMAP_RESULT_PROFILE for what cannot be drawn: it stays as it
+/// was before it was set. The text begins with the object's number.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_prepare(
+    renderer: *mut RevmapRenderer,
+    command_buffer: vk::CommandBuffer,
+    slot: u32,
+    view: *const RevmapView,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    enter(|| unsafe {
+        let view = read(view)?.view()?;
+        with(renderer, |r| r.prepare(command_buffer, slot, &view))
+    })
+}
+
+/// As revmap_renderer_prepare(), seen by a camera in pictures of width * height pixels, with depth
+/// 0 at near and 1 at far, both along the view. The output's depth order is
+/// REVMAP_DEPTH_ORDER_NORMAL.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_prepare_camera(
+    renderer: *mut RevmapRenderer,
+    command_buffer: vk::CommandBuffer,
+    slot: u32,
+    camera: *const RevmapCamera,
+    width: u32,
+    height: u32,
+    near: f64,
+    far: f64,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    enter(|| unsafe {
+        let view = View::from_camera(&read(camera)?.camera(), (width, height), [near, far])?;
+        with(renderer, |r| r.prepare(command_buffer, slot, &view))
+    })
+}
+
+/// Records the draws of the frame that was prepared for a slot. It binds pipelines, descriptor sets
+/// 0 to 2 and an index buffer; it sets neither viewport nor scissor, which are dynamic.
+///
+/// The command buffer is recording, within a pass that is compatible with the output, with the
+/// view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
+/// the commands have run.
+///
+/// Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared, or objects
+/// were added or removed since.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_record(
+    renderer: *mut RevmapRenderer,
+    command_buffer: vk::CommandBuffer,
+    slot: u32,
+) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.check(command_buffer, slot)?;
+            if !r.in_pass {
+                return Err(Fault::usage(
+                    "this renderer computes; call revmap_renderer_record_compute",
+                ));
+            }
+            // SAFETY: the slot was prepared; the rest the caller has promised.
+            unsafe { r.renderer.record(command_buffer, slot as usize) };
+            Ok(())
+        })
+    })
+}
+
+/// Records the dispatches of the frame that was prepared for a slot, into a target that was
+/// cleared. It records barriers between its own dispatches, none before its first and after its
+/// last write.
+///
+/// The command buffer is recording, outside of a pass; writes to the target before are made
+/// available to compute shaders. The renderer lives, and the slot is not prepared again, until the
+/// commands have run.
+///
+/// Fails as revmap_renderer_record().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_record_compute(
+    renderer: *mut RevmapRenderer,
+    command_buffer: vk::CommandBuffer,
+    slot: u32,
+) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.check(command_buffer, slot)?;
+            if r.in_pass {
+                return Err(Fault::usage(
+                    "this renderer draws in a pass; call revmap_renderer_record",
+                ));
+            }
+            // SAFETY: the slot was prepared; the rest the caller has promised.
+            unsafe { r.renderer.record_compute(command_buffer, slot as usize) };
+            Ok(())
+        })
+    })
+}

@@ -1,0 +1,118 @@
+//! Colour maps and height maps.
+
+use crate::enums;
+use crate::fault::{RevmapResult, enter};
+use crate::handle::{Handle, handle};
+use crate::pointers::{list, put, text};
+use revmap::maps::{ColorMap, DisplacementMap};
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A texture of colours.
+pub struct RevmapColorMap;
+handle!(RevmapColorMap, "color map", Arc<ColorMap>);
+
+/// The slopes of a height map, for bump mapping.
+pub struct RevmapHeightMap;
+handle!(RevmapHeightMap, "height map", Arc<DisplacementMap>);
+
+/// Makes a colour map from a PNG or JPEG file. The path is UTF-8.
+///
+/// Fails with REVMAP_RESULT_MAP where it cannot be read.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_color_map_from_file(
+    path: *const c_char,
+    color_map: *mut *mut RevmapColorMap,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(color_map, "color map", || {
+            let made = ColorMap::load(text(path, "path")?)?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
+/// from the top.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_color_map_from_texels(
+    width: u32,
+    height: u32,
+    texels: *const [u8; 4],
+    color_map: *mut *mut RevmapColorMap,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(color_map, "color map", || {
+            let texels = list(texels, width as usize * height as usize, "texels")?;
+            let made = ColorMap::from_texels(width, height, texels.to_vec())?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// Destroys a colour map; null is none. Objects that use it stay as they are.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_color_map_destroy(color_map: *mut RevmapColorMap) -> RevmapResult {
+    enter(|| RevmapColorMap::destroy(color_map))
+}
+
+/// Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
+/// filter is a RevmapSlopeFilter.
+///
+/// Fails with REVMAP_RESULT_MAP where it cannot be read.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_height_map_from_file(
+    path: *const c_char,
+    filter: u32,
+    height_map: *mut *mut RevmapHeightMap,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(height_map, "height map", || {
+            let filter = enums::slope_filter(filter)?;
+            let made = DisplacementMap::from_image_with(text(path, "path")?, filter)?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
+/// RevmapSlopeFilter.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_height_map_from_heights(
+    width: u32,
+    height: u32,
+    heights: *const f32,
+    filter: u32,
+    height_map: *mut *mut RevmapHeightMap,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(height_map, "height map", || {
+            let heights = list(heights, width as usize * height as usize, "heights")?;
+            let filter = enums::slope_filter(filter)?;
+            let made = DisplacementMap::from_heights(width, height, heights, filter)?;
+            Ok(Handle::create(Arc::new(made)))
+        })
+    })
+}
+
+/// Destroys a height map; null is none. Objects that use it stay as they are.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_height_map_destroy(height_map: *mut RevmapHeightMap) -> RevmapResult {
+    enter(|| RevmapHeightMap::destroy(height_map))
+}

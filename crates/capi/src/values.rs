@@ -1,0 +1,300 @@
+//! Values that several functions take: places, offsets, lights, cameras, views, searches.
+
+use crate::enums::{self, RevmapShadow};
+use crate::fault::{Outcome, RevmapResult, enter};
+use crate::pointers::{described, fill, list};
+use glam::{DMat4, DQuat, DVec3};
+use revmap::gpu::{View, Viewport};
+use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
+use revmap::settings::SearchSettings;
+use std::sync::LazyLock;
+
+/// Where the box of a solid is. Its scale of (1, 1, 1) makes it one world unit high.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapPlacement {
+    /// Of the middle of the box's lower face, world units.
+    pub position: [f64; 3],
+    /// Unit quaternion: x, y, z, w.
+    pub rotation: [f64; 4],
+    /// Factors along the object's axes, each positive.
+    pub scale: [f64; 3],
+}
+
+/// How far the surface stands off the profile: extend + bevel * min(1 - z, chamfer), object units.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapOffset {
+    /// Object units; negative insets.
+    pub extend: f64,
+    /// Slope.
+    pub bevel: f64,
+    /// Depth in [0, 1] below the top to which the bevel reaches. It is 1 by default.
+    pub chamfer: f64,
+}
+
+/// A light from afar.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapLight {
+    /// The way the light travels; any length but zero.
+    pub direction: [f64; 3],
+    /// Linear RGB.
+    pub color: [f32; 3],
+}
+
+/// What lights all objects. Defaults: revmap_lighting_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapLighting {
+    /// sizeof(RevmapLighting).
+    pub size: u32,
+    /// A RevmapShadow.
+    pub shadow: u32,
+    /// Light that comes from everywhere, linear RGB.
+    pub ambient: [f32; 3],
+    /// Number of lights.
+    pub light_count: u32,
+    /// The lights; read during the call.
+    pub lights: *const RevmapLight,
+}
+
+/// A pinhole camera. Defaults: revmap_camera_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapCamera {
+    /// sizeof(RevmapCamera).
+    pub size: u32,
+    /// World units.
+    pub eye: [f64; 3],
+    /// What it looks at.
+    pub target: [f64; 3],
+    /// Which way is up.
+    pub up: [f64; 3],
+    /// Vertical field of view, degrees, between 0 and 180.
+    pub fov_y: f64,
+}
+
+/// A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
+/// (0 <= z <= w).
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapView {
+    /// sizeof(RevmapView).
+    pub size: u32,
+    /// A RevmapDepthOrder: the one of the renderer's output.
+    pub depth_order: u32,
+    /// From world to view space.
+    pub view: [f64; 16],
+    /// From view to clip space.
+    pub projection: [f64; 16],
+    /// Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
+    /// Vulkan 1.1.
+    pub viewport: [f64; 4],
+}
+
+/// How rays find the surface. Defaults: revmap_search_defaults().
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapSearch {
+    /// sizeof(RevmapSearch).
+    pub size: u32,
+    /// A RevmapSolver.
+    pub solver: u32,
+    /// Bound on the search's steps; 0 takes the solver's own.
+    pub max_steps: u32,
+    /// Rows of every shape map; 0 takes each object's own.
+    pub map_rows: u32,
+    /// A RevmapMapSource.
+    pub map_source: u32,
+    /// A RevmapMapFormat.
+    pub map_format: u32,
+    /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
+    /// is drawn; below it the box is. UINT32_MAX: boxes alone.
+    pub proxy_min_pixels: u32,
+}
+
+described!(RevmapLighting, RevmapCamera, RevmapView, RevmapSearch);
+
+/// At the origin, upright, one world unit high.
+pub(crate) const UPRIGHT: RevmapPlacement = RevmapPlacement {
+    position: [0.0; 3],
+    rotation: [0.0, 0.0, 0.0, 1.0],
+    scale: [1.0; 3],
+};
+
+impl From<RevmapPlacement> for Placement {
+    fn from(from: RevmapPlacement) -> Self {
+        Self {
+            position: from.position.into(),
+            rotation: DQuat::from_array(from.rotation),
+            scale: from.scale.into(),
+        }
+    }
+}
+
+impl From<RevmapOffset> for Offset {
+    fn from(from: RevmapOffset) -> Self {
+        Self {
+            extend: from.extend,
+            bevel: from.bevel,
+            chamfer: from.chamfer,
+        }
+    }
+}
+
+impl From<Offset> for RevmapOffset {
+    fn from(from: Offset) -> Self {
+        Self {
+            extend: from.extend,
+            bevel: from.bevel,
+            chamfer: from.chamfer,
+        }
+    }
+}
+
+impl RevmapLighting {
+    pub(crate) fn defaults() -> Self {
+        static LIGHT: LazyLock<RevmapLight> = LazyLock::new(|| {
+            let light = Light::default();
+            RevmapLight {
+                direction: light.direction.to_array(),
+                color: light.color,
+            }
+        });
+        let lighting = Lighting::default();
+        Self {
+            size: size(size_of::<Self>()),
+            shadow: RevmapShadow::Off as u32,
+            ambient: lighting.ambient,
+            light_count: 1,
+            lights: &raw const *LIGHT,
+        }
+    }
+
+    pub(crate) unsafe fn lighting(&self) -> Outcome<Lighting> {
+        // SAFETY: the caller's, as many as it says.
+        let lights = unsafe { list(self.lights, self.light_count as usize, "lights") }?;
+        Ok(Lighting {
+            ambient: self.ambient,
+            lights: lights
+                .iter()
+                .map(|light| Light {
+                    direction: light.direction.into(),
+                    color: light.color,
+                })
+                .collect(),
+            shadow: enums::shadow(self.shadow)?,
+        })
+    }
+}
+
+impl RevmapCamera {
+    pub(crate) fn defaults() -> Self {
+        let from = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
+        Self {
+            size: size(size_of::<Self>()),
+            eye: from.eye.to_array(),
+            target: from.target.to_array(),
+            up: from.up.to_array(),
+            fov_y: from.fov_y,
+        }
+    }
+
+    pub(crate) fn camera(&self) -> Camera {
+        Camera {
+            eye: self.eye.into(),
+            target: self.target.into(),
+            up: self.up.into(),
+            fov_y: self.fov_y,
+        }
+    }
+}
+
+impl RevmapView {
+    pub(crate) fn view(&self) -> Outcome<View> {
+        let [x, y, width, height] = self.viewport;
+        let viewport = Viewport {
+            x,
+            y,
+            width,
+            height,
+        };
+        Ok(View::from_matrices(
+            DMat4::from_cols_array(&self.view),
+            DMat4::from_cols_array(&self.projection),
+            viewport,
+            enums::depth_order(self.depth_order)?,
+        )?)
+    }
+}
+
+impl RevmapSearch {
+    pub(crate) fn settings(&self) -> Outcome<SearchSettings> {
+        let given = |number| (number != 0).then_some(number);
+        Ok(SearchSettings {
+            solver: enums::solver(self.solver)?,
+            max_steps: given(self.max_steps),
+            map_rows: given(self.map_rows),
+            map_source: enums::map_source(self.map_source)?,
+            map_format: enums::map_format(self.map_format)?,
+            proxy_min_pixels: self.proxy_min_pixels,
+        })
+    }
+
+    pub(crate) fn defaults() -> Self {
+        Self {
+            size: size(size_of::<Self>()),
+            solver: 0,
+            max_steps: 0,
+            map_rows: 0,
+            map_source: 0,
+            map_format: 0,
+            proxy_min_pixels: SearchSettings::default().proxy_min_pixels,
+        }
+    }
+}
+
+/// A structure's size as it is written down.
+pub(crate) const fn size(bytes: usize) -> u32 {
+    assert!(bytes < 1 << 16);
+    bytes as u32
+}
+
+/// Fills in a little ambient light, REVMAP_SHADOW_OFF, and one white light from above, which lasts
+/// as long as the program. The size must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_lighting_defaults(lighting: *mut RevmapLighting) -> RevmapResult {
+    // SAFETY: the caller's structure.
+    enter(|| unsafe { fill(lighting, RevmapLighting::defaults()) })
+}
+
+/// Fills in a camera at (2, 0, 0.5) that looks at (0, 0, 0.5), z up, 40 degrees. The size must be
+/// set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_camera_defaults(camera: *mut RevmapCamera) -> RevmapResult {
+    // SAFETY: the caller's structure.
+    enter(|| unsafe { fill(camera, RevmapCamera::defaults()) })
+}
+
+/// Fills in the search that is taken where none is named. The size must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_search_defaults(search: *mut RevmapSearch) -> RevmapResult {
+    // SAFETY: the caller's structure.
+    enter(|| unsafe { fill(search, RevmapSearch::defaults()) })
+}
+
+/// A null search is the default one.
+pub(crate) unsafe fn search(from: *const RevmapSearch) -> Outcome<SearchSettings> {
+    if from.is_null() {
+        return Ok(SearchSettings::default());
+    }
+    // SAFETY: the caller's structure.
+    unsafe { crate::pointers::read(from) }?.settings()
+}

@@ -1,0 +1,57 @@
+//! Structures are laid out in C as in Rust, Vulkan's types among them.
+
+use crate::programs::{compile, folder};
+use revmap_capi::device::{RevmapDeviceInfo, RevmapHostDevice, RevmapRequirements};
+use revmap_capi::object::RevmapObjectInfo;
+use revmap_capi::offscreen::{RevmapPicture, RevmapScene, RevmapTimes};
+use revmap_capi::renderer::{RevmapComputeTarget, RevmapPass, RevmapStatistics};
+use revmap_capi::values::{
+    RevmapCamera, RevmapLight, RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch,
+    RevmapView,
+};
+use std::fmt::Write;
+use std::mem::offset_of;
+
+/// Assertions in C11 of a structure's size and of where some of its fields are.
+macro_rules! assertions {
+    ($($name:ident { $($field:ident),* })*) => {{
+        let mut text = String::from("#include <revmap.h>\n");
+        $(
+            let (name, size) = (stringify!($name), size_of::<$name>());
+            writeln!(text, "_Static_assert(sizeof({name}) == {size}, \"{name}\");").unwrap();
+            $(
+                let (field, at) = (stringify!($field), offset_of!($name, $field));
+                writeln!(text, "_Static_assert(offsetof({name}, {field}) == {at}, \"{name}.{field}\");").unwrap();
+            )*
+        )*
+        text
+    }};
+}
+
+#[test]
+fn structures_are_the_same_in_c() {
+    let mut text = assertions! {
+        RevmapPlacement { rotation, scale }
+        RevmapOffset { chamfer }
+        RevmapLight { color }
+        RevmapLighting { ambient, light_count, lights }
+        RevmapCamera { eye, target, up, fov_y }
+        RevmapView { view, projection, viewport }
+        RevmapSearch { proxy_min_pixels }
+        RevmapRequirements { features }
+        RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
+        RevmapDeviceInfo { pipelines_compiled, name, driver }
+        RevmapObjectInfo { profile, height_map, color, bump, offset, repeat, placement, instances, instance_count }
+        RevmapPass { render_pass, color_formats, color_format_count, stencil_format }
+        RevmapComputeTarget { words, images }
+        RevmapStatistics { surfaces_made, notes }
+        RevmapPicture { search }
+        RevmapScene { camera, lighting, objects, object_count }
+        RevmapTimes { prepare_ms, frame_ms }
+    };
+    text.push_str("int main(void) { return revmap_abi() == REVMAP_ABI ? 0 : 1; }\n");
+    let folder = folder();
+    let file = folder.path().join("layout.c");
+    std::fs::write(&file, text).unwrap();
+    compile("c11", &[file], &folder.path().join("layout"));
+}

@@ -1,0 +1,14 @@
+//! The C interface: its header, its programs in C and C++, wrong arguments, growth.
+#![allow(unsafe_code, missing_docs)]
+#![allow(clippy::unwrap_used, clippy::panic)] // a test may stop at what it did not expect
+
+mod arguments;
+mod header;
+mod layout;
+mod pictures;
+mod programs;
+mod recording;
+
+#[path = "../../../../examples/engine/host/mod.rs"]
+#[allow(dead_code, unused_imports)]
+mod host;

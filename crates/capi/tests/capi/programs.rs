@@ -1,0 +1,146 @@
+//! Programs in C and C++: built against what `scripts/install-c` installs, and run.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// What every program is compiled with.
+pub const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A new folder that is removed with the value.
+pub fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Runs a command and gives its standard output. If it fails, so does the test, with all that it said.
+pub fn run(command: &mut Command) -> String {
+    let out = command
+        .output()
+        .unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (said, failed) = (text(&out.stdout), text(&out.stderr));
+    assert!(out.status.success(), "{command:?}\n{said}{failed}");
+    said
+}
+
+/// Where the libraries of this build are installed.
+pub fn prefix() -> &'static Path {
+    // A static is never dropped: the folder goes with the target folder's own.
+    static PREFIX: OnceLock<PathBuf> = OnceLock::new();
+    PREFIX.get_or_init(|| {
+        let deps = std::env::current_exe()
+            .unwrap()
+            .parent()
+            .unwrap()
+            .to_owned();
+        let prefix = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi-prefix");
+        run(Command::new(root().join("scripts/install-c"))
+            .arg(&prefix)
+            .arg(deps));
+        prefix
+    })
+}
+
+/// What pkg-config says of the installed library.
+fn pkg_config(what: &str) -> Vec<String> {
+    let said = run(Command::new("pkg-config")
+        .env("PKG_CONFIG_PATH", prefix().join("lib/pkgconfig"))
+        .args([what, "revmap"]));
+    said.split_whitespace().map(str::to_owned).collect()
+}
+
+/// Compiles C files to a program. The library is found by pkg-config.
+pub fn compile(standard: &str, sources: &[PathBuf], to: &Path) {
+    run(Command::new("cc")
+        .arg(format!("-std={standard}"))
+        .args(STRICT)
+        .arg("-I")
+        .arg(root().join("examples/c"))
+        .args(pkg_config("--cflags"))
+        .args(sources)
+        .args(pkg_config("--libs"))
+        .args(["-lvulkan", "-o"])
+        .arg(to));
+}
+
+/// A command that runs a program of ours, with the validation layers on.
+pub fn validated(program: &Path) -> Command {
+    let mut command = Command::new(program);
+    command
+        .env("LD_LIBRARY_PATH", prefix().join("lib"))
+        .env("REVMAP_VALIDATION", "1");
+    command
+}
+
+#[test]
+fn the_headers_alone_compile_in_every_standard() {
+    let folder = folder();
+    for (compiler, standard, header) in [
+        ("cc", "c99", "revmap.h"),
+        ("cc", "c11", "revmap.h"),
+        ("cc", "c17", "revmap.h"),
+        ("c++", "c++17", "revmap.h"),
+        ("c++", "c++17", "revmap.hpp"),
+    ] {
+        let file = folder
+            .path()
+            .join(if compiler == "cc" { "one.c" } else { "one.cpp" });
+        std::fs::write(
+            &file,
+            format!("#include <{header}>\nint main(void) {{ return 0; }}\n"),
+        )
+        .unwrap();
+        run(Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(STRICT)
+            .args(pkg_config("--cflags"))
+            .arg("-c")
+            .arg(&file)
+            .arg("-o")
+            .arg(folder.path().join("one.o")));
+    }
+}
+
+/// Memory and handles of 1,000 cycles, by the C library's own count.
+#[test]
+fn a_thousand_cycles_leave_nothing_behind() {
+    let folder = folder();
+    let program = folder.path().join("cycles");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c/cycles.c");
+    compile("gnu11", &[own, root().join("examples/c/host.c")], &program);
+    let mut command = Command::new(&program);
+    command.env("LD_LIBRARY_PATH", prefix().join("lib"));
+    command.env_remove("REVMAP_VALIDATION"); // the layers keep a record of what was
+    command.env("MALLOC_ARENA_MAX", "1"); // the C library counts one arena alone
+    println!(
+        "{}",
+        run(command.arg(root().join("assets/profiles/pawn.svg")))
+    );
+}
+
+/// The examples of `docs/embedding.md` are whole files.
+#[test]
+fn the_documents_examples_compile() {
+    let folder = folder();
+    let text = std::fs::read_to_string(root().join("docs/embedding.md")).unwrap();
+    for (fence, compiler, standard) in [("c", "cc", "c99"), ("cpp", "c++", "c++17")] {
+        let begin = format!("```{fence}\n");
+        let example = text
+            .split(&begin)
+            .nth(1)
+            .and_then(|rest| rest.split("```").next());
+        let file = folder.path().join(format!("example.{fence}"));
+        std::fs::write(&file, example.unwrap()).unwrap();
+        run(Command::new(compiler)
+            .arg(format!("-std={standard}"))
+            .args(STRICT)
+            .args(pkg_config("--cflags"))
+            .arg("-fsyntax-only")
+            .arg(&file));
+    }
+}

@@ -1,0 +1,446 @@
+//! Recording through the C interface, into a render pass and in compute: what the Rust renderer draws.
+
+use crate::host::{Host, Options, Stage};
+use ash::vk;
+use glam::{DMat4, DVec3, Vec3};
+use revmap::frame::Picture;
+use revmap::gpu::{
+    DepthOrder, Device, HostDevice, Offscreen, Output, PassFormats, PassKind, Renderer,
+    Requirements, View,
+};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Object, Placement, Scene};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
+use revmap_capi::device::*;
+use revmap_capi::enums::*;
+use revmap_capi::fault::*;
+use revmap_capi::object::*;
+use revmap_capi::profile::*;
+use revmap_capi::renderer::frame::*;
+use revmap_capi::renderer::prewarm::*;
+use revmap_capi::renderer::*;
+use revmap_capi::values::*;
+use std::ffi::CStr;
+use std::mem::zeroed;
+use std::ptr::{null, null_mut};
+use std::sync::Arc;
+
+const OPTIONS: Options = Options {
+    width: 240,
+    height: 180,
+    dynamic: false,
+    samples: 1,
+    reversed: false,
+};
+const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]];
+const EYE: [f64; 3] = [2.0, 0.5, 1.5];
+const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
+const RANGE: [f64; 2] = [0.1, 10.0];
+
+#[track_caller]
+fn ok(result: RevmapResult) {
+    // SAFETY: the text lasts until this thread's next failure.
+    let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
+    assert_eq!(result, RevmapResult::Ok, "{}", text.to_string_lossy());
+}
+
+fn open() -> Host {
+    Host::open(true, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, needs.features))
+    })
+    .unwrap()
+}
+
+fn lend(host: &Host) -> *mut RevmapDevice {
+    let mut device = null_mut();
+    // SAFETY: the host's own handles; every test destroys all that it makes before the host goes.
+    unsafe {
+        let entry = ash::Entry::load().unwrap();
+        let lent = RevmapHostDevice {
+            size: size_of::<RevmapHostDevice>() as u32,
+            queue_family: host.family,
+            get_instance_proc_addr: GetInstanceProcAddr(Some(
+                entry.static_fn().get_instance_proc_addr,
+            )),
+            instance: host.instance.handle(),
+            physical_device: host.physical,
+            device: host.device.handle(),
+            queue: vk::Queue::null(),
+            features: &host.features,
+            pipeline_cache: vk::PipelineCache::null(),
+        };
+        ok(revmap_device_borrow(&lent, &mut device));
+    }
+    device
+}
+
+/// Two spindles; the second is moved, and back again.
+fn add(renderer: *mut RevmapRenderer) {
+    // SAFETY: live values.
+    unsafe {
+        let (mut profile, mut object) = (null_mut(), 0);
+        ok(revmap_profile_from_points(
+            POINTS.as_ptr(),
+            POINTS.len(),
+            0.4,
+            &mut profile,
+        ));
+        let mut info: RevmapObjectInfo = zeroed();
+        info.size = size_of::<RevmapObjectInfo>() as u32;
+        ok(revmap_object_defaults(&mut info));
+        info.profile = profile;
+        ok(revmap_renderer_add(renderer, &info, &mut object));
+        ok(revmap_renderer_add(renderer, &info, &mut object));
+        let placement = RevmapPlacement {
+            position: BESIDE,
+            ..info.placement
+        };
+        let offset = RevmapOffset {
+            extend: 0.02,
+            ..info.offset
+        };
+        ok(revmap_renderer_set_instances(
+            renderer, object, &placement, 1,
+        ));
+        ok(revmap_renderer_set_instances(renderer, object, null(), 0));
+        ok(revmap_renderer_set_placement(renderer, object, &placement));
+        ok(revmap_renderer_set_offset(renderer, object, &offset));
+        ok(revmap_profile_destroy(profile));
+    }
+}
+
+fn scene() -> Scene {
+    let profile = Arc::new(Profile::polygon(&POINTS, 0.4).unwrap());
+    let mut scene = Scene::new(Camera::new(EYE.into(), DVec3::new(0.0, 0.0, 0.5)));
+    scene.objects = vec![
+        Object::new("object", profile.clone()),
+        Object::new("object", profile),
+    ];
+    scene.objects[1].placement = Placement {
+        position: BESIDE.into(),
+        ..Placement::default()
+    };
+    scene.objects[1].offset.extend = 0.02;
+    scene
+}
+
+fn camera() -> RevmapCamera {
+    // SAFETY: plain numbers, a live structure.
+    unsafe {
+        let mut camera: RevmapCamera = zeroed();
+        camera.size = size_of::<RevmapCamera>() as u32;
+        ok(revmap_camera_defaults(&mut camera));
+        camera.eye = EYE;
+        camera
+    }
+}
+
+/// What the Rust renderer records into the stage's pass.
+fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
+    // SAFETY: the host's own handles; the device is dropped before the host.
+    let device = unsafe {
+        Device::borrow(&HostDevice {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &host.device,
+            queue_family: host.family,
+            queue: None,
+            features: host.features,
+            allocator: None,
+            pipeline_cache: None,
+        })
+    }
+    .unwrap();
+    let output = Output::Pass(PassFormats {
+        begun: PassKind::RenderPass {
+            pass: stage.pass,
+            subpass: 0,
+        },
+        samples: 1,
+        depth: DepthOrder::Normal,
+        planes: Planes::Color,
+    });
+    let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2).unwrap();
+    let scene = scene();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    let view = View::from_camera(&scene.camera, (OPTIONS.width, OPTIONS.height), RANGE).unwrap();
+    let cell = std::cell::RefCell::new(&mut renderer);
+    stage
+        .frame(
+            DMat4::IDENTITY,
+            Vec3::Z,
+            &[],
+            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
+            |cmd, slot| Ok(unsafe { cell.borrow_mut().prepare(cmd, slot, &view) }?),
+            // SAFETY: the slot was prepared, the pass is of the output's formats.
+            |cmd, slot| unsafe { cell.borrow().record(cmd, slot) },
+        )
+        .unwrap();
+    stage.read().unwrap().0
+}
+
+#[test]
+fn a_render_pass_shows_what_rust_draws() {
+    let host = open();
+    let mut stage = Stage::new(&host, OPTIONS).unwrap();
+    let wanted = drawn(&host, &mut stage);
+    let (device, camera) = (lend(&host), camera());
+    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is the renderer's.
+    unsafe {
+        let mut pass: RevmapPass = zeroed();
+        pass.size = size_of::<RevmapPass>() as u32;
+        pass.kind = RevmapPassKind::RenderPass as u32;
+        pass.samples = 1;
+        pass.render_pass = stage.pass;
+        let (mut renderer, mut prewarm) = (null_mut(), null_mut());
+        ok(revmap_renderer_create(
+            device,
+            &pass,
+            null(),
+            2,
+            &mut renderer,
+        ));
+        add(renderer);
+        ok(revmap_renderer_prewarm(renderer, &mut prewarm));
+        ok(revmap_prewarm_compile(prewarm));
+        ok(revmap_prewarm_destroy(prewarm));
+        let compiled = || {
+            let mut info: RevmapDeviceInfo = zeroed();
+            info.size = size_of::<RevmapDeviceInfo>() as u32;
+            ok(revmap_device_info(device, &mut info));
+            info.pipelines_compiled
+        };
+        let before = compiled();
+        for warms in [true, false, false] {
+            let prepare = |cmd, slot: usize| {
+                let (w, h, [near, far]) = (OPTIONS.width, OPTIONS.height, RANGE);
+                ok(revmap_renderer_prepare_camera(
+                    renderer,
+                    cmd,
+                    slot as u32,
+                    &camera,
+                    w,
+                    h,
+                    near,
+                    far,
+                ));
+                Ok(())
+            };
+            let record = |cmd, slot: usize| {
+                if warms {
+                    ok(revmap_renderer_record_prewarm(renderer, cmd, slot as u32));
+                } else {
+                    ok(revmap_renderer_record(renderer, cmd, slot as u32));
+                }
+                assert_eq!(
+                    revmap_renderer_record_compute(renderer, cmd, slot as u32),
+                    RevmapResult::Usage
+                );
+            };
+            stage
+                .frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record)
+                .unwrap();
+        }
+        assert!(stage.read().unwrap().0 == wanted, "pixels differ");
+        assert!(
+            wanted
+                .chunks_exact(4)
+                .filter(|p| *p != &wanted[..4])
+                .count()
+                > 3000
+        );
+        // No frame has compiled anything.
+        assert_eq!((before > 0, compiled()), (true, before));
+        ok(revmap_renderer_destroy(renderer));
+        ok(revmap_device_destroy(device));
+    }
+    drop(stage);
+    let messages = host.take_messages();
+    assert!(messages.is_empty(), "{messages:?}");
+}
+
+/// Words for compute, which the host maps.
+struct Words<'a> {
+    raw: vk::Buffer,
+    memory: vk::DeviceMemory,
+    host: &'a Host,
+}
+
+const PIXELS: usize = (OPTIONS.width * OPTIONS.height) as usize;
+
+impl<'a> Words<'a> {
+    fn new(host: &'a Host) -> Self {
+        // SAFETY: plain creations, destroyed in Drop.
+        unsafe {
+            let info = vk::BufferCreateInfo::default()
+                .size(8 * PIXELS as u64)
+                .usage(vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST);
+            let raw = host.device.create_buffer(&info, None).unwrap();
+            let needs = host.device.get_buffer_memory_requirements(raw);
+            let mapped =
+                vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+            let memory = host.memory(needs, mapped).unwrap();
+            host.device.bind_buffer_memory(raw, memory, 0).unwrap();
+            Self { raw, memory, host }
+        }
+    }
+
+    /// Clears depths and colours, for compute shaders.
+    fn clear(&self, cmd: vk::CommandBuffer) {
+        let device = &self.host.device;
+        let (half, bytes) = (4 * PIXELS as u64, vk::WHOLE_SIZE);
+        let barrier = |from, to| {
+            vk::MemoryBarrier::default()
+                .src_access_mask(from)
+                .dst_access_mask(to)
+        };
+        let (compute, copy) = (
+            vk::PipelineStageFlags::COMPUTE_SHADER,
+            vk::PipelineStageFlags::TRANSFER,
+        );
+        let shader = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
+        let (none, write) = (
+            vk::DependencyFlags::empty(),
+            vk::AccessFlags::TRANSFER_WRITE,
+        );
+        // SAFETY: `cmd` is recording outside of a pass.
+        unsafe {
+            device.cmd_pipeline_barrier(
+                cmd,
+                compute,
+                copy,
+                none,
+                &[barrier(shader, write)],
+                &[],
+                &[],
+            );
+            device.cmd_fill_buffer(cmd, self.raw, 0, half, 1f32.to_bits());
+            device.cmd_fill_buffer(cmd, self.raw, half, bytes, 0);
+            device.cmd_pipeline_barrier(
+                cmd,
+                copy,
+                compute,
+                none,
+                &[barrier(write, shader)],
+                &[],
+                &[],
+            );
+        }
+    }
+
+    /// Makes what compute wrote visible to the host.
+    fn finish(&self, cmd: vk::CommandBuffer) {
+        let barrier = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::HOST_READ);
+        let (compute, host) = (
+            vk::PipelineStageFlags::COMPUTE_SHADER,
+            vk::PipelineStageFlags::HOST,
+        );
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: `cmd` is recording outside of a pass.
+        unsafe {
+            self.host
+                .device
+                .cmd_pipeline_barrier(cmd, compute, host, none, &[barrier], &[], &[])
+        };
+    }
+
+    fn colors(&self) -> Vec<[u8; 4]> {
+        let flags = vk::MemoryMapFlags::empty();
+        // SAFETY: the device is done; the mapping holds all words.
+        unsafe {
+            let at = self
+                .host
+                .device
+                .map_memory(self.memory, 0, vk::WHOLE_SIZE, flags)
+                .unwrap();
+            let words = std::slice::from_raw_parts(at.cast::<[u8; 4]>(), 2 * PIXELS);
+            let colors = words[PIXELS..].to_vec();
+            self.host.device.unmap_memory(self.memory);
+            colors
+        }
+    }
+}
+
+impl Drop for Words<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the device is done with it.
+        unsafe {
+            self.host.device.destroy_buffer(self.raw, None);
+            self.host.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+#[test]
+fn compute_writes_what_rust_draws() {
+    let host = open();
+    let mut stage = Stage::new(&host, OPTIONS).unwrap();
+    let (device, camera, words) = (lend(&host), camera(), Words::new(&host));
+    let mut renderer = null_mut();
+    // SAFETY: live values; the stage has waited for a slot before it is prepared; the words live until it is idle.
+    unsafe {
+        ok(revmap_renderer_create_compute(
+            device,
+            RevmapPlanes::Color as u32,
+            null(),
+            2,
+            &mut renderer,
+        ));
+        add(renderer);
+        let mut target: RevmapComputeTarget = zeroed();
+        target.size = size_of::<RevmapComputeTarget>() as u32;
+        target.words = words.raw;
+        ok(revmap_renderer_set_compute_target(renderer, &target));
+        for _ in 0..3 {
+            let before = |cmd, slot: usize| {
+                let (slot, w, h, [near, far]) = (slot as u32, OPTIONS.width, OPTIONS.height, RANGE);
+                ok(revmap_renderer_prepare_camera(
+                    renderer, cmd, slot, &camera, w, h, near, far,
+                ));
+                words.clear(cmd);
+                assert_eq!(
+                    revmap_renderer_record(renderer, cmd, slot),
+                    RevmapResult::Usage
+                );
+                ok(revmap_renderer_record_compute(renderer, cmd, slot));
+                words.finish(cmd);
+                Ok(())
+            };
+            stage
+                .frame(DMat4::IDENTITY, Vec3::Z, &[], before, |_, _| {})
+                .unwrap();
+        }
+        stage.wait().unwrap();
+        let mut statistics: RevmapStatistics = zeroed();
+        statistics.size = size_of::<RevmapStatistics>() as u32;
+        ok(revmap_renderer_statistics(renderer, &mut statistics));
+        assert_eq!((statistics.objects, statistics.drawn_by_hull), (2, 0));
+        let drawn =
+            statistics.drawn_by_beams + statistics.drawn_by_rectangle + statistics.drawn_by_bins;
+        assert_eq!(drawn, 2);
+        ok(revmap_renderer_destroy(renderer));
+        ok(revmap_device_destroy(device));
+    }
+    let settings = Settings {
+        width: OPTIONS.width,
+        height: OPTIONS.height,
+        stage: DrawStage::Compute,
+        planes: Planes::Color,
+        ..Settings::default()
+    };
+    let own = Device::open_validated(None).unwrap();
+    let mut offscreen = Offscreen::new(&own, &scene(), &settings).unwrap();
+    offscreen.draw().unwrap();
+    let wanted = Picture::of(&offscreen.read().unwrap()).rgba;
+    assert!(words.colors() == wanted, "pixels differ");
+    assert!(wanted.iter().filter(|p| p[3] == 255).count() > 3000);
+    drop((stage, words));
+    let messages = host.take_messages();
+    assert!(messages.is_empty(), "{messages:?}");
+}
