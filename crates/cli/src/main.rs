@@ -18,6 +18,8 @@ mod progress;
 mod render;
 mod stability;
 mod usage;
+#[cfg(feature = "viewer")]
+mod view;
 
 use clap::{Parser, Subcommand};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -44,6 +46,8 @@ enum Command {
     Stability(stability::Stability),
     Devices(devices::Devices),
     Compare(compare::Compare),
+    #[cfg(feature = "viewer")]
+    View(view::View),
 }
 
 impl Command {
@@ -57,6 +61,8 @@ impl Command {
             Self::Stability(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
+            #[cfg(feature = "viewer")]
+            Self::View(command) => command.run(),
         }
     }
 }

@@ -1,0 +1,199 @@
+//! Sliders and choices for all that a scene and its search hold.
+
+use super::times::Times;
+use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
+use revmap::maps::{MapSource, Projection};
+use revmap::scene::{BumpForm, Object, Scene, Shadow};
+use revmap::settings::{SearchSettings, Solver};
+
+/// What is shown, and how.
+#[derive(Clone)]
+pub struct Shown {
+    pub scene: Scene,
+    pub search: SearchSettings,
+}
+
+/// What was asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// A value was changed.
+    pub changed: bool,
+    pub undo: bool,
+    pub reset: bool,
+}
+
+/// All controls. `problem` is what the last values led to.
+pub fn show(
+    ui: &mut Ui,
+    shown: &mut Shown,
+    times: &Times,
+    problem: Option<&str>,
+    undos: usize,
+) -> Asked {
+    let mut asked = Asked::default();
+    ui.horizontal(|ui| {
+        asked.undo = ui
+            .add_enabled(undos > 0, egui::Button::new("Undo"))
+            .clicked();
+        asked.reset = ui.button("Reset").clicked();
+    });
+    if let Some(text) = problem {
+        ui.colored_label(egui::Color32::LIGHT_RED, text);
+    }
+    times.show(ui);
+    let Shown { scene, search } = shown;
+    for (n, one) in scene.objects.iter_mut().enumerate() {
+        let title = format!("{n}: {}", one.name);
+        CollapsingHeader::new(title)
+            .id_salt(("object", n))
+            .default_open(n == 0)
+            .show(ui, |ui| asked.changed |= object(ui, one));
+    }
+    CollapsingHeader::new("Lights").show(ui, |ui| asked.changed |= lights(ui, scene));
+    CollapsingHeader::new("Search").show(ui, |ui| asked.changed |= how(ui, search));
+    CollapsingHeader::new("Camera").show(ui, |ui| {
+        let angle = Slider::new(&mut scene.camera.fov_y, 5.0..=120.0).text("fov_y");
+        asked.changed |= ui.add(angle).changed();
+    });
+    asked
+}
+
+fn object(ui: &mut Ui, object: &mut Object) -> bool {
+    let mut changed = false;
+    let mut slide = |ui: &mut Ui, value: &mut f64, range, name: &str| {
+        changed |= ui.add(Slider::new(value, range).text(name)).changed();
+    };
+    slide(ui, &mut object.offset.extend, -0.2..=0.2, "extend e");
+    slide(ui, &mut object.offset.bevel, 0.0..=2.0, "bevel b");
+    slide(ui, &mut object.offset.chamfer, 0.0..=1.0, "chamfer c");
+    slide(ui, &mut object.texturing.bump, 0.0..=3.0, "bump a");
+    for (value, name) in object
+        .placement
+        .scale
+        .as_mut()
+        .iter_mut()
+        .zip(["scale x", "scale y", "scale z"])
+    {
+        slide(ui, value, 0.1..=4.0, name);
+    }
+    for (value, name) in object.axis.iter_mut().zip(["axis x", "axis y"]) {
+        slide(ui, value, 0.0..=1.0, name);
+    }
+    changed |= row(ui, "repeat", |ui| {
+        any(object.repeat.iter_mut().map(|n| {
+            ui.add(DragValue::new(n).range(1..=16).speed(0.05))
+                .changed()
+        }))
+    });
+    changed |= row(ui, "mirror", |ui| {
+        any(object
+            .mirror
+            .iter_mut()
+            .zip(["x", "y", "z"])
+            .map(|(flag, name)| ui.checkbox(flag, name).changed()))
+    });
+    let place = object.placement.position.as_mut();
+    changed |= row(ui, "position", |ui| {
+        any(place
+            .iter_mut()
+            .map(|v| ui.add(DragValue::new(v).speed(0.01)).changed()))
+    });
+    changed |= row(ui, "colour", |ui| {
+        ui.color_edit_button_rgb(&mut object.color).changed()
+    });
+    let (specular, texturing) = (&mut object.specular, &mut object.texturing);
+    changed |= ui
+        .add(Slider::new(&mut specular.strength, 0.0..=1.0).text("specular"))
+        .changed();
+    changed |= ui
+        .add(
+            Slider::new(&mut specular.shininess, 1.0..=256.0)
+                .logarithmic(true)
+                .text("shininess"),
+        )
+        .changed();
+    let projections = Projection::ALL.map(|p| (p.name(), p));
+    changed |= choice(ui, "projection", &mut texturing.projection, &projections);
+    changed | choice(ui, "bump form", &mut texturing.bump_form, &BumpForm::NAMES)
+}
+
+fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
+    let mut changed = choice(ui, "shadow", &mut scene.shadow, &Shadow::NAMES);
+    changed |= row(ui, "ambient", |ui| {
+        ui.color_edit_button_rgb(&mut scene.ambient).changed()
+    });
+    for (n, light) in scene.lights.iter_mut().enumerate() {
+        changed |= row(ui, &format!("light {n}"), |ui| {
+            let direction = light.direction.as_mut();
+            let turned = any(direction
+                .iter_mut()
+                .map(|v| ui.add(DragValue::new(v).speed(0.01)).changed()));
+            turned | ui.color_edit_button_rgb(&mut light.color).changed()
+        });
+    }
+    changed
+}
+
+fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
+    let solvers = Solver::ALL.map(|s| (s.name(), s));
+    let mut changed = choice(ui, "solver", &mut search.solver, &solvers);
+    let sources = [
+        ("best", None),
+        ("binary", Some(MapSource::Binary)),
+        ("coverage", Some(MapSource::Coverage)),
+        ("exact", Some(MapSource::Exact)),
+    ];
+    changed |= choice(ui, "map source", &mut search.map_source, &sources);
+    changed |= optional(ui, "map rows", &mut search.map_rows, 512, 2..=4096);
+    changed | optional(ui, "max steps", &mut search.max_steps, 64, 1..=1024)
+}
+
+/// A number that may be left to the program.
+fn optional(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut Option<u32>,
+    first: u32,
+    range: std::ops::RangeInclusive<u32>,
+) -> bool {
+    row(ui, name, |ui| {
+        let mut given = value.is_some();
+        let switched = ui.checkbox(&mut given, "").changed();
+        if switched {
+            *value = given.then_some(first);
+        }
+        let moved = value
+            .as_mut()
+            .is_some_and(|n| ui.add(Slider::new(n, range).logarithmic(true)).changed());
+        switched | moved
+    })
+}
+
+fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(&str, T)]) -> bool {
+    let before = *value;
+    let known = all
+        .iter()
+        .find(|(_, v)| *v == before)
+        .map_or("", |(name, _)| name);
+    ComboBox::from_label(name)
+        .selected_text(known)
+        .show_ui(ui, |ui| {
+            for (name, one) in all {
+                ui.selectable_value(value, *one, *name);
+            }
+        });
+    *value != before
+}
+
+fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> bool) -> bool {
+    ui.horizontal(|ui| {
+        ui.label(name);
+        add(ui)
+    })
+    .inner
+}
+
+/// Whether any is true. All are looked at: each is a control that must be shown.
+fn any(all: impl Iterator<Item = bool>) -> bool {
+    all.fold(false, |a, b| a | b)
+}

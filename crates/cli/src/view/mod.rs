@@ -1,0 +1,66 @@
+//! `revmap view`: a window with live controls.
+
+mod app;
+mod controls;
+mod orbit;
+mod stage;
+mod swapchain;
+mod times;
+mod vulkan;
+
+use super::output;
+use clap::Args;
+use revmap::error::{Error, Result, Stage};
+use revmap::scene::file::SceneFile;
+use revmap::settings::{SearchSettings, Solver};
+use std::path::PathBuf;
+use winit::event_loop::EventLoop;
+
+/// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to go nearer; drop a file to see it
+#[derive(Args)]
+pub struct View {
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture
+    scene: PathBuf,
+    /// Pixels of the window, across and down
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
+    size: (u32, u32),
+    /// How the first hit along a ray is found
+    #[arg(long, value_name = "NAME", default_value = "hull")]
+    solver: Solver,
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    device: Option<String>,
+    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Show so many frames and end
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: Option<u32>,
+    /// Write the last of these frames as a PNG, with the controls
+    #[arg(long, value_name = "FILE", requires = "frames")]
+    screenshot: Option<PathBuf>,
+}
+
+impl View {
+    pub fn run(self) -> Result<()> {
+        let files: Vec<_> = self.screenshot.iter().cloned().collect();
+        output::check(&files, "--screenshot", &["png"], &[&self.scene])?;
+        let mut file = SceneFile::open(&self.scene)?;
+        let scene = file.scene(&self.set)?;
+        output::spare(file.files(), &files, "--screenshot")?;
+        let search = SearchSettings {
+            solver: self.solver,
+            ..SearchSettings::default()
+        };
+        let screen = |e| {
+            Error::new(
+                Stage::Device,
+                format!("no screen ({e}); set DISPLAY or WAYLAND_DISPLAY"),
+            )
+        };
+        let events = EventLoop::new().map_err(screen)?;
+        let mut app = app::App::new(self, controls::Shown { scene, search });
+        events.run_app(&mut app).map_err(screen)?;
+        app.end()
+    }
+}

@@ -1,0 +1,79 @@
+//! The graph of frame times.
+
+use egui::{Color32, Rect, Sense, Stroke, Ui, pos2, vec2};
+use std::collections::VecDeque;
+
+/// Frames that are shown.
+const SHOWN: usize = 120;
+
+/// What one frame cost.
+#[derive(Clone, Copy, Default)]
+pub struct Cost {
+    /// Milliseconds of the CPU to take over changes and to record.
+    pub prepare: f64,
+    /// Milliseconds of the device, of an earlier frame in the same slot.
+    pub device: f64,
+    /// Milliseconds to submit and to present.
+    pub present: f64,
+    /// Pipelines that were compiled.
+    pub compiled: u64,
+}
+
+/// A part of a frame's cost: its name, its colour, how long it took.
+type Part = (&'static str, Color32, fn(&Cost) -> f64);
+
+const PARTS: [Part; 3] = [
+    ("prepare", Color32::from_rgb(230, 160, 60), |c| c.prepare),
+    ("device", Color32::from_rgb(90, 170, 230), |c| c.device),
+    ("present", Color32::from_rgb(130, 200, 120), |c| c.present),
+];
+
+/// The last frames.
+#[derive(Default)]
+pub struct Times {
+    all: VecDeque<Cost>,
+}
+
+impl Times {
+    pub fn push(&mut self, cost: Cost) {
+        self.all.push_back(cost);
+        if self.all.len() > SHOWN {
+            self.all.pop_front();
+        }
+    }
+
+    pub fn show(&self, ui: &mut Ui) {
+        let most = self
+            .all
+            .iter()
+            .map(|c| PARTS.iter().map(|p| p.2(c)).sum())
+            .fold(1.0, f64::max);
+        let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), 60.0), Sense::hover());
+        let painter = ui.painter_at(area);
+        painter.rect_filled(area, 2.0, Color32::from_black_alpha(120));
+        let width = area.width() / SHOWN as f32;
+        for (n, cost) in self.all.iter().enumerate() {
+            let (left, mut low) = (area.left() + width * n as f32, area.bottom());
+            for (_, color, part) in &PARTS {
+                let high = low - area.height() * (part(cost) / most) as f32;
+                let bar = Rect::from_two_pos(pos2(left, low), pos2(left + width, high));
+                painter.rect_filled(bar, 0.0, *color);
+                low = high;
+            }
+            if cost.compiled > 0 {
+                let line = Stroke::new(1.0, Color32::RED);
+                painter.vline(left, area.y_range(), line);
+            }
+        }
+        let last = self.all.back().copied().unwrap_or_default();
+        ui.horizontal_wrapped(|ui| {
+            for (name, color, part) in PARTS {
+                ui.colored_label(color, format!("{name} {:.1} ms", part(&last)));
+            }
+        });
+        let compiled: u64 = self.all.iter().map(|c| c.compiled).sum();
+        ui.label(format!(
+            "graph up to {most:.1} ms; {compiled} pipelines compiled in it"
+        ));
+    }
+}
