@@ -3,9 +3,7 @@
 use super::call::Call;
 use super::instance::{Instance, into_device};
 use super::pipelines::Pipelines;
-use super::report::{
-    Candidate, DEVICE_VARIABLE, DeviceReport, candidates, choose, inspect, refuse,
-};
+use super::report::{Candidate, DeviceReport, candidates, choose, inspect, refuse, variable};
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -105,9 +103,7 @@ impl Device {
     }
 
     fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
-        let variable = std::env::var(DEVICE_VARIABLE)
-            .ok()
-            .filter(|v| !v.is_empty());
+        let variable = variable();
         let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
         let raw = create(&instance, &chosen)?;
         // SAFETY: the queue was asked for when the device was made.

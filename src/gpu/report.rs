@@ -25,6 +25,8 @@ pub struct DeviceReport {
     pub uses: Vec<(String, String)>,
     /// What it lacks that is needed; empty: the program runs on it.
     pub missing: Vec<String>,
+    /// Whether it is the one taken where no `--device` is given.
+    pub preferred: bool,
 }
 
 /// A device with what opening it takes.
@@ -68,7 +70,19 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
     if found.is_empty() {
         return Err(none());
     }
-    Ok(found.into_iter().map(|c| c.report).collect())
+    let preferred = position(&found, variable().as_deref()).ok();
+    let mut reports: Vec<_> = found.into_iter().map(|c| c.report).collect();
+    if let Some(report) = preferred.and_then(|p| reports.get_mut(p)) {
+        report.preferred = true;
+    }
+    Ok(reports)
+}
+
+/// The device that the environment names.
+pub(crate) fn variable() -> Option<String> {
+    std::env::var(DEVICE_VARIABLE)
+        .ok()
+        .filter(|v| !v.is_empty())
 }
 
 fn none() -> Error {
@@ -92,44 +106,37 @@ pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
 
 /// The candidate that `choice` names (an index, or part of a name, in any case); none named: the first by kind.
 pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
-    let position = match choice {
-        None => all
+    let chosen = all.swap_remove(position(&all, choice)?);
+    refuse(&chosen)?;
+    Ok(chosen)
+}
+
+fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
+    let Some(wanted) = choice else {
+        return all
             .iter()
             .enumerate()
             .filter(|(_, c)| c.report.missing.is_empty())
             .min_by_key(|(_, c)| rank(c.properties.device_type))
             .or_else(|| all.iter().enumerate().next())
             .map(|(position, _)| position)
-            .ok_or_else(none)?,
-        Some(wanted) => {
-            let part = wanted.to_lowercase();
-            wanted
-                .parse::<usize>()
-                .ok()
-                .filter(|index| *index < all.len())
-                .or_else(|| {
-                    all.iter()
-                        .position(|c| c.report.name.to_lowercase().contains(&part))
-                })
-                .ok_or_else(|| {
-                    let names: Vec<_> = all
-                        .iter()
-                        .map(|c| format!("{} {}", c.report.index, c.report.name))
-                        .collect();
-                    Error::new(
-                        Stage::Usage,
-                        format!(
-                            "no device is called '{wanted}'; there are: {}",
-                            names.join(", ")
-                        ),
-                    )
-                    .at_key("--device")
-                })?
-        }
+            .ok_or_else(none);
     };
-    let chosen = all.swap_remove(position);
-    refuse(&chosen)?;
-    Ok(chosen)
+    let part = wanted.to_lowercase();
+    let index = wanted.parse::<usize>().ok().filter(|i| *i < all.len());
+    let named = || {
+        all.iter()
+            .position(|c| c.report.name.to_lowercase().contains(&part))
+    };
+    index.or_else(named).ok_or_else(|| {
+        let names: Vec<_> = all
+            .iter()
+            .map(|c| format!("{} {}", c.report.index, c.report.name))
+            .collect();
+        let names = names.join(", ");
+        let message = format!("no device is called '{wanted}'; there are: {names}");
+        Error::new(Stage::Usage, message).at_key("--device")
+    })
 }
 
 /// Fails for a device that lacks something.
@@ -274,6 +281,7 @@ pub(crate) fn inspect(
             api_version: version(basic.api_version),
             uses,
             missing,
+            preferred: false,
         },
         physical,
         family: family.and_then(|f| u32::try_from(f).ok()).unwrap_or(0),

@@ -54,9 +54,11 @@ impl View {
         // depth = constant + factor / t
         let constant = far / (far - near);
         let factor = -far * near / (far - near);
-        let pixel = camera.right.length();
-        let right = camera.right / (pixel * pixel * camera.middle[0]);
-        let down = -camera.up / (pixel * pixel * camera.middle[1]);
+        // Steps of a pixel, as parts of half the picture; the middle is 0 in clip space unless the camera is shifted.
+        let step = |v: DVec3, pixels: u32| v * (2.0 / (v.length_squared() * f64::from(pixels)));
+        let middle = |at: f64, pixels: u32| camera.forward * (2.0 * at / f64::from(pixels) - 1.0);
+        let right = step(camera.right, size.0) + middle(camera.middle[0], size.0);
+        let down = step(-camera.up, size.1) + middle(camera.middle[1], size.1);
         let row = |v: DVec3| DVec4::new(v.x, v.y, v.z, -v.dot(camera.eye));
         let depth_row = row(camera.forward);
         let clip_from_world = DMat4::from_cols(

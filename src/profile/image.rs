@@ -1,6 +1,6 @@
 //! Profiles from pictures: what is dark is solid.
 
-use super::{Profile, ProfileAxis, Raster, trace};
+use super::{Profile, ProfileAxis, ProfileOptions, Raster, reading, trace};
 use crate::error::{Error, Result, Stage};
 use crate::maps::header::Header;
 use crate::pictures::{Pixels, Samples, decode, luminance};
@@ -12,17 +12,19 @@ use rayon::prelude::*;
 /// than one half is solid. Width and height are read and checked before anything is decoded.
 ///
 /// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the form, its axis the left edge.
-pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
+pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
         return baked(bytes, &header);
     }
-    let dark = read_darkness(bytes)?;
-    let split = axis == ProfileAxis::Center && !dark.columns.is_multiple_of(2);
-    let raster = half_plane(dark, axis);
+    let dark = read_darkness(bytes, options.invert)?;
+    let split = options.axis == ProfileAxis::Center && !dark.columns.is_multiple_of(2);
+    let raster = options.apply(half_plane(dark, options.axis), split);
     if raster.coverage.par_iter().all(|&c| c > 0.5) {
         return Err(full_fault("image"));
     }
-    trace::profile(raster, split)
+    let mut profile = trace::profile(raster.clone(), split)?;
+    profile.warnings = reading::warnings(&raster, &profile.outline, options);
+    Ok(profile)
 }
 
 /// The form of a shape map in its file.
@@ -49,7 +51,7 @@ pub(super) fn empty_fault(what: &str) -> Error {
         Stage::Profile,
         format!(
             "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
-             white, or choose the other profile_axis"
+             white, or set profile_threshold, profile_invert or profile_axis"
         ),
     )
 }
@@ -60,13 +62,13 @@ pub(super) fn full_fault(what: &str) -> Error {
         Stage::Profile,
         format!(
             "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
-             (a plain cylinder: use a polygon)"
+             or set profile_threshold or profile_invert (a plain cylinder: use a polygon)"
         ),
     )
 }
 
-/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture.
-fn read_darkness(bytes: &[u8]) -> Result<Raster> {
+/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how light over black.
+fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
     let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
     let (width, height) = (picture.width, picture.height);
     if width < 2 || height < 2 {
@@ -80,40 +82,36 @@ fn read_darkness(bytes: &[u8]) -> Result<Raster> {
     Ok(Raster {
         columns: width,
         rows: height,
-        coverage: darkness(&picture),
+        coverage: darkness(&picture, invert),
     })
 }
 
-/// Darkness over white from the pixels of any kind of picture.
-fn darkness(picture: &Pixels) -> Vec<f32> {
-    const BYTE: f32 = 255.0;
-    const WORD: f32 = 65_535.0;
-    match (&picture.samples, picture.channels) {
-        (Samples::Byte(v), n @ 1..3) => grey(v, n, BYTE),
-        (Samples::Byte(v), n) => color(v, n, BYTE),
-        (Samples::Word(v), n @ 1..3) => grey(v, n, WORD),
-        (Samples::Word(v), n) => color(v, n, WORD),
+/// Darkness over white from the pixels of any kind of picture; `invert`: lightness over black.
+fn darkness(picture: &Pixels, invert: bool) -> Vec<f32> {
+    match &picture.samples {
+        Samples::Byte(v) => solid(v, picture.channels, 255.0, invert),
+        Samples::Word(v) => solid(v, picture.channels, 65_535.0, invert),
     }
 }
 
-fn grey<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -> Vec<f32> {
-    values
-        .par_chunks_exact(channels)
-        .map(|p| {
-            let dark = 1.0 - p[0].into() / full;
-            p.get(1).map_or(dark, |&a| dark * (a.into() / full))
-        })
-        .collect()
-}
-
-fn color<T: Copy + Into<f32> + Sync>(values: &[T], channels: usize, full: f32) -> Vec<f32> {
-    values
-        .par_chunks_exact(channels)
-        .map(|p| {
-            let dark = 1.0 - luminance([p[0], p[1], p[2]].map(|v| v.into() / full));
-            p.get(3).map_or(dark, |&a| dark * (a.into() / full))
-        })
-        .collect()
+fn solid<T: Copy + Into<f32> + Sync>(
+    values: &[T],
+    channels: usize,
+    full: f32,
+    invert: bool,
+) -> Vec<f32> {
+    let value = |v: T| v.into() / full;
+    let part = |p: &[T]| {
+        let (grey, alpha) = match *p {
+            [v] => (value(v), 1.0),
+            [v, a] => (value(v), value(a)),
+            [r, g, b] => (luminance([r, g, b].map(value)), 1.0),
+            [r, g, b, a, ..] => (luminance([r, g, b].map(value)), value(a)),
+            [] => (1.0, 1.0), // no picture has pixels without a sample
+        };
+        alpha * if invert { grey } else { 1.0 - grey }
+    };
+    values.par_chunks_exact(channels).map(part).collect()
 }
 
 /// The part of the picture right of the axis. With the axis in the middle of an odd width, the first column is the one that the
@@ -149,7 +147,7 @@ mod tests {
     }
 
     fn raster(bytes: &[u8], axis: ProfileAxis) -> Raster {
-        profile(bytes, axis).unwrap().raster.unwrap()
+        profile(bytes, &axis.into()).unwrap().raster.unwrap()
     }
 
     /// A picture with a known darkness per pixel, in every kind of pixel that PNG knows.
@@ -234,7 +232,7 @@ mod tests {
         let odd = GrayImage::from_fn(5, 3, |x, y| {
             Luma([if y > 0 && (1..4).contains(&x) { 0 } else { 255 }])
         });
-        let p = profile(&png(odd), ProfileAxis::Center).unwrap();
+        let p = profile(&png(odd), &ProfileAxis::Center.into()).unwrap();
         assert!((p.radius - 5.0 / 6.0).abs() < 1e-15);
         // One column and a half, two rows from the floor.
         assert_eq!(p.raster, None);
@@ -247,7 +245,11 @@ mod tests {
 
     #[test]
     fn faults_are_named() {
-        let text = |bytes: &[u8]| profile(bytes, ProfileAxis::Left).unwrap_err().to_string();
+        let text = |bytes: &[u8]| {
+            profile(bytes, &ProfileAxis::Left.into())
+                .unwrap_err()
+                .to_string()
+        };
         let filled = |v| png(GrayImage::from_pixel(8, 8, Luma([v])));
         assert!(text(&filled(255)).contains("empty"));
         assert!(text(&filled(0)).contains("full"));

@@ -14,6 +14,7 @@ mod outline;
 mod paint;
 mod polygon;
 mod raster;
+mod reading;
 mod region;
 mod smooth;
 #[cfg(feature = "drawing")]
@@ -21,6 +22,7 @@ mod svg;
 mod trace;
 
 pub use outline::Segment;
+pub use reading::ProfileOptions;
 
 use crate::error::{Error, Result, Stage};
 use glam::DVec2;
@@ -70,14 +72,17 @@ pub struct Profile {
     /// `None` for drawings and polygons, and for pictures whose axis is the middle of a column of
     /// pixels.
     pub raster: Option<Raster>,
+    /// What about the picture looks unintended: a sentence each, with the key that mends it.
+    pub warnings: Vec<String>,
 }
 
 impl Profile {
     /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (feature `drawing`; also
     /// gzip-compressed).
     ///
-    /// The top edge is `z = 1`, the bottom edge `z = 0`. Solid is what is darker than one half over
-    /// white. Pictures are traced as by [`Profile::traced`]. The curves of drawings are flattened
+    /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the
+    /// bottom edge `z = 0`. Solid is what is darker than one half over white, unless the options
+    /// say otherwise. Pictures are traced as by [`Profile::traced`]. The curves of drawings are flattened
     /// within 1e-5 of the height. `R` is width / height with the axis at the left, half of that
     /// with it in the middle.
     ///
@@ -85,9 +90,9 @@ impl Profile {
     /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor drawing,
     /// more than 16384 or less than 2 pixels on a side, all light or all dark, or a drawing with
     /// what has no outline (text, pictures, patterns, masks, filters).
-    pub fn load(path: impl AsRef<Path>, axis: ProfileAxis) -> Result<Self> {
-        let path = path.as_ref();
-        let read = || Self::from_bytes(&read_file(path)?, axis);
+    pub fn load(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Self> {
+        let (path, options) = (path.as_ref(), options.into());
+        let read = || Self::from_bytes(&read_file(path)?, options);
         read().map_err(|e| e.in_file(path))
     }
 
@@ -95,11 +100,13 @@ impl Profile {
     ///
     /// # Errors
     /// As `load`, naming no file.
-    pub fn from_bytes(bytes: &[u8], axis: ProfileAxis) -> Result<Self> {
+    pub fn from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Self> {
+        let options = options.into();
+        options.check()?;
         if is_drawing(bytes) {
-            drawing_profile(bytes, axis)
+            drawing_profile(bytes, &options)
         } else {
-            image::profile(bytes, axis)
+            image::profile(bytes, &options)
         }
     }
 
@@ -132,6 +139,7 @@ impl Profile {
             outline,
             radius,
             raster: None,
+            warnings: Vec::new(),
         }
     }
 
@@ -173,12 +181,12 @@ fn is_drawing(bytes: &[u8]) -> bool {
 }
 
 #[cfg(feature = "drawing")]
-fn drawing_profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
-    drawing::profile(bytes, axis)
+fn drawing_profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
+    drawing::profile(bytes, options.for_drawing()?)
 }
 
 #[cfg(not(feature = "drawing"))]
-fn drawing_profile(_: &[u8], _: ProfileAxis) -> Result<Profile> {
+fn drawing_profile(_: &[u8], _: &ProfileOptions) -> Result<Profile> {
     Err(Error::new(
         Stage::Profile,
         "is an SVG drawing, and this build lacks the feature `drawing`; build with it, or give a PNG",

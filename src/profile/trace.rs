@@ -48,6 +48,7 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
         radius: nodes.size().x / f64::from(raster.rows),
         raster: (!split).then_some(raster),
         outline,
+        warnings: Vec::new(),
     })
 }
 

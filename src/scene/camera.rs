@@ -20,7 +20,8 @@ pub struct CameraFrame {
     pub right: DVec3,
     /// One pixel up, at depth 1.
     pub up: DVec3,
-    /// The middle of the picture in pixels from its upper left corner: `(w / 2, h / 2)`.
+    /// Where the view direction meets the picture, in pixels from its upper left corner: `(w / 2, h / 2)` less the
+    /// [shift](Camera::shift).
     pub middle: [f64; 2],
 }
 
@@ -52,6 +53,9 @@ impl CameraFrame {
             let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
             return Err(Error::new(Stage::Frame, message));
         }
+        if !camera.shift.iter().all(|s| s.is_finite()) {
+            return wrong("shift", "is not finite; give two numbers");
+        }
         let Some(forward) = (camera.target - camera.eye).try_normalize() else {
             return wrong("target", "is the same point as the eye; move one of them");
         };
@@ -69,7 +73,10 @@ impl CameraFrame {
             forward,
             right: right * pixel,
             up: right.cross(forward) * pixel,
-            middle: [f64::from(width) * 0.5, f64::from(height) * 0.5],
+            middle: [
+                f64::from(width) * 0.5 - camera.shift[0],
+                f64::from(height) * 0.5 - camera.shift[1],
+            ],
         })
     }
 
@@ -97,6 +104,7 @@ mod tests {
             target: DVec3::new(0.0, 0.0, 0.5),
             up: DVec3::Z,
             fov_y: 40.0,
+            shift: [0.0; 2],
         }
     }
 
@@ -133,7 +141,7 @@ mod tests {
                 eye: DVec3::new(0.0, 0.0, 3.0),
                 target: DVec3::ZERO,
                 up,
-                fov_y: 40.0,
+                ..camera()
             };
             let frame = CameraFrame::new(&c, 64, 64).unwrap();
             assert!(frame.pixel(3, 60).is_finite());
@@ -146,7 +154,7 @@ mod tests {
             eye: DVec3::ZERO,
             target: DVec3::Y,
             up: DVec3::Y,
-            fov_y: 40.0,
+            ..camera()
         };
         assert!(CameraFrame::new(&c, 64, 64).unwrap().right.length() > 0.0);
     }

@@ -123,7 +123,10 @@ fn camera(camera: &Camera) -> Result<()> {
             ),
         ));
     }
-    Ok(())
+    camera
+        .shift
+        .iter()
+        .try_for_each(|&pixels| number("camera.shift", pixels))
 }
 
 fn light(light: &Light) -> Result<()> {

@@ -16,6 +16,9 @@
 //! | `object.N.profile` | an image or an SVG drawing, dark = solid | |
 //! | `object.N.polygon` | in its place: `[[r, z], ...]`, object units, closed by itself | |
 //! | `object.N.profile_axis` | `"left"`: half a profile; `"center"`: a silhouette | `"center"` |
+//! | `object.N.profile_threshold` | pictures: grey level below which a pixel is solid, 0 black to 1 white | `0.5` |
+//! | `object.N.profile_invert` | pictures: whether light is solid instead | `false` |
+//! | `object.N.profile_smooth` | pictures: noise is blurred away by a Gaussian of this many texels (pixels of the picture) | `0` |
 //! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5` |
 //! | `object.N.map_rows` | rows of the shape map | `512` |
 //! | `object.N.color` | linear RGB | `[0.8, 0.8, 0.8]` |
@@ -49,7 +52,7 @@ use super::{
 };
 use crate::error::{Error, Result, Stage};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
-use crate::profile::{Profile, ProfileAxis};
+use crate::profile::{Profile, ProfileAxis, ProfileOptions};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -74,6 +77,9 @@ const OBJECT: &[&str] = &[
     "profile",
     "polygon",
     "profile_axis",
+    "profile_threshold",
+    "profile_invert",
+    "profile_smooth",
     "radius",
     "map_rows",
     "color",
@@ -165,7 +171,7 @@ impl SceneFile {
     fn of_profile(file: &Path, folder: &Path) -> Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
-        let profile = reader.load_profile(file, ProfileAxis::Center)?;
+        let profile = reader.load_profile(file, ProfileOptions::default())?;
         // As far off as a sphere about the box fills the picture's height.
         let reach = profile.radius.hypot(0.5) * 1.05;
         let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
@@ -189,7 +195,7 @@ impl SceneFile {
     /// Every file that was read for its scenes.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let reader = &self.reader;
-        let profiles = reader.profiles.keys().map(|(file, _)| file);
+        let profiles = reader.profiles.iter().map(|(file, ..)| file);
         profiles
             .chain(reader.color_maps.keys())
             .chain(reader.height_maps.keys())
@@ -233,7 +239,7 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
 /// What has been read so far: files named more than once are read once, and shared.
 struct Reader {
     folder: PathBuf,
-    profiles: HashMap<(PathBuf, ProfileAxisKey), Arc<Profile>>,
+    profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
     /// With their points and radius.
     polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
@@ -241,14 +247,11 @@ struct Reader {
     instances: Vec<PathBuf>,
 }
 
-/// [`ProfileAxis`] as a part of a table's key: whether it is the middle.
-type ProfileAxisKey = bool;
-
 impl Reader {
     fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
-            profiles: HashMap::new(),
+            profiles: Vec::new(),
             polygons: Vec::new(),
             color_maps: HashMap::new(),
             height_maps: HashMap::new(),
@@ -307,13 +310,19 @@ impl Reader {
     fn profile(&mut self, keys: &Keys) -> Result<Object> {
         let file = keys.file("profile", &self.folder)?;
         let polygon = keys.pairs("polygon")?;
-        let axis = keys.one_of("profile_axis", &AXES)?.unwrap_or_default();
+        let plain = ProfileOptions::default();
+        let options = ProfileOptions {
+            axis: keys.one_of("profile_axis", &AXES)?.unwrap_or(plain.axis),
+            threshold: keys.number("profile_threshold")?.unwrap_or(plain.threshold),
+            invert: keys.flag("profile_invert")?.unwrap_or(plain.invert),
+            smooth: keys.number("profile_smooth")?.unwrap_or(plain.smooth),
+        };
         let radius = keys.number("radius")?.unwrap_or(RADIUS);
         match (file, polygon) {
             (Some(file), None) => {
                 let profile = self
-                    .load_profile(&file, axis)
-                    .map_err(|e| e.at_key(keys.place("profile")))?;
+                    .load_profile(&file, options)
+                    .map_err(|e| below(keys, "profile", e))?;
                 let name = file
                     .file_name()
                     .unwrap_or_default()
@@ -346,13 +355,13 @@ impl Reader {
     }
 
     /// A file's profile, read once.
-    fn load_profile(&mut self, file: &Path, axis: ProfileAxis) -> Result<Arc<Profile>> {
-        let key = (file.to_owned(), axis == ProfileAxis::Center);
-        if let Some(known) = self.profiles.get(&key) {
+    fn load_profile(&mut self, file: &Path, options: ProfileOptions) -> Result<Arc<Profile>> {
+        let same = |known: &&(PathBuf, ProfileOptions, _)| known.0 == file && known.1 == options;
+        if let Some((.., known)) = self.profiles.iter().find(same) {
             return Ok(known.clone());
         }
-        let new = Arc::new(Profile::load(file, axis).map_err(|e| e.in_file(file))?);
-        self.profiles.insert(key, new.clone());
+        let new = Arc::new(Profile::load(file, options).map_err(|e| e.in_file(file))?);
+        self.profiles.push((file.to_owned(), options, new.clone()));
         Ok(new)
     }
 

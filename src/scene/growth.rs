@@ -106,6 +106,7 @@ impl Growth {
             },
             radius: (profile.radius + self.side) * scale,
             raster: profile.raster.as_ref().map(|raster| self.raster(raster)),
+            warnings: Vec::new(),
         }
     }
 

@@ -11,7 +11,7 @@ const COLUMNS: usize = 10;
 const MAX_COPIES: usize = 1 << 20;
 
 /// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x` are passed over.
-/// Rotations are brought to unit length; ranges are the scene's check's business.
+/// Rotations are brought to unit length. A byte order mark, as spreadsheets write it, is passed over.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let text = std::fs::read_to_string(file).map_err(|e| {
         Error::new(
@@ -25,16 +25,21 @@ pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
 
 fn parse(text: &str) -> Result<Vec<Placement>> {
     let mut copies = Vec::new();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
         let heading = copies.is_empty() && line.starts_with('x');
         if line.is_empty() || line.starts_with('#') || heading {
             continue;
         }
-        copies.push(row(line).map_err(|e| e.at_key(format!("line {}", number + 1)))?);
+        let read = row(line).and_then(|copy| copy.check().map(|()| copy));
+        copies.push(read.map_err(|mut e| {
+            let column = e.key.take().map_or(String::new(), |key| format!(", {key}"));
+            e.at_key(format!("line {}{column}", number + 1))
+        })?);
         if copies.len() > MAX_COPIES {
             return Err(fail(format!(
-                "holds more than {MAX_COPIES} copies; split the scene"
+                "holds more than {MAX_COPIES} copies, the most of one object; give the rest to another [[object]]"
             )));
         }
     }
@@ -107,6 +112,14 @@ mod tests {
     }
 
     #[test]
+    fn a_byte_order_mark_is_passed_over() {
+        for heading in ["", "x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n"] {
+            let text = format!("\u{feff}{heading}1,2,3,0,0,0,1,1,1,1\r\n");
+            assert_eq!(parse(&text).unwrap().len(), 1);
+        }
+    }
+
+    #[test]
     fn faults_name_the_line() {
         for (text, wanted) in [
             ("", "holds no copies"),
@@ -115,6 +128,8 @@ mod tests {
             ("1,2,3,0,0,0,1,1,1,1,1", "line 1: has more than 10"),
             ("1,2,3,0,0,0,0,1,1,1", "line 1: the rotation"),
             ("1,2,3,0,nan,0,1,1,1,1", "line 1: the rotation"),
+            ("\n1,2,3,0,0,0,1,1,0,1", "line 2, scale: has 0"),
+            ("inf,2,3,0,0,0,1,1,1,1", "line 1, position: has inf"),
         ] {
             let message = parse(text).unwrap_err().to_string();
             assert!(message.contains(wanted), "{message}");

@@ -94,6 +94,15 @@ impl<'a> Keys<'a> {
         }
     }
 
+    pub(super) fn flag(&self, key: &str) -> Result<Option<bool>> {
+        self.get(key)
+            .map(|v| {
+                v.as_bool()
+                    .ok_or_else(|| self.wrong(key, "true or false", v))
+            })
+            .transpose()
+    }
+
     /// One of a few names.
     pub(super) fn one_of<T: Copy>(&self, key: &str, names: &[(&str, T)]) -> Result<Option<T>> {
         let Some(text) = self.text(key)? else {

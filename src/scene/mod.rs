@@ -36,6 +36,7 @@ mod keys;
 mod object;
 #[cfg(feature = "scene-file")]
 mod overrides;
+mod warnings;
 
 pub use camera::CameraFrame;
 pub use growth::{Clip, GrownObject, GrownProfiles, Growth};
@@ -99,6 +100,9 @@ pub struct Camera {
     pub up: DVec3,
     /// Vertical field of view, degrees, between 0 and 180.
     pub fov_y: f64,
+    /// Where in its pixel each ray passes, pixels right of and below the centre. Pictures of several shifts, averaged, are
+    /// free of jagged edges.
+    pub shift: [f64; 2],
 }
 
 impl Camera {
@@ -113,6 +117,7 @@ impl Camera {
             target,
             up: DVec3::Z,
             fov_y: Self::FOV_Y,
+            shift: [0.0; 2],
         }
     }
 }

@@ -41,11 +41,11 @@ impl Entry {
 pub enum Search {
     /// None: vertices, lists of tiles.
     None,
-    /// The papers' loop.
+    /// The RBM baseline.
     Circle,
     /// The same where there may be a bevel.
     CircleBeveled,
-    /// The papers' loop on the papers' texture.
+    /// The RBM baseline on the papers' texture.
     CircleRgba8,
     /// The same where there may be a bevel.
     CircleBeveledRgba8,

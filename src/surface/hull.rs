@@ -2,7 +2,7 @@
 //!
 //! # Cells
 //!
-//! Up to [`ProxyHullOptions::tests`] consecutive patches of a chain are a **cell**. Around its surface, on the empty side, lies a shell: frusta along
+//! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**. Around its surface, on the empty side, lies a shell: frusta along
 //! it, and walls at its two ends, from the frusta down to the surface and a little into the solid. FrustaBuilder and surface enclose the cell's part
 //! of the empty space. A ray from outside that first meets the solid on one of the cell's patches was in that part just before; it came
 //! in through the shell (through the surface it would have come out of the solid, which it then had met before). So
@@ -11,7 +11,7 @@
 //!
 //! No ray is lost however flat it glides along the surface, whichever way the profile folds: chains, undercuts and cavities
 //! need no care, and what a fragment finds is a true point of the boundary in every case. It holds for eyes outside all shells
-//! ([`Hull::clear_of`]) and solids that the box's side faces do not cut.
+//! ([`ProxyHull::clear_of`]) and solids that the box's side faces do not cut.
 //!
 //! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]): beyond it another sheet of a quadric can
 //! pass the guard.
@@ -107,7 +107,7 @@ impl Frustum {
 }
 
 impl ProxyHull {
-    /// The shells around patches that [`cut`](super::cut) made.
+    /// The shells around patches that [`fit_patches`](super::fit_patches) made.
     #[must_use]
     pub fn new(patches: &[QuadricPatch], options: &ProxyHullOptions) -> Self {
         let sides = options.sides.max(3);

@@ -7,7 +7,7 @@
 //! G(r, z) = a r^2 + k0 + k1 z + k2 z^2,   a in {-1, 0, 1},   G < 0 in the solid
 //! ```
 //!
-//! follows within a tolerance ([`cut`]), and dealt out to rows of equal height ([`Tables`]). In `(z, r^2)` a ray is a parabola and
+//! follows within a tolerance ([`fit_patches`]), and dealt out to rows of equal height ([`Tables`]). In `(z, r^2)` a ray is a parabola and
 //! a patch a parabola or a horizontal line: their meeting is one quadratic in `t`, the same for cylinders, cones, spheres,
 //! paraboloids, hyperboloids and planes.
 //!

@@ -1,4 +1,4 @@
-//! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside the papers' loop on the same pixels.
+//! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside the RBM baseline on the same pixels.
 
 use crate::common::{draw, errors, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
@@ -50,10 +50,10 @@ fn known_at_best(profile: &Profile) -> Profile {
 
 /// Every view has at most half the wrong pixels. Errors of depth are another matter: where a level or an upright face lies within its
 /// texel binary pixels do not say, and seen at a slant that is most of the error. Were everything else known exactly, the 99th percentile
-/// would be half of the papers' loop's in the middle of these views, and more in eleven of the twenty; what is drawn is held to
+/// would be half of the RBM baseline's in the middle of these views, and more in eleven of the twenty; what is drawn is held to
 /// that, and to the loop itself.
 #[test]
-fn pictures_are_better_than_by_the_papers_loop() {
+fn pictures_are_better_than_by_the_rbm_baseline() {
     let ours = Settings {
         width: 800, // in smaller pictures too few pixels are wrong to say who has twice as many
         height: 600,
@@ -96,7 +96,7 @@ fn pictures_are_better_than_by_the_papers_loop() {
     }
     let [to_papers, to_best] = [to_papers, to_best].map(|sum: f64| (sum / views).exp());
     println!(
-        "depth p99, geometric means: {to_papers:.3} of the papers' loop's, {to_best:.3} of the best"
+        "depth p99, geometric means: {to_papers:.3} of the RBM baseline's, {to_best:.3} of the best"
     );
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     assert!(to_papers < 0.9 && to_best < 1.7, "{to_papers}, {to_best}");

@@ -749,6 +749,10 @@ typedef struct RevmapObjectInfo {
      */
     uint32_t mirror[3];
     /**
+     * A RevmapClip.
+     */
+    uint32_t clip;
+    /**
      * Where it is, if it has no instances.
      */
     struct RevmapPlacement placement;

@@ -5,7 +5,7 @@ use crate::fault::{Fault, Outcome};
 use revmap::gpu::DepthOrder;
 use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
 use revmap::profile::ProfileAxis;
-use revmap::scene::{BumpForm, Shadow};
+use revmap::scene::{BumpForm, Clip, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
 
 /// Which part of a picture or a drawing is the half-plane that is turned.
@@ -161,6 +161,16 @@ pub enum RevmapBumpForm {
     Papers = 1,
 }
 
+/// What the shape box cuts.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapClip {
+    /// Nothing that an offset adds: the box grows with it.
+    None = 0,
+    /// All that reaches past the profile's box, as in the papers.
+    Box = 1,
+}
+
 /// How slopes are taken from heights.
 #[repr(u32)]
 #[derive(Clone, Copy)]
@@ -230,6 +240,7 @@ numbers! {
     bump_form: RevmapBumpForm => BumpForm {
         SurfaceGradient => BumpForm::SurfaceGradient, Papers => BumpForm::Papers,
     }
+    clip: RevmapClip => Clip { None => Clip::None, Box => Clip::Box }
     slope_filter: RevmapSlopeFilter => SlopeFilter { Scharr => SlopeFilter::Scharr, Central => SlopeFilter::Central }
     shadow: RevmapShadow => Shadow { Off => Shadow::Off, Hard => Shadow::Hard, Soft => Shadow::Soft }
 }

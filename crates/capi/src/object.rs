@@ -49,6 +49,8 @@ pub struct RevmapObjectInfo {
     pub repeat: [u32; 3],
     /// Whether every second replica along x, y, z is reflected: 0 or 1.
     pub mirror: [u32; 3],
+    /// A RevmapClip.
+    pub clip: u32,
     /// Where it is, if it has no instances.
     pub placement: RevmapPlacement,
     /// Where its copies are; read during the call; null where there are none.
@@ -88,6 +90,7 @@ impl RevmapObjectInfo {
         object.offset = self.offset.into();
         object.axis = self.axis;
         object.repeat = self.repeat;
+        object.clip = enums::clip(self.clip)?;
         object.mirror = self.mirror.map(|flag| flag != 0);
         object.placement = self.placement.into();
         object.instances = placements(instances);
@@ -125,6 +128,7 @@ pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -
             axis: [0.5; 2],
             repeat: [1; 3],
             mirror: [0; 3],
+            clip: 0,
             placement: UPRIGHT,
             instances: null(),
             instance_count: 0,

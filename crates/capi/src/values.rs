@@ -203,10 +203,9 @@ impl RevmapCamera {
 
     pub(crate) fn camera(&self) -> Camera {
         Camera {
-            eye: self.eye.into(),
-            target: self.target.into(),
             up: self.up.into(),
             fov_y: self.fov_y,
+            ..Camera::new(self.eye.into(), self.target.into())
         }
     }
 }

@@ -4,6 +4,7 @@ use super::options::{Drawing, Tracing};
 use super::output;
 use super::pipelines;
 use super::progress::Progress;
+use super::samples::Samples;
 use clap::Args;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, Result, Stage};
@@ -12,7 +13,7 @@ use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
-use revmap_lab::renderer::MethodDevice;
+use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,7 +22,7 @@ use std::time::Instant;
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
-    revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1 --times out/times.csv")]
+    revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
@@ -42,6 +43,8 @@ pub struct Animate {
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
     #[command(flatten)]
+    samples: Samples,
+    #[command(flatten)]
     drawing: Drawing,
 }
 
@@ -54,6 +57,7 @@ struct Vary {
 }
 
 /// One line of the times.
+#[derive(Default)]
 struct Row {
     prepare_ms: f64,
     gpu_ms: Option<f64>,
@@ -106,6 +110,13 @@ impl Animate {
         if let Some(path) = &self.times {
             write_times(path, &rows)?;
         }
+        if !self.drawing.quiet {
+            let mut warnings = self.drawing.warnings(&first);
+            if self.samples.count > 1 && self.output.is_none() {
+                warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
+            }
+            warnings.iter().for_each(|w| output::warn(w));
+        }
         self.tell(&device, &rows);
         Ok(())
     }
@@ -127,22 +138,34 @@ impl Animate {
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
             let scene = self.scene_at(file, varied, n)?;
-            let start = Instant::now();
-            renderer.update(&scene)?;
-            let updated = start.elapsed().as_secs_f64() * 1e3;
-            let times = renderer.draw()?;
-            let counts = (device.pipelines_compiled(), renderer.rebuild_count());
-            rows.push(Row {
-                prepare_ms: updated + times.prepare_ms,
-                gpu_ms: times.gpu_ms,
-                frame_ms: times.frame_ms,
-                compiled: counts.0 - compiled,
-                rebuilt: counts.1 - rebuilt,
-            });
-            (compiled, rebuilt) = counts;
-            if let Some(picture) = self.picture(n) {
-                frame::write_png(&renderer.read()?, picture)?;
+            let mut row = Row {
+                gpu_ms: Some(0.0),
+                ..Row::default()
+            };
+            let mut draw = |renderer: &mut MethodRenderer, scene: &Scene| {
+                let start = Instant::now();
+                renderer.update(scene)?;
+                row.prepare_ms += start.elapsed().as_secs_f64() * 1e3;
+                let times = renderer.draw()?;
+                row.prepare_ms += times.prepare_ms;
+                row.gpu_ms = row.gpu_ms.zip(times.gpu_ms).map(|(a, b)| a + b);
+                row.frame_ms += times.frame_ms;
+                Ok(())
+            };
+            match self.picture(n) {
+                Some(picture) => {
+                    let frame = self.samples.draw(&scene, |scene| {
+                        draw(&mut renderer, scene)?;
+                        renderer.read()
+                    })?;
+                    frame::write_png(&frame, picture)?;
+                }
+                None => draw(&mut renderer, &scene)?,
             }
+            let counts = (device.pipelines_compiled(), renderer.rebuild_count());
+            (row.compiled, row.rebuilt) = (counts.0 - compiled, counts.1 - rebuilt);
+            (compiled, rebuilt) = counts;
+            rows.push(row);
             progress.report(n as usize + 1, self.frames as usize);
         }
         Ok(rows)

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{BakeOptions, DisplacementMap, MapSource, Projection, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::{Profile, ProfileAxis, ProfileOptions};
 use revmap::scene::Object;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,6 +22,9 @@ const PROJECTIONS: [(&str, Projection); 4] = [
 
 /// Writes a profile's shape map, and a height map's displacement map, as images
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap bake assets/profiles/pawn.svg -o pawn-map.png\n  \
+    revmap bake assets/profiles/bottle.png -o bottle.exr --height-map assets/heights/brick.png")]
 pub struct Bake {
     /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
     profile: PathBuf,
@@ -37,6 +40,15 @@ pub struct Bake {
     /// Where the axis is: the left edge of half a profile, or the middle of a silhouette
     #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&AXES))]
     profile_axis: ProfileAxis,
+    /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
+    #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
+    profile_threshold: f64,
+    /// Light is solid, dark is empty
+    #[arg(long)]
+    profile_invert: bool,
+    /// Blurs noise of a picture away by a Gaussian of this standard deviation
+    #[arg(long, value_name = "PIXELS", default_value_t = 0.0)]
+    profile_smooth: f64,
     /// Puts the projection of textures into the map's file name, as in vase.spherical.png
     #[arg(long, value_name = "NAME", value_parser = named(&PROJECTIONS))]
     projection: Option<Projection>,
@@ -69,7 +81,13 @@ impl Bake {
 
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
-        let profile = Profile::load(&self.profile, self.profile_axis)?;
+        let options = ProfileOptions {
+            axis: self.profile_axis,
+            threshold: self.profile_threshold,
+            invert: self.profile_invert,
+            smooth: self.profile_smooth,
+        };
+        let profile = Profile::load(&self.profile, options)?;
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
@@ -82,6 +100,9 @@ impl Bake {
         drop(progress);
 
         map.save(&map_file)?;
+        if !self.quiet {
+            profile.warnings.iter().for_each(|w| output::warn(w));
+        }
         self.tell(&format!(
             "{}: {}x{} texels, {}, baked in {took:.1} ms",
             map_file.display(),

@@ -11,14 +11,18 @@ use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Limits, Measured, Seen, Watch, measure};
 use revmap_lab::report::pictures::Album;
-use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_papers_loop};
+use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::Extent;
 use revmap_lab::report::{DeviceBench, against, folder, overview, papers, scaling, text};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap bench --quick --out out/bench\n  \
+    revmap bench assets/scenes/vase.toml --solver hull,live,mesh:64x128 --size 800x600,1920x1080\n  \
+    revmap bench --compare results/old results/new")]
 pub struct Bench {
     #[command(flatten)]
     lists: Lists,
@@ -29,7 +33,7 @@ pub struct Bench {
     /// --framing whole,close
     #[arg(long)]
     full: bool,
-    /// The papers' tables: extended, beveled and chamfered solids at their two sizes, our rates beside theirs
+    /// The published tables of frame rates: extended, beveled and chamfered solids at two sizes, rates beside the published ones
     #[arg(long, conflicts_with_all = ["full", "scenes", "framing"])]
     tables: bool,
     /// How time grows with pixels, with solids and with rows of the map
@@ -79,14 +83,14 @@ impl Bench {
         if self.lists.solver.is_empty() {
             plan.add_meshes(meshes);
         }
-        plan.add_papers_loop();
+        plan.add_rbm_baseline();
         let session = Session::open(&self.lists)?;
         let (measured, album) =
             session.measure(&plan, &self.lists.limits(&limits), |_| true, &mut |_| {})?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&text::summary(&measured.rows));
-        session.finish(&measured)
+        session.finish(&plan, &measured)
     }
 
     fn axes(&self, sizes: &[(u32, u32)], methods: &[Method]) -> Axes {
@@ -97,13 +101,13 @@ impl Bench {
         })
     }
 
-    /// The papers' tables. The solid is one that the program carries: the papers do not name theirs.
+    /// The published tables. The solid is one that the program carries: the articles do not name theirs.
     fn tables(&self) -> Result<()> {
         let mut plan = Plan::new(
             papers::views()?,
             &self.axes(&papers::SIZES, &plan::USUAL).combinations(),
         );
-        plan.add_papers_loop();
+        plan.add_rbm_baseline();
         plan.mixed = true;
         let limits = if self.quick {
             Limits::QUICK
@@ -114,13 +118,13 @@ impl Bench {
         let (measured, album) = session.measure(
             &plan,
             &self.lists.limits(&limits),
-            is_papers_loop,
+            is_rbm_baseline,
             &mut |_| {},
         )?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
-        session.finish(&measured)
+        session.finish(&plan, &measured)
     }
 
     fn scaling(&self) -> Result<()> {
@@ -141,7 +145,7 @@ impl Bench {
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));
-        session.finish(&measured)
+        session.finish(&plan, &measured)
     }
 }
 
@@ -164,13 +168,7 @@ impl Session {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
         let machine = Machine::here(&report.name, report.kind, &report.driver, &Lists::command());
-        let out = match &lists.out {
-            Some(out) => {
-                folder::make(out)?;
-                out.clone()
-            }
-            None => folder::fresh(Path::new("results"), &machine.folder())?,
-        };
+        let out = lists.folder(&machine.folder())?;
         if !lists.quiet {
             output::note(&format!(
                 "device: {} ({}), driver {}",
@@ -219,7 +217,19 @@ impl Session {
     }
 
     /// Says where the results are. A run that was ended early has failed, though its results are kept.
-    pub fn finish(&self, measured: &Measured) -> Result<()> {
+    pub fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
+        if !self.quiet {
+            for view in &plan.views {
+                let size = plan
+                    .cases
+                    .first()
+                    .map(|c| (c.settings.width, c.settings.height));
+                let (width, height) = size.unwrap_or((800, 600));
+                for warning in view.scene.warnings(width, height) {
+                    output::warn(&format!("{}: {warning}", view.name));
+                }
+            }
+        }
         let report = self.out.join("report.html");
         output::result(&format!(
             "{}: {} rows",

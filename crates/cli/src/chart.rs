@@ -8,7 +8,7 @@ use clap::Args;
 use revmap::error::Result;
 use revmap_lab::method::MethodSettings;
 use revmap_lab::report::measure::{Limits, Seen};
-use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
+use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::suite::Extent;
 use revmap_lab::report::sweep::Sweep;
 use revmap_lab::report::{curves, folder, map_error, text};
@@ -19,6 +19,9 @@ use std::path::PathBuf;
 /// Steps, rows, sources and formats of maps are swept one at a time; where one of their lists is given, every combination of the lists is
 /// measured instead.
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap chart --quick --out out/chart\n  \
+    revmap chart assets/scenes/vase.toml --solver circle,live --max-steps 10,20,40,80")]
 pub struct Chart {
     #[command(flatten)]
     lists: Lists,
@@ -72,7 +75,7 @@ impl Chart {
             }
             all
         };
-        plan.add_papers_loop();
+        plan.add_rbm_baseline();
         let session = Session::open(lists)?;
         let size = plan
             .cases
@@ -108,7 +111,7 @@ impl Chart {
             output::result(line);
         }
         output::result(&summary.display().to_string());
-        session.finish(&measured)
+        session.finish(&plan, &measured)
     }
 }
 
@@ -117,5 +120,5 @@ fn worth_a_picture(settings: &MethodSettings) -> bool {
     let plain = settings.map_rows.is_none()
         && settings.map_source.is_none()
         && settings.map_format == MethodSettings::default().map_format;
-    is_papers_loop(settings) || (plain && matches!(settings.max_steps, None | Some(64)))
+    is_rbm_baseline(settings) || (plain && matches!(settings.max_steps, None | Some(64)))
 }

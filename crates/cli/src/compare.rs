@@ -4,11 +4,16 @@ use super::output;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame;
-use revmap_lab::compare::{CompareOptions, compare, heat_sheet};
+use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Compares two frames: wrong pixels, errors of depth and normals, silhouettes, FLIP
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap render assets/scenes/pawn.toml -o truth.exr --stage reference\n  \
+    revmap render assets/scenes/pawn.toml -o frame.exr --solver circle\n  \
+    revmap compare truth.exr frame.exr --heat errors.png")]
 pub struct Compare {
     /// The frame taken for the truth, an EXR file that `render` wrote (as with --stage reference)
     a: PathBuf,
@@ -23,6 +28,9 @@ pub struct Compare {
     /// Fail unless the frames agree in every bit of every channel
     #[arg(long)]
     exact: bool,
+    /// One JSON object on standard output in place of text
+    #[arg(long)]
+    json: bool,
 }
 
 impl Compare {
@@ -37,7 +45,8 @@ impl Compare {
             }
         }
         if let Some(heat) = &self.heat {
-            output::check(std::slice::from_ref(heat), "--heat", &["png"], &[])?;
+            let inputs = [self.a.as_path(), &self.b];
+            output::check(std::slice::from_ref(heat), "--heat", &["png"], &inputs)?;
         }
         let (a, b) = (frame::read_exr(&self.a)?, frame::read_exr(&self.b)?);
         let mut options = CompareOptions::default();
@@ -46,10 +55,13 @@ impl Compare {
         if let Some(heat) = &self.heat {
             heat_sheet(&a, &b, &options)?.write_png(heat)?;
         }
-        for line in outcome.to_string().lines() {
-            output::result(line);
+        let difference = a.first_difference(&b).map(|d| d.to_string());
+        if self.json {
+            output::json(&as_json(&outcome, difference.as_deref()));
+        } else {
+            outcome.to_string().lines().for_each(output::result);
         }
-        match a.first_difference(&b) {
+        match difference {
             Some(difference) if self.exact => Err(Error::new(
                 Stage::Frame,
                 format!(
@@ -57,6 +69,7 @@ impl Compare {
                 ),
             )
             .in_file(&self.b)),
+            _ if self.json => Ok(()),
             Some(difference) => {
                 output::result(&format!("bits        differ, first in {difference}"));
                 Ok(())
@@ -67,6 +80,25 @@ impl Compare {
             }
         }
     }
+}
+
+/// The names of the columns of `results.csv`; what does not apply is null.
+fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
+    json!({
+        "pixels": found.pixels,
+        "hits": found.hits,
+        "missed": found.missed,
+        "ghost": found.ghost,
+        "depth_rms_texels": found.depth.map(|d| d.rms),
+        "depth_p99_texels": found.depth.map(|d| d.p99),
+        "depth_max_texels": found.depth.map(|d| d.max),
+        "normal_rms_degrees": found.normal.map(|n| n.rms),
+        "normal_p99_degrees": found.normal.map(|n| n.p99),
+        "normal_max_degrees": found.normal.map(|n| n.max),
+        "silhouette_hausdorff_px": found.silhouette_hausdorff,
+        "flip": found.flip,
+        "first_difference": difference,
+    })
 }
 
 fn positive(text: &str) -> std::result::Result<f64, String> {

@@ -4,15 +4,16 @@ use super::options::{FORMATS, MethodParser, SOURCES, STAGES, Tracing, name_of, n
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::scene::file;
+use revmap::scene::file::{self, SceneFile};
 use revmap::settings::DrawStage;
 use revmap_lab::method::Method;
+use revmap_lab::report::folder;
 use revmap_lab::report::framing::Framing;
 use revmap_lab::report::measure::Limits;
 use revmap_lab::report::plan::Axes;
 use revmap_lab::report::suite::{self, Extent};
 use revmap_lab::report::view::View;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Names of parts of the suite.
 const EXTENTS: [(&str, Extent); 3] = [
@@ -62,7 +63,7 @@ pub struct Lists {
     /// How many of the solids that the program carries: one, three or all eight [default: three; one with --quick, all with --full]
     #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
     pub suite: Option<Extent>,
-    /// Passes over all pictures, each with everything made anew: intervals are Student's over them [default: as time allows, at least 4]
+    /// Passes over all pictures, each with everything made anew: intervals are Student's over them [default: as time allows, 4 or more, but 2 or more on drivers that compile slowly]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=100))]
     pub passes: Option<u16>,
     /// Frames of each row in a pass [default: as time allows, at least 2]
@@ -77,6 +78,9 @@ pub struct Lists {
     /// The folder for results [default: results/DATE-DEVICE, made anew]
     #[arg(long, short, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace the run that the folder of --out holds
+    #[arg(long, requires = "out")]
+    pub overwrite: bool,
     /// Say nothing but results and failures
     #[arg(long, short)]
     pub quiet: bool,
@@ -135,6 +139,24 @@ impl Lists {
         };
         let seen = self.seen(extent, elevations)?;
         Ok(seen.into_iter().flat_map(framed).collect())
+    }
+
+    /// The folder of results, or that of one made for them below `results/`.
+    ///
+    /// # Errors
+    /// As [`folder::claim`].
+    pub fn folder(&self, name: &str) -> Result<PathBuf> {
+        let Some(out) = &self.out else {
+            return folder::fresh(Path::new("results"), name);
+        };
+        let mut inputs = Vec::new();
+        for scene in &self.scenes {
+            let mut file = SceneFile::open(scene)?;
+            file.scene(&self.set)?;
+            inputs.extend(file.files().map(Path::to_path_buf));
+        }
+        folder::claim(out, self.overwrite, inputs.iter().map(PathBuf::as_path))?;
+        Ok(out.clone())
     }
 
     /// The views as cameras stand.

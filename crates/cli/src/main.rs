@@ -16,24 +16,30 @@ mod output;
 mod pipelines;
 mod progress;
 mod render;
+mod samples;
+mod shell;
 mod stability;
 mod usage;
 #[cfg(feature = "viewer")]
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 /// Revolution mapping: draws solids of revolution from one 2D map, without a mesh.
 #[derive(Parser)]
-#[command(name = "revmap", version, max_term_width = 110, after_help = EXIT_CODES)]
+#[command(name = "revmap", version, max_term_width = 110, after_help = AFTER_HELP)]
 struct Program {
     #[command(subcommand)]
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
+const AFTER_HELP: &str = "Examples:\n  \
+    revmap render assets/profiles/pawn.svg -o pawn.png\n  \
+    revmap bench --quick\n  \
+    revmap render --help\n\n\
+    Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
 feature. A failure is one line on standard error.";
 
 #[derive(Subcommand)]
@@ -48,6 +54,8 @@ enum Command {
     Compare(compare::Compare),
     #[cfg(feature = "viewer")]
     View(view::View),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 impl Command {
@@ -63,6 +71,8 @@ impl Command {
             Self::Compare(command) => command.run(),
             #[cfg(feature = "viewer")]
             Self::View(command) => command.run(),
+            Self::Completions(command) => command.run(Program::command()),
+            Self::Man(command) => command.run(Program::command()),
         }
     }
 }

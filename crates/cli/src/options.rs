@@ -3,7 +3,8 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes};
+use revmap::scene::Scene;
+use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 
 /// The largest width and height of a picture.
@@ -105,6 +106,45 @@ impl Drawing {
             map_format: self.map_format,
             planes,
         }
+    }
+
+    /// What looks unintended: in the scene, and options that the method passes over.
+    pub fn warnings(&self, scene: &Scene) -> Vec<String> {
+        let mut found = scene.warnings(self.size.0, self.size.1);
+        let given = [
+            ("--max-steps", self.max_steps.is_some()),
+            ("--map-rows", self.map_rows.is_some()),
+            ("--map-source", self.map_source.is_some()),
+            ("--map-format", self.map_format != MapFormat::R32),
+            ("--solver", self.solver != Method::DEFAULT),
+            ("--device", self.device.is_some()),
+        ];
+        let (who, reads): (String, &[&str]) = match self.stage {
+            Tracing::Reference => ("--stage reference".to_owned(), &[]),
+            Tracing::Device(_) => (format!("--solver {}", self.solver), read_by(self.solver)),
+        };
+        let idle = given
+            .iter()
+            .filter(|(name, is)| *is && !reads.contains(name));
+        found.extend(idle.map(|(name, _)| format!("{name}: {who} makes no use of it")));
+        found
+    }
+}
+
+/// The options that a method reads.
+fn read_by(method: Method) -> &'static [&'static str] {
+    match method {
+        _ if method.reads_map() => &[
+            "--solver",
+            "--device",
+            "--max-steps",
+            "--map-rows",
+            "--map-source",
+            "--map-format",
+        ],
+        Method::Search(Solver::Relaxed) => &["--solver", "--device", "--max-steps", "--map-rows"],
+        Method::Search(Solver::Cone) => &["--solver", "--device", "--map-rows"],
+        _ => &["--solver", "--device"],
     }
 }
 

@@ -9,9 +9,19 @@ pub fn result(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
+/// Results for programs: one JSON value, indented.
+pub fn json(value: &serde_json::Value) {
+    result(&format!("{value:#}"));
+}
+
 /// One line beside the results, on standard error.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", flat(line));
+}
+
+/// What looks unintended, and changes no exit code.
+pub fn warn(message: &str) {
+    note(&format!("warning: {message}"));
 }
 
 /// A failure: the one line on standard error.

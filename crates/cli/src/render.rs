@@ -2,37 +2,52 @@
 
 use super::options::{self, Drawing, Tracing};
 use super::progress::Progress;
+use super::samples::Samples;
 use super::{output, pipelines};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
-use revmap::scene::Scene;
+use revmap::gpu::{Device, DeviceReport, Times};
 use revmap::scene::file::SceneFile;
+use revmap::scene::{Object, Scene};
 use revmap::settings::Planes;
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::renderer::MethodDevice;
+use revmap_lab::renderer::{MethodDevice, MethodDrawn};
 use revmap_reference as reference;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Draws one frame of a scene, off screen
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap render assets/scenes/pawn.toml -o pawn.png\n  \
+    revmap render assets/profiles/pawn.svg -o pawn.png --samples 16 --set object.0.extend=0.02\n  \
+    revmap render assets/scenes/pawn.toml -o truth.exr --stage reference --size 400x300")]
 pub struct Render {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
     /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
+    /// One JSON object on standard output in place of text: all that --verbose says
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+    #[command(flatten)]
+    samples: Samples,
     #[command(flatten)]
     drawing: Drawing,
 }
 
-/// A picture and the words about it.
+/// A picture and what it cost.
 struct Picture {
     frame: Frame,
-    device: String,
-    cost: String,
-    details: Vec<String>,
+    /// `None` of the reference.
+    device: Option<DeviceReport>,
+    times: Times,
+    map_bytes: [u64; 2],
+    notes: Vec<String>,
+    warnings: Vec<String>,
 }
 
 impl Render {
@@ -49,27 +64,27 @@ impl Render {
             .any(|file| output::has_ending(file, "exr"));
         // What a search leaves undone is counted beside the planes; that is worth a warning.
         let counted = self.drawing.solver.may_run_out() && !self.drawing.quiet;
-        let planes = if floats || self.drawing.verbose || counted {
+        let planes = if floats || self.drawing.verbose || self.json || counted {
             Planes::All
         } else {
             Planes::Color
         };
         let settings = self.drawing.settings(planes);
-        let picture = match self.drawing.stage {
+        let mut picture = match self.drawing.stage {
             Tracing::Reference => self.on_cpu(&scene, &settings)?,
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
         };
+        picture.warnings = self.drawing.warnings(&scene);
+        picture.warnings.extend(exhausted(&picture.frame));
         let writing = Instant::now();
         for file in &self.output {
             write(&picture.frame, file)?;
         }
-        self.tell(&scene, &settings, &picture);
-        if self.drawing.verbose {
-            output::note(&format!(
-                "scene read in {loading:.1} ms, files written in {:.1} ms, {:.1} ms in all",
-                milliseconds(writing),
-                milliseconds(begin)
-            ));
+        let spent = [loading, milliseconds(writing), milliseconds(begin)];
+        if self.json {
+            self.tell_json(&scene, &settings, &picture, spent);
+        } else if !self.drawing.quiet {
+            self.tell(&scene, &settings, &picture, spent);
         }
         Ok(())
     }
@@ -78,91 +93,193 @@ impl Render {
         let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
         let report = device.report();
         let progress = Progress::start(&format!("drawing on {}", report.name), self.drawing.quiet);
-        let drawn = MethodDevice::new(device.clone())
-            .and_then(|device| device.draw(scene, settings))
+        let drawn = self
+            .drawn(&device, scene, settings, &progress)
             .map_err(|e| on(&report.name, e))?;
         drop(progress);
         kept.save(&device);
         Ok(Picture {
-            device: format!(
-                "{} ({}), driver {}",
-                report.name, report.kind, report.driver
-            ),
-            cost: match drawn.times.gpu_ms {
-                Some(gpu) => format!("{gpu:.2} ms on {}", report.name),
-                None => format!("{:.2} ms with {}", drawn.times.frame_ms, report.name),
-            },
-            details: [
-                format!(
-                    "{:.2} ms from submission to completion",
-                    drawn.times.frame_ms
-                ),
-                format!(
-                    "on the device: shape maps (or meshes) {:.2} MB, colour and displacement maps {:.2} MB",
-                    drawn.map_bytes[0] as f64 / 1e6,
-                    drawn.map_bytes[1] as f64 / 1e6
-                ),
-            ]
-            .into_iter()
-            .chain(drawn.notes)
-            .collect(),
             frame: drawn.frame,
+            device: Some(report.clone()),
+            times: drawn.times,
+            map_bytes: drawn.map_bytes,
+            notes: drawn.notes,
+            warnings: Vec::new(),
+        })
+    }
+
+    /// The picture, after one that waits for the driver's compiler. Times are those of all rays.
+    fn drawn(
+        &self,
+        device: &Device,
+        scene: &Scene,
+        settings: &MethodSettings,
+        progress: &Progress,
+    ) -> Result<MethodDrawn> {
+        let mut renderer = MethodDevice::new(device.clone())?.renderer(scene, settings)?;
+        renderer.draw()?;
+        let mut times = Vec::new();
+        let frame = self.samples.draw(scene, |scene| {
+            renderer.update(scene)?;
+            times.push(renderer.draw()?);
+            progress.report(times.len(), 1 + self.samples.count as usize);
+            renderer.read()
+        })?;
+        device.check()?;
+        Ok(MethodDrawn {
+            frame,
+            times: Times {
+                prepare_ms: times.iter().map(|t| t.prepare_ms).sum(),
+                gpu_ms: times.iter().map(|t| t.gpu_ms).sum(),
+                frame_ms: times.iter().map(|t| t.frame_ms).sum(),
+            },
+            map_bytes: renderer.map_bytes(),
+            notes: renderer.notes().to_vec(),
         })
     }
 
     fn on_cpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
         let begin = Instant::now();
         let progress = Progress::start("drawing the reference", self.drawing.quiet);
-        let frame = reference::draw(scene, &settings.into(), &|done, total| {
-            progress.report(done, total)
+        let settings = settings.into();
+        let frame = self.samples.draw(scene, |scene| {
+            reference::draw(scene, &settings, &|done, total| {
+                progress.report(done, total)
+            })
         })?;
         Ok(Picture {
             frame,
-            device: "none, the reference is drawn on the CPU".to_owned(),
-            cost: format!("{:.0} ms on the CPU", milliseconds(begin)),
-            details: Vec::new(),
+            device: None,
+            times: Times {
+                prepare_ms: 0.0,
+                gpu_ms: None,
+                frame_ms: milliseconds(begin),
+            },
+            map_bytes: [0; 2],
+            notes: Vec::new(),
+            warnings: Vec::new(),
         })
     }
 
     /// What was drawn, on which device, how fast. Said when it is done, so that a failure stays one line.
-    fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture) {
-        if self.drawing.quiet {
-            return;
-        }
-        output::note(&format!("device: {}", picture.device));
+    fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture, spent: [f64; 3]) {
+        output::note(&format!(
+            "device: {}",
+            match &picture.device {
+                Some(d) => format!("{} ({}), driver {}", d.name, d.kind, d.driver),
+                None => "none, the reference is drawn on the CPU".to_owned(),
+            }
+        ));
         if self.drawing.verbose {
-            for object in &scene.objects {
-                let rows = settings.map_rows.unwrap_or(object.map_rows);
-                let columns = (object.profile.radius * f64::from(rows)).ceil();
-                output::note(&format!(
-                    "{}: shape box of {columns} x {rows} texels",
-                    object.name
-                ));
-            }
-            for line in &picture.details {
-                output::note(line);
-            }
-            if let Some(line) = steps(&picture.frame) {
-                output::note(&line);
-            }
+            self.details(scene, settings, picture, spent);
         }
-        let drawn = self.drawing.stage != Tracing::Reference;
-        let bounded = drawn && settings.method.may_run_out();
-        if let Some(line) = exhausted(&picture.frame, bounded && self.drawing.verbose) {
-            output::note(&line);
-        }
+        picture.warnings.iter().for_each(|w| output::warn(w));
         let stage = options::name_of(&options::STAGES, &self.drawing.stage);
-        let how = match self.drawing.stage {
-            Tracing::Reference => stage.to_owned(),
-            Tracing::Device(_) => format!("{stage}, {}", settings.method),
+        let times = picture.times;
+        let (how, cost) = match &picture.device {
+            None => (
+                stage.to_owned(),
+                format!("{:.0} ms on the CPU", times.frame_ms),
+            ),
+            Some(device) => (
+                format!("{stage}, {}", settings.method),
+                match times.gpu_ms {
+                    Some(gpu) => format!("{gpu:.2} ms on {}", device.name),
+                    None => format!("{:.2} ms with {}", times.frame_ms, device.name),
+                },
+            ),
+        };
+        let rays = match self.samples.count {
+            1 => String::new(),
+            count => format!("{count} rays per pixel, "),
         };
         for file in &self.output {
             let (name, width, height) = (file.display(), settings.width, settings.height);
-            output::result(&format!(
-                "{name}: {width}x{height}, {how}, {}",
-                picture.cost
+            output::result(&format!("{name}: {width}x{height}, {how}, {rays}{cost}"));
+        }
+    }
+
+    /// What `--verbose` adds.
+    fn details(
+        &self,
+        scene: &Scene,
+        settings: &MethodSettings,
+        picture: &Picture,
+        [loading, writing, all]: [f64; 3],
+    ) {
+        for object in &scene.objects {
+            let [columns, rows] = map_size(object, settings);
+            output::note(&format!(
+                "{}: shape box of {columns} x {rows} texels",
+                object.name
             ));
         }
+        if picture.device.is_some() {
+            let [shapes, textures] = picture.map_bytes.map(|bytes| bytes as f64 / 1e6);
+            output::note(&format!(
+                "{:.2} ms from submission to completion",
+                picture.times.frame_ms
+            ));
+            output::note(&format!(
+                "on the device: shape maps (or meshes) {shapes:.2} MB, colour and displacement maps {textures:.2} MB"
+            ));
+            picture.notes.iter().for_each(|line| output::note(line));
+            if settings.method.may_run_out() && picture.frame.exhausted == 0 {
+                output::note("no pixel ran out of steps");
+            }
+        }
+        if let Some(steps) = Steps::of(&picture.frame) {
+            output::note(&format!(
+                "{} pixels hit ({:.1} %), {:.2} steps each, {} at most",
+                steps.hits,
+                100.0 * steps.hits as f64 / picture.frame.pixels() as f64,
+                steps.mean,
+                steps.most
+            ));
+        }
+        output::note(&format!(
+            "scene read in {loading:.1} ms, files written in {writing:.1} ms, {all:.1} ms in all"
+        ));
+    }
+
+    /// All that [`details`](Self::details) says, for programs.
+    fn tell_json(
+        &self,
+        scene: &Scene,
+        settings: &MethodSettings,
+        picture: &Picture,
+        [loading, writing, all]: [f64; 3],
+    ) {
+        let device = picture.device.as_ref();
+        let steps = Steps::of(&picture.frame);
+        let objects = scene.objects.iter().map(|object| {
+            let [columns, rows] = map_size(object, settings);
+            json!({ "name": object.name, "columns": columns, "rows": rows })
+        });
+        output::json(&json!({
+            "files": self.output,
+            "width": settings.width,
+            "height": settings.height,
+            "stage": options::name_of(&options::STAGES, &self.drawing.stage),
+            "solver": device.map(|_| settings.method.to_string()),
+            "samples": self.samples.count,
+            "device": device.map(|d| json!({ "name": d.name, "kind": d.kind, "driver": d.driver })),
+            "gpu_ms": picture.times.gpu_ms,
+            "frame_ms": picture.times.frame_ms,
+            "read_ms": loading,
+            "write_ms": writing,
+            "total_ms": all,
+            "map_bytes": picture.map_bytes[0],
+            "texture_bytes": picture.map_bytes[1],
+            "objects": objects.collect::<Vec<_>>(),
+            "pixels": picture.frame.pixels(),
+            "hits": steps.as_ref().map_or(0, |s| s.hits),
+            "steps_mean": steps.as_ref().map(|s| s.mean),
+            "steps_max": steps.as_ref().map(|s| s.most),
+            "exhausted": picture.frame.exhausted,
+            "notes": picture.notes,
+            "warnings": picture.warnings,
+        }));
     }
 }
 
@@ -182,34 +299,46 @@ fn on(device: &str, mut error: Error) -> Error {
     error
 }
 
-/// How many pixels were hit, and what the search spent on them.
-fn steps(frame: &Frame) -> Option<String> {
-    let hits: Vec<f32> = (frame.steps.iter().zip(&frame.distance))
-        .filter(|(_, distance)| distance.is_finite())
-        .map(|(steps, _)| *steps)
-        .collect();
-    if hits.is_empty() {
-        return None;
-    }
-    let share = 100.0 * hits.len() as f64 / frame.distance.len() as f64;
-    let mean = hits.iter().map(|s| f64::from(*s)).sum::<f64>() / hits.len() as f64;
-    let most = hits.iter().copied().fold(0.0, f32::max);
-    Some(format!(
-        "{} pixels hit ({share:.1} %), {mean:.2} steps each, {most} at most",
-        hits.len()
-    ))
+/// Columns and rows of an object's shape box.
+fn map_size(object: &Object, settings: &MethodSettings) -> [u32; 2] {
+    let rows = settings.map_rows.unwrap_or(object.map_rows);
+    [
+        (object.profile.radius * f64::from(rows)).ceil() as u32,
+        rows,
+    ]
 }
 
-/// In how many pixels the search ran out of steps, and what helps; without `always`, only where there are any.
-fn exhausted(frame: &Frame, always: bool) -> Option<String> {
-    match frame.exhausted {
-        0 if always => Some("no pixel ran out of steps".to_owned()),
-        0 => None,
-        count => Some(format!(
-            "warning: {count} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",
-            Method::DEFAULT.name()
-        )),
+/// How many pixels were hit, and what the search spent on them.
+struct Steps {
+    hits: usize,
+    mean: f64,
+    most: f32,
+}
+
+impl Steps {
+    /// `None` where nothing is hit.
+    fn of(frame: &Frame) -> Option<Self> {
+        let hits: Vec<f32> = (frame.steps.iter().zip(&frame.distance))
+            .filter(|(_, distance)| distance.is_finite())
+            .map(|(steps, _)| *steps)
+            .collect();
+        (!hits.is_empty()).then(|| Self {
+            hits: hits.len(),
+            mean: hits.iter().map(|s| f64::from(*s)).sum::<f64>() / hits.len() as f64,
+            most: hits.iter().copied().fold(0.0, f32::max),
+        })
     }
+}
+
+/// In how many pixels the search ran out of steps, and what helps; `None` where there are none.
+fn exhausted(frame: &Frame) -> Option<String> {
+    (frame.exhausted > 0).then(|| {
+        format!(
+            "{} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",
+            frame.exhausted,
+            Method::DEFAULT.name()
+        )
+    })
 }
 
 fn milliseconds(since: Instant) -> f64 {

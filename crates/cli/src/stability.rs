@@ -19,6 +19,9 @@ use std::sync::atomic::Ordering;
 
 /// Draws the cases in which methods fail and holds every search to the reference; fails if the default does
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap stability --quick --out out/stability\n  \
+    revmap stability --random 1000 --seed 7")]
 pub struct Stability {
     /// Names of cases [default: all]
     #[arg(value_name = "CASE")]
@@ -26,7 +29,7 @@ pub struct Stability {
     /// The searches [default: circle, live, quadric and the default]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
     solver: Vec<Method>,
-    /// The first and the last scene of each case, by the papers' loop and the default alone
+    /// The first and the last scene of each case, by the RBM baseline and the default alone
     #[arg(long)]
     quick: bool,
     /// So many random scenes in place of the cases, by the default; a failing one is written as the smallest scene that still fails
@@ -41,6 +44,9 @@ pub struct Stability {
     /// The folder for results [default: results/DATE-DEVICE, made anew]
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace the run that the folder of --out holds
+    #[arg(long, requires = "out")]
+    overwrite: bool,
     /// Say nothing but results and failures
     #[arg(long, short)]
     quiet: bool,
@@ -55,7 +61,7 @@ impl Stability {
         let machine = Machine::here(&about.name, about.kind, &about.driver, &self.command());
         let out = match &self.out {
             Some(out) => {
-                folder::make(out)?;
+                folder::claim(out, self.overwrite, [])?;
                 out.clone()
             }
             None => folder::fresh(Path::new("results"), &machine.folder())?,

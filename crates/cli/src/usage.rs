@@ -19,7 +19,7 @@ pub fn report(error: &clap::Error) -> ExitCode {
     }
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         output::complain(
-            "names no command; give render, bake, bench, chart, stability, devices or compare; see `revmap --help`",
+            "names no command; give render, animate, bake, bench, chart, stability, devices or compare; see `revmap --help`",
         );
     } else {
         output::complain(&one_line(&error.to_string()));

@@ -2,13 +2,13 @@
 //!
 //! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
 //! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
-//! the papers' loop. Linux alone: it reads `/proc/self/task`.
+//! the RBM baseline. Linux alone: it reads `/proc/self/task`.
 
 use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::MethodDevice;
-use revmap_lab::report::plan::{papers_loop, plain};
+use revmap_lab::report::plan::{plain, rbm_baseline};
 use revmap_lab::report::suite::{Extent, views};
 use std::time::Instant;
 
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             planes: Planes::Color,
             ..MethodSettings::default()
         };
-        let mut ways = vec![papers_loop(&view, &settings)];
+        let mut ways = vec![rbm_baseline(&view, &settings)];
         ways.extend(methods.iter().map(|&method| plain(&settings, method)));
         let mut drawn = Vec::new();
         for way in &ways {
@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let hit = frame.color.iter().filter(|p| p[3] > 0.0).count();
         let papers = median(&mut drawn[0].2);
         print!(
-            "{:<10} {hit:>7} pixels, papers' loop {papers:6.2} ms",
+            "{:<10} {hit:>7} pixels, RBM baseline {papers:6.2} ms",
             view.name
         );
         for (k, (_, _, cpu, wall)) in drawn[1..].iter_mut().enumerate() {
@@ -94,7 +94,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     for (method, sum) in methods.iter().zip(&sums) {
         println!(
-            "{method}: {:.3} of the papers' loop (geometric mean)",
+            "{method}: {:.3} of the RBM baseline (geometric mean)",
             sum.exp()
         );
     }

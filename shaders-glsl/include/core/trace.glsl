@@ -85,11 +85,17 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 #elif SEARCH == SEARCH_CONE
     return search_cone(m, side, s, steps, quadric);
 #elif SEARCH == SEARCH_RELAXED
+    // Relaxed cones are for rays from outside. Rays towards lights take the others, which pass nothing.
+#if SHADOWED
+    bool relaxed = side > 0.0 && !casts;
+#else
+    bool relaxed = side > 0.0;
+#endif
     uint end;
-    if (side > 0.0) {
+    if (relaxed) {
         end = search_relaxed(m, s, steps, quadric);
     } else {
-        end = search_cone(m, side, s, steps, quadric); // relaxed cones are for rays from outside
+        end = search_cone(m, side, s, steps, quadric);
     }
     return end;
 #else

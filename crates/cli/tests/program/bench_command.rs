@@ -46,6 +46,8 @@ fn a_brief_run_measures_every_combination() {
             "128",
             "--elevation",
             "10",
+            "--passes",
+            "4",
             "--out",
             "a/b",
         ],
@@ -54,9 +56,9 @@ fn a_brief_run_measures_every_combination() {
     let made = folder.path().join("a/b");
     let results = Table::load(&made.join("results.csv")).unwrap();
     assert_eq!(results.header, COLUMNS);
-    // Sizes x stages x searches, and the papers' loop at each size and stage.
+    // Sizes x stages x searches, and the RBM baseline at each size and stage.
     assert_eq!(results.records.len(), 2 * 2 * 2 + 2 * 2);
-    let marked = Table::load(&made.join("left-out.csv")).unwrap();
+    let marked = Table::load(&made.join("excluded.csv")).unwrap();
     for (number, record) in results.records.iter().enumerate() {
         let field = |name: &str| record[results.column(name).unwrap()].as_str();
         let value = |name: &str| {
@@ -92,16 +94,28 @@ fn a_brief_run_measures_every_combination() {
     let raw = Table::load(&made.join("raw.csv")).unwrap();
     assert!(
         raw.records.len() >= results.records.len() * 4 * 2,
-        "four passes of two rounds at least"
+        "four passes of two rounds"
     );
     for file in ["report.html", "machine.txt", "pictures/sphere@10.png"] {
         assert!(made.join(file).exists(), "{file}");
     }
     assert!(
-        text(&out.stdout).contains("papers' loop"),
+        text(&out.stdout).contains("RBM baseline"),
         "{}",
         text(&out.stdout)
     );
+
+    // It is there to stay, unless it may be replaced; and a scene within it is no place for results.
+    let again = ["bench", SCENE, "--quick", "--size", "64x48", "--out", "a/b"];
+    for command in ["bench", "chart"] {
+        let out = run(folder.path(), &[&[command], &again[1..]].concat());
+        let said = text(&out.stderr);
+        assert_eq!(out.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains("a/b") && said.contains("--overwrite"),
+            "{said}"
+        );
+    }
 
     // Against itself nothing has changed.
     let out = run(folder.path(), &["bench", "--compare", "a/b", "a/b"]);
@@ -145,7 +159,7 @@ fn a_mesh_stands_beside_the_searches() {
         let field = &rows[0][results.column(column).unwrap()];
         assert_eq!(field.is_empty(), empty, "{column}: {field:?}");
     }
-    let out = Table::load(&made.join("left-out.csv")).unwrap();
+    let out = Table::load(&made.join("excluded.csv")).unwrap();
     // The row that was drawn may be there too: frames this small are easily timed wrongly.
     let compute = |r: &&Vec<String>| r[3] == "mesh:16x32" && r[2] == "compute";
     let reason = out.records.iter().find(compute).unwrap();
@@ -297,6 +311,6 @@ fn an_interrupt_keeps_what_was_measured() {
     assert!(
         std::fs::read_to_string(folder.path().join("kept/report.html"))
             .unwrap()
-            .contains("ended early")
+            .contains("was interrupted")
     );
 }

@@ -7,3 +7,6 @@ mod bench_command;
 mod command_line;
 mod pictures;
 mod run;
+mod stability_command;
+mod warnings;
+mod words;

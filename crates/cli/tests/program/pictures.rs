@@ -1,5 +1,6 @@
 //! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns of and says.
 
+use revmap::frame::read_exr;
 use revmap::maps::DisplacementMap;
 use std::path::PathBuf;
 use std::process::Command;
@@ -118,4 +119,41 @@ fn maps_are_written_and_weighed() {
         matches!(numbers[..], [shapes, covers] if shapes > 0.1 && shapes <= 10.0 && covers > 1.0 && covers <= 4.0),
         "{line}"
     );
+}
+
+/// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other channels are the plain picture's.
+#[test]
+fn samples_average_colours_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, options: &[&str]| {
+        let file = folder.path().join(name);
+        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
+            .args(["render", &asset("scenes/pawn.toml"), "-q", "-o"])
+            .arg(&file)
+            .args(options)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        read_exr(&file).unwrap()
+    };
+    let large = draw("large.exr", &["--size", "512x384"]);
+    let plain = draw("plain.exr", &["--size", "64x48"]);
+    let mut error = Vec::new();
+    for samples in ["4", "64"] {
+        let mut averaged = draw("averaged.exr", &["--size", "64x48", "--samples", samples]);
+        let (mut total, mut between) = (0.0, 0);
+        for (index, color) in averaged.color.iter().enumerate() {
+            let (x, y) = (index % 64 * 8, index / 64 * 8);
+            let mean = (0..64).map(|k| large.color[(y + k / 8) * 512 + x + k % 8]);
+            let mean = mean.fold([0.0; 4], |s, c| [0, 1, 2, 3].map(|i| s[i] + c[i] / 64.0));
+            let apart = (0..3).map(|i| f64::from((mean[i] - color[i]).abs()));
+            total += apart.sum::<f64>() / 3.0 / 3072.0;
+            between += usize::from(*color != plain.color[index]);
+        }
+        assert!(between > 100, "{between}");
+        error.push(total);
+        averaged.color = plain.color.clone();
+        assert_eq!(averaged.first_difference(&plain), None);
+    }
+    assert!(error[1] < 1e-3 && error[1] < 0.5 * error[0], "{error:?}");
 }

@@ -24,7 +24,7 @@ pub struct Pair {
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
-    /// The same, each time first put over that of the papers' loop of the same picture, stage and run: what is left when one run had the
+    /// The same, each time first put over that of the RBM baseline of the same picture, stage and run: what is left when one run had the
     /// slower machine. `None` where a run lacks that loop, and for the loop itself.
     pub relative: Option<Interval>,
     /// What of the errors has grown.
@@ -50,7 +50,7 @@ pub enum Verdict {
 }
 
 impl Pair {
-    /// What became of its time: in proportion to the papers' loop where both runs have it.
+    /// What became of its time: in proportion to the RBM baseline where both runs have it.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match self.relative.or(self.time) {
@@ -97,7 +97,10 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
             (Some(a), Some(b)) => stats::ratio(a, b),
             _ => None,
         };
-        let relative = match (after.over_loop(number + 1), before.over_loop(twin + 1)) {
+        let relative = match (
+            after.over_baseline(number + 1),
+            before.over_baseline(twin + 1),
+        ) {
             (Some(a), Some(b)) => stats::ratio(&a, &b),
             _ => None,
         };
@@ -181,7 +184,7 @@ pub fn as_text(against: &Against) -> String {
             "measurement",
             "new / old",
             "95 % interval",
-            "over the papers' loop",
+            "over the RBM baseline",
             "95 % interval",
             "",
         ]
@@ -236,7 +239,7 @@ pub fn as_text(against: &Against) -> String {
     if loops.iter().any(|t| t.low > 1.0 || t.high < 1.0)
         && against.pairs.iter().any(|p| p.relative.is_some())
     {
-        out += "the papers' loop itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";
+        out += "the RBM baseline itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";
     }
     let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
         let changed = against.pairs.iter().filter(|p| !of(p).is_empty());

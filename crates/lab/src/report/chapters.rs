@@ -1,7 +1,7 @@
 //! The chapters that pages of every kind share: where and how it was measured, what was drawn, all rows, and what was left out.
 
 use super::covered;
-use super::folder::left_out;
+use super::folder::excluded;
 use super::glossary;
 use super::looks::Looks;
 use super::machine::Machine;
@@ -21,26 +21,22 @@ pub(super) fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
         .filter(|(what, _)| *what != "command")
         .collect();
     page.facts(&facts);
-    page.command("Made again by", &machine.command);
+    page.command("Reproduced by", &machine.command);
     if measured.interrupted {
-        page.note("The run was ended early: what is missing below was not measured.");
+        page.note("The run was interrupted: what is missing below was not measured.");
     }
     glossary::chapter(page, measured);
 }
 
-/// What was left out and how times were taken: the end of every page.
+/// Which rows are excluded, how times were taken, and what every column means: the end of every page.
 pub(super) fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
-    let out = left_out(plan, measured);
-    page.chapter("Left out");
+    let out = excluded(plan, measured);
+    page.chapter("Excluded rows");
     if out.records.is_empty() {
-        page.text("Nothing: every measurement could be made, and in every row the device's clock and the wall clock agree.");
+        page.text("None: every measurement could be made, and in every row the device's clock and the wall clock agree.");
     } else {
-        page.text("These rows are in no summary, ratio or front. A row number points into results.csv; without one nothing was drawn.");
-        page.table(
-            &["row", "scene", "stage", "search", "reason"],
-            &out.records,
-            &[1, 2, 3, 4],
-        );
+        page.text("These rows are in no summary, ratio or Pareto front. Row numbers count the records of results.csv; rows without a number could not be drawn.");
+        page.table(&EXCLUDED, &out.records, &[1, 2, 3, 4]);
     }
     page.chapter("How this was measured");
     let passes = measured
@@ -63,23 +59,21 @@ pub(super) fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
     ));
     page.text(&format!(
         "The device's timestamps stand around the work of one frame in one stage alone; the wall clock counts from submission to completion, without reading back. Rows in \
-         which the two are more than {:.0} % apart are marked and left out of every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
+         which the two are more than {:.0} % apart are marked and excluded from every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
          alone; errors and look-ups come from one more frame of the same search with all planes.",
         100.0 * CLOCKS_APART
     ));
     page.text(
-        "The truth is the double-precision reference on the CPU, which shares no code with the shaders. Wrong pixels are missed (the reference hits, the frame does not) and \
-         ghosts (the reverse), over the pixels that the reference hits. Depth errors are along the ray, in texels of a map of 512 rows whatever map was used, \
-         so that all rows compare; look-ups are counted over the pixels in which there was at least one.",
+        "Errors are against the double-precision reference on the CPU, which shares no code with the shaders.",
     );
+    glossary::columns(page);
 }
 
 /// The table of pictures, with the share of each that is solid.
 pub(super) fn picture_table(page: &mut Page, rows: &[Row]) {
     page.chapter("What was drawn");
     page.text(
-        "Each picture, with the share of its pixels in which the reference hits a solid. Where that is small, what a frame costs anyhow (clearing, storing, ending it) \
-         weighs much in its time, and searches look more alike than they are.",
+        "In pictures with few hit pixels, fixed costs of a frame (clear, store, end of frame) dominate, and methods look more alike than they are.",
     );
     page.table(&covered::PICTURES, &covered::pictures(rows), &[0, 1, 5]);
 }
@@ -133,45 +127,42 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
     };
     let all = |of: &dyn Fn(&Row) -> Vec<String>| rows.iter().map(of).collect::<Vec<_>>();
     page.heading("Times and look-ups");
-    page.text(
-        "Milliseconds of a frame with their 95 % interval; look-ups a pixel, over the pixels in which there were any (mean, 99th percentile, most), and the pixels in which a \
-         search ran out of steps; kilobytes of maps and tables, or of the mesh, on the device.",
-    );
     page.table(&TIMES, &all(&times), &[0, 1, 2]);
     page.heading("Errors");
-    page.text(
-        "Pixels missed and ghosts; errors of depth in texels of a map of 512 rows; of normals in degrees; the Hausdorff distance of the silhouettes in pixels; FLIP, 0 (equal) to 1, \
-         its mean over the picture.",
-    );
     page.table(&ERRORS, &all(&errors), &[0, 1, 2]);
 }
 
-const TIMES: [&str; 12] = [
+/// Columns of the table of excluded rows.
+pub(super) const EXCLUDED: [&str; 5] = ["row", "scene", "stage", "method", "reason"];
+
+/// Columns of the table of times.
+pub(super) const TIMES: [&str; 12] = [
     "scene",
-    "search",
+    "method",
     "stage",
     "size",
-    "ms",
+    "time (ms)",
     "95 % interval",
     "frames / s",
-    "look-ups, mean",
-    "p99",
-    "most",
+    "look-ups mean",
+    "look-ups p99",
+    "look-ups max",
     "out of steps",
-    "maps, mesh (kB)",
+    "memory (kB)",
 ];
 
-const ERRORS: [&str; 12] = [
+/// Columns of the table of errors.
+pub(super) const ERRORS: [&str; 12] = [
     "scene",
-    "search",
+    "method",
     "stage",
     "size",
     "missed",
     "ghosts",
-    "depth rms (texels)",
-    "p99",
-    "most",
-    "normals rms (°)",
+    "depth rms (h/512)",
+    "depth p99 (h/512)",
+    "depth max (h/512)",
+    "normal rms (°)",
     "silhouette (px)",
     "FLIP",
 ];

@@ -50,6 +50,8 @@ impl Table {
     /// [`Stage::Report`]: no header, a quote that is not closed, a record of another length than the header.
     pub fn parse(text: &str) -> Result<Self> {
         let fault = |message: String| Error::new(Stage::Report, message);
+        // Spreadsheets begin a file with a byte order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = records(text).ok_or_else(|| {
             fault("a quoted field has no end; write the file again with `revmap bench`".into())
         })?;
@@ -151,6 +153,7 @@ mod tests {
         assert_eq!(Table::parse(&table.text()).unwrap(), table);
         let windows = table.text().replace('\n', "\r\n").replace("l1\r\n", "l1\n");
         assert_eq!(Table::parse(&windows).unwrap(), table);
+        assert_eq!(Table::parse(&format!("\u{feff}{windows}")).unwrap(), table);
         assert_eq!(table.column("d").unwrap(), 2);
         assert!(table.column("e").is_err());
     }

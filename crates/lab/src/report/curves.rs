@@ -4,6 +4,8 @@ mod measure;
 mod pages;
 
 pub use measure::Measure;
+#[cfg(test)]
+pub(super) use pages::FRONTS;
 pub use pages::write;
 
 use super::chart::Figure;
@@ -11,12 +13,13 @@ use super::chart::axis::Axis;
 use super::chart::front::{WORTH, front, stairs};
 use super::chart::style::Style;
 use super::chart::xy::{Guide, Point, Series, XyChart};
-use super::looks::{of_line, of_source, style};
+use super::looks::{of_source, style};
 use super::map_error::MapError;
 use super::names;
-use super::plan::{PAPERS_LOOP, is_papers_loop};
+use super::plan::{RBM_BASELINE, is_rbm_baseline};
 use super::ratios::Ratio;
 use super::row::Row;
+use super::stats::Interval;
 use super::sweep::{has_budget, has_rows};
 use crate::method::{Method, MethodSettings};
 
@@ -32,7 +35,7 @@ fn budget(s: &MethodSettings) -> Option<String> {
     if let Method::Mesh { segments, rings } = s.method {
         return Some(format!("{segments}x{rings}"));
     }
-    if is_papers_loop(s) {
+    if is_rbm_baseline(s) {
         return None;
     }
     if has_rows(s.method) {
@@ -42,18 +45,29 @@ fn budget(s: &MethodSettings) -> Option<String> {
     has_budget(s.method).then(|| steps.to_string())
 }
 
-/// Adds the point of a way of drawing to its line: of its search and stage, or of the papers' loop. Ways that take no part in the sweep over
+/// Adds the point of a way of drawing to its line: of its search and stage, or of the RBM baseline. Ways that take no part in the sweep over
 /// budgets have none.
-fn add_swept(series: &mut Vec<Series>, s: &MethodSettings, base: &MethodSettings, x: f64, y: f64) {
-    let (name, style) = if is_papers_loop(s) {
-        (PAPERS_LOOP, style(s))
+fn add_swept(
+    series: &mut Vec<Series>,
+    s: &MethodSettings,
+    base: &MethodSettings,
+    time: &Interval,
+    y: f64,
+) {
+    let (name, style) = if is_rbm_baseline(s) {
+        (RBM_BASELINE, style(s))
     } else if over_budgets(s, base) {
-        (s.method.name(), of_line(s))
+        (s.method.name(), style(s))
     } else {
         return;
     };
-    let label = budget(s);
-    add(series, name, style, true, Point { x, y, label });
+    let point = Point {
+        x: time.value,
+        y,
+        spread: time.ends(),
+        label: budget(s),
+    };
+    add(series, name, style, true, point);
 }
 
 /// Adds a point to the series of its name and stage.
@@ -78,7 +92,7 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &MethodSetti
     let mut series = Vec::new();
     for row in rows {
         if let (Some(time), Some(error)) = (row.time(), measure.of(row)) {
-            add_swept(&mut series, &row.settings, base, time.value, error);
+            add_swept(&mut series, &row.settings, base, &time, error);
         }
     }
     against_time(title, Axis::log(TIME), measure, series, |_| false)
@@ -99,6 +113,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
         let point = Point {
             x: time.value,
             y,
+            spread: time.ends(),
             label: Some(format!("{} {count}", s.method.name())),
         };
         let (name, style) = (names::source(source), of_source(source));
@@ -107,7 +122,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
     against_time(title, Axis::log(TIME), measure, series, |_| false)
 }
 
-/// The chart that sums `views` up: error against the ratio to the papers' loop.
+/// The chart that sums `views` up: error against the ratio to the RBM baseline.
 #[must_use]
 pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSettings) -> Figure {
     let mut series = Vec::new();
@@ -119,11 +134,11 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSett
             Measure::Flip => None,
         };
         if let Some(error) = error {
-            add_swept(&mut series, &ratio.settings, base, ratio.time.value, error);
+            add_swept(&mut series, &ratio.settings, base, &ratio.time, error);
         }
     }
     let title = format!("{views}: {} against time", measure.name());
-    let x = Axis::log("time / time of the papers' loop").with(1.0);
+    let x = Axis::log("time / time of the RBM baseline").with(1.0);
     // Of meshes there are few: each keeps its word.
     against_time(&title, x, measure, series, |label| label.contains('x'))
 }
@@ -131,8 +146,8 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSett
 /// The name of the axis of times.
 const TIME: &str = "time of a frame (ms)";
 
-/// A chart over an axis of times, with the front over all points. Only what is on the front is worth a word, or the chart drowns in them;
-/// except words to `keep`.
+/// A chart over an axis of times, with the front over all points. Words are for what is on the front, for both ends of each line, and for
+/// what is to `keep`; of all points the chart would drown in them.
 fn against_time(
     title: &str,
     x: Axis,
@@ -146,9 +161,14 @@ fn against_time(
         .into_iter()
         .map(|i| places[i])
         .collect();
-    for point in series.iter_mut().flat_map(|s| &mut s.points) {
-        if !best.contains(&(point.x, point.y)) {
-            point.label = point.label.take().filter(|label| keep(label));
+    for line in &mut series {
+        let last = line.points.len().saturating_sub(1);
+        let joined = line.joined;
+        for (k, point) in line.points.iter_mut().enumerate() {
+            let end = joined && (k == 0 || k == last);
+            if !end && !best.contains(&(point.x, point.y)) {
+                point.label = point.label.take().filter(|label| keep(label));
+            }
         }
     }
     XyChart {
@@ -176,13 +196,14 @@ pub fn resolution(
         let point = Point {
             x: f64::from(rows),
             y,
+            spread: None,
             label: None,
         };
         add(&mut series, name, style, true, point);
     };
     for row in rows
         .iter()
-        .filter(|r| r.settings.method == method && !is_papers_loop(&r.settings))
+        .filter(|r| r.settings.method == method && !is_rbm_baseline(&r.settings))
     {
         let (Some(source), Some(count)) = (row.settings.map_source, row.settings.map_rows) else {
             continue;

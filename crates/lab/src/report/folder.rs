@@ -1,6 +1,7 @@
-//! The folder of a run: `results.csv`, `raw.csv`, `left-out.csv`, `machine.txt`, and whatever pictures and pages belong to it.
+//! The folder of a run: `results.csv`, `raw.csv`, `excluded.csv`, `machine.txt`, and whatever pictures and pages belong to it.
 
 use super::chart::Figure;
+use super::chart::pdf::pdf;
 use super::chart::raster::raster;
 use super::chart::svg::svg;
 use super::csv::Table;
@@ -28,6 +29,85 @@ pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
     }
     make(&folder)?;
     Ok(folder)
+}
+
+/// Files that a run writes at the top of its folder.
+const FILES: [&str; 5] = [
+    "results.csv",
+    "raw.csv",
+    "excluded.csv",
+    "machine.txt",
+    "report.html",
+];
+/// Folders that a run writes into its own.
+const FOLDERS: [&str; 2] = ["charts", "pictures"];
+
+/// Makes a folder for results. A folder that holds an earlier run is refused, unless `overwrite`: then that run's files are
+/// removed. None of the `inputs` may be a file that the run writes.
+///
+/// # Errors
+/// [`Stage::Usage`] for a folder that holds an earlier run or an input; [`Stage::Report`] when it cannot be made or cleared.
+pub fn claim<'a>(
+    folder: &Path,
+    overwrite: bool,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    let usage = |message: &str| {
+        Error::new(Stage::Usage, message)
+            .in_file(folder)
+            .at_key("--out")
+    };
+    let written = |file: &Path| {
+        let within = folder.canonicalize().ok()?;
+        let inside = file.canonicalize().ok()?;
+        let inside = inside.strip_prefix(within).ok()?.to_str()?.to_owned();
+        let first = inside.split(std::path::MAIN_SEPARATOR).next()?;
+        Some(FILES.contains(&inside.as_str()) || FOLDERS.contains(&first))
+    };
+    if inputs.into_iter().any(|file| written(file) == Some(true)) {
+        return Err(usage(
+            "holds a file that is read as well; choose another folder",
+        ));
+    }
+    let taken = FILES.iter().any(|name| folder.join(name).exists());
+    if taken && !overwrite {
+        return Err(usage(
+            "holds an earlier run; choose another folder, or give --overwrite to replace that run",
+        ));
+    }
+    make(folder)?;
+    if taken {
+        clear(folder).map_err(|e| {
+            let message = format!("the earlier run cannot be removed ({e}); choose another folder");
+            Error::new(Stage::Report, message).in_file(folder)
+        })?;
+    }
+    Ok(())
+}
+
+/// Removes what an earlier run wrote, and nothing else.
+fn clear(folder: &Path) -> std::io::Result<()> {
+    let remove = |file: &Path| match std::fs::remove_file(file) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    };
+    FILES
+        .iter()
+        .try_for_each(|name| remove(&folder.join(name)))?;
+    for name in FOLDERS
+        .map(|name| folder.join(name))
+        .iter()
+        .filter(|f| f.is_dir())
+    {
+        for entry in std::fs::read_dir(name)? {
+            let file = entry?.path();
+            let ending = file.extension().and_then(|e| e.to_str());
+            if ending.is_some_and(|e| ["png", "svg", "pdf"].contains(&e)) {
+                remove(&file)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Makes a folder and those above it.
@@ -67,7 +147,7 @@ pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
-/// Writes a figure as SVG and as PNG of twice its size into `folder/charts`.
+/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its title.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -75,6 +155,7 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
     let charts = folder.join("charts");
     make(&charts)?;
     write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;
+    write_bytes(&charts.join(format!("{name}.pdf")), &pdf(figure))?;
     write_bytes(
         &charts.join(format!("{name}.png")),
         &png(&raster(figure, 2.0)?)?,
@@ -123,7 +204,7 @@ pub fn raw(rows: &[Row]) -> Table {
 /// What is in no summary and why: rows whose clocks disagree (`row` is their number in `results.csv`), and measurements that could not
 /// be made (`row` is empty).
 #[must_use]
-pub fn left_out(plan: &Plan, measured: &Measured) -> Table {
+pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
     let mut table = Table::new(&["row", "scene", "stage", "solver", "reason"]);
     for (number, row) in measured.rows.iter().enumerate() {
         if let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() {
@@ -173,8 +254,8 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
     make(folder)?;
     write_rows(folder, &measured.rows, machine)?;
     write_text(
-        &folder.join("left-out.csv"),
-        &left_out(plan, measured).text(),
+        &folder.join("excluded.csv"),
+        &excluded(plan, measured).text(),
     )?;
     let note: String = machine
         .lines()
@@ -182,4 +263,49 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
         .map(|(what, which)| format!("{what}: {which}\n"))
         .collect();
     write_text(&folder.join("machine.txt"), &note)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn an_earlier_run_is_kept_unless_it_may_be_replaced() {
+        let base = tempfile::tempdir().unwrap();
+        let out = base.path().join("run");
+        let claimed = |overwrite| claim(&out, overwrite, [base.path().join("a.toml").as_path()]);
+        claimed(false).unwrap();
+        // An empty folder, and one with files of others, are as good as a new one.
+        write_text(&out.join("notes.txt"), "mine").unwrap();
+        claimed(false).unwrap();
+        make(&out.join("pictures")).unwrap();
+        for name in ["results.csv", "pictures/a.png", "pictures/own.txt"] {
+            write_text(&out.join(name), "earlier").unwrap();
+        }
+        let error = claimed(false).unwrap_err();
+        assert_eq!(error.stage, Stage::Usage);
+        assert!(error.to_string().contains("--overwrite"), "{error}");
+        assert!(out.join("results.csv").exists() && out.join("pictures/a.png").exists());
+        claimed(true).unwrap();
+        assert!(!out.join("results.csv").exists() && !out.join("pictures/a.png").exists());
+        assert!(out.join("notes.txt").exists() && out.join("pictures/own.txt").exists());
+    }
+
+    #[test]
+    fn inputs_are_not_written_over() {
+        let base = tempfile::tempdir().unwrap();
+        make(&base.path().join("pictures")).unwrap();
+        for (name, refused) in [
+            ("scene.toml", false),
+            ("pictures/vase.png", true),
+            ("machine.txt", true),
+        ] {
+            let input = base.path().join(name);
+            write_text(&input, "").unwrap();
+            let claimed = claim(base.path(), true, [input.as_path()]);
+            assert_eq!(claimed.is_err(), refused, "{name}");
+            assert!(input.exists());
+        }
+    }
 }

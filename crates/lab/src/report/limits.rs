@@ -5,7 +5,8 @@ use std::time::Duration;
 /// How long and how often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The time that all is meant to take. The least number of rounds is drawn even if that takes longer.
+    /// The time that all is meant to take. The least number of rounds is drawn even if that takes longer, and of passes unless it takes
+    /// half as long again: drivers that compile slowly get two.
     pub time: Duration,
     /// Least and most passes.
     pub passes: (usize, usize),
@@ -17,7 +18,17 @@ pub struct Limits {
     pub warm_up: usize,
 }
 
+/// Fewest passes of which intervals can be told.
+const FEWEST: usize = 2;
+
 impl Limits {
+    /// Whether another pass as long as the `last` would take too long after `gone`, however few the `passes` were. A number of passes
+    /// that was asked for is kept.
+    pub(super) fn would_overrun(&self, passes: usize, gone: Duration, last: Duration) -> bool {
+        let asked_for = self.passes.0 == self.passes.1;
+        !asked_for && passes >= FEWEST && gone + last > self.time.mul_f64(1.5)
+    }
+
     /// The default: within two minutes.
     pub const DEFAULT: Self = Self {
         time: Duration::from_secs(85),
@@ -47,4 +58,25 @@ impl Limits {
         rounds: (3, 20),
         ..Self::DEFAULT
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_drivers_get_fewer_passes() {
+        let seconds = Duration::from_secs;
+        let over = |passes, gone, last| {
+            Limits::DEFAULT.would_overrun(passes, seconds(gone), seconds(last))
+        };
+        assert!(!over(1, 600, 600), "an interval takes two passes");
+        assert!(over(2, 90, 45) && !over(2, 60, 45));
+        assert!(!over(4, 80, 20) && over(4, 110, 20));
+        let asked_for = Limits {
+            passes: (4, 4),
+            ..Limits::DEFAULT
+        };
+        assert!(!asked_for.would_overrun(2, seconds(600), seconds(600)));
+    }
 }

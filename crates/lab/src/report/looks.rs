@@ -2,13 +2,13 @@
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::names::stage;
-use super::plan::{Labels, is_papers_loop, variant};
+use super::plan::{Labels, is_rbm_baseline, variant};
 use super::row::Row;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::settings::{DrawStage, Solver};
 
-/// How a search looks in the fragment stage. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
+/// How a method looks in the fragment stage, meshes of every fineness alike. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
 fn search(method: Method) -> Style {
     let (color, marker, dash) = match method {
         Method::Search(Solver::Linear) => (color::RED, Marker::Left, Dash::Dots),
@@ -20,7 +20,7 @@ fn search(method: Method) -> Style {
         Method::Search(Solver::Live) => (color::NAVY, Marker::Up, Dash::DashDot),
         Method::Search(Solver::Quadric) => (color::VIOLET, Marker::Down, Dash::Long),
         Method::Search(Solver::Hull) => (color::ORANGE, Marker::Disk, Dash::Solid),
-        Method::Mesh { .. } => (color::BLUE, fineness(method), Dash::Solid),
+        Method::Mesh { .. } => (color::BLUE, Marker::Square, Dash::Solid),
     };
     Style {
         dash,
@@ -29,29 +29,10 @@ fn search(method: Method) -> Style {
     }
 }
 
-/// A mesh's marker: another for each doubling of its segments and rings.
-fn fineness(mesh: Method) -> Marker {
-    const FROM_COARSE: [Marker; 9] = [
-        Marker::Disk,
-        Marker::Left,
-        Marker::Right,
-        Marker::Down,
-        Marker::Square,
-        Marker::Diamond,
-        Marker::Cross,
-        Marker::Plus,
-        Marker::Star,
-    ];
-    // 16x32 has the third, 64x128 the square.
-    let doublings = (mesh.quads().max(1) as f64).log2() / 2.0;
-    let place = (doublings - 2.5).round().max(0.0) as usize;
-    FROM_COARSE[place.min(FROM_COARSE.len() - 1)]
-}
-
 /// How a way of drawing looks: filled in the fragment stage, hollow in the compute stage.
 #[must_use]
 pub fn style(s: &MethodSettings) -> Style {
-    let look = if is_papers_loop(s) {
+    let look = if is_rbm_baseline(s) {
         Style::new(color::BLACK, Marker::Diamond)
     } else {
         search(s.method)
@@ -59,19 +40,6 @@ pub fn style(s: &MethodSettings) -> Style {
     Style {
         filled: s.stage != DrawStage::Compute,
         ..look
-    }
-}
-
-/// How a way looks in a chart in which a line joins the budgets of a search, or the meshes of growing fineness: all meshes alike.
-#[must_use]
-pub fn of_line(s: &MethodSettings) -> Style {
-    let own = style(s);
-    match s.method {
-        Method::Mesh { .. } => Style {
-            marker: Marker::Square,
-            ..own
-        },
-        _ => own,
     }
 }
 
@@ -95,7 +63,7 @@ pub struct Looks {
 
 impl Looks {
     /// Looks for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
-    /// is free.
+    /// is free; meshes are alike.
     #[must_use]
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
         let labels = Labels::new(settings.clone());
@@ -114,7 +82,10 @@ impl Looks {
                 !ways.iter().any(|(_, known)| taken(known))
             };
             let own = std::iter::once(wanted.marker);
-            let marker = own.chain(Marker::ALL).find(free).unwrap_or(wanted.marker);
+            // Meshes differ by their names alone.
+            let marker = (own.chain(Marker::ALL).find(free))
+                .filter(|_| !s.method.is_mesh())
+                .unwrap_or(wanted.marker);
             ways.push((way, Style { marker, ..wanted }));
         }
         Self { labels, ways }
@@ -130,6 +101,12 @@ impl Looks {
     #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
         self.labels.way(s)
+    }
+
+    /// The names of all ways.
+    #[must_use]
+    pub fn labels(&self) -> &Labels {
+        &self.labels
     }
 
     /// The name of a way and its stage.
@@ -154,18 +131,18 @@ impl Looks {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::plan::{ALL_MESHES, papers_loop};
+    use super::super::plan::{ALL_MESHES, rbm_baseline};
     use super::super::view::tests::spindle;
     use super::*;
 
-    /// All that a chart can hold: every search, the papers' loop, meshes of seven finenesses.
+    /// All that a chart can hold: every search, the RBM baseline, meshes of seven finenesses.
     fn all() -> Vec<MethodSettings> {
         let base = MethodSettings::default();
         let mut ways: Vec<MethodSettings> = Method::ALL
             .iter()
             .map(|&method| MethodSettings { method, ..base })
             .collect();
-        ways.push(papers_loop(&spindle(), &base));
+        ways.push(rbm_baseline(&spindle(), &base));
         for (segments, rings) in ALL_MESHES.into_iter().chain([(16, 32), (1024, 2048)]) {
             let method = Method::Mesh { segments, rings };
             ways.push(MethodSettings { method, ..base });
@@ -193,8 +170,9 @@ mod tests {
         }
         for (i, a) in ways.iter().enumerate() {
             for b in &ways[..i] {
+                let meshes = a.method.is_mesh() && b.method.is_mesh();
                 let (a, b) = (style(a), style(b));
-                assert!((a.color, a.marker) != (b.color, b.marker), "{a:?}");
+                assert_eq!(meshes, (a.color, a.marker) == (b.color, b.marker), "{a:?}");
                 // Guides are dashed as no search is.
                 assert_ne!(a.dash, Dash::Guide);
             }

@@ -120,6 +120,7 @@ pub fn measure(
     let groups = plan.groups();
     let mut visits = groups.len() * limits.passes.0;
     let mut pass = 0;
+    let mut began = Instant::now();
     'passes: loop {
         for group in &groups {
             if watch.stop.load(Ordering::Relaxed) {
@@ -138,6 +139,10 @@ pub fn measure(
         }
         pass += 1;
         (watch.passed)(&run.timed())?;
+        let last = std::mem::replace(&mut began, Instant::now()).elapsed();
+        if limits.would_overrun(pass, run.start.elapsed(), last) {
+            break;
+        }
         if pass >= limits.passes.1 || (pass >= limits.passes.0 && (run.known() || run.late(pass))) {
             break;
         }

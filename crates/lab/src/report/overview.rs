@@ -9,7 +9,7 @@ use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::covered::pictures_of;
 use super::curves::Measure;
 use super::folder::{keep_figure, write_text};
-use super::looks::{Looks, of_line};
+use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{safe, stage};
@@ -17,6 +17,7 @@ use super::page::Page;
 use super::pictures::Album;
 use super::plan::Plan;
 use super::row::Row;
+use super::stats::Interval;
 use super::summary;
 use revmap::error::Result;
 use std::path::Path;
@@ -74,44 +75,49 @@ fn pages<'a>(pictures: &[Vec<&'a Row>]) -> Vec<Vec<&'a Row>> {
 /// The chart of depth error against time of rows that show one picture, with its Pareto front.
 #[must_use]
 pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
-    let points: Vec<(&Row, f64, f64)> = rows
+    let points: Vec<(&Row, Interval, f64)> = rows
         .iter()
-        .filter_map(|r| Some((*r, r.time()?.value, r.errors.depth?.p99)))
+        .filter_map(|r| Some((*r, r.time()?, r.errors.depth?.p99)))
         .collect();
+    let point = |time: &Interval, y: f64, label: Option<String>| Point {
+        x: time.value,
+        y,
+        spread: time.ends(),
+        label,
+    };
     let mut series: Vec<Series> = Vec::new();
-    let mut meshes: Vec<(&Row, f64, f64)> = Vec::new();
-    for &(row, x, y) in &points {
+    let mut meshes: Vec<(&Row, Interval, f64)> = Vec::new();
+    for &(row, time, y) in &points {
         let s = &row.settings;
         if s.method.is_mesh() {
-            meshes.push((row, x, y));
+            meshes.push((row, time, y));
             continue;
         }
         series.push(Series {
             name: looks.way(s),
             style: looks.style(s),
-            points: vec![Point { x, y, label: None }],
+            points: vec![point(&time, y, None)],
             joined: false,
         });
     }
     // Meshes differ by fineness alone: one line, each marker with its segments and rings.
     meshes.sort_by_key(|(row, ..)| row.settings.method.quads());
     if let Some((coarsest, ..)) = meshes.first() {
-        let point = |&(row, x, y): &(&Row, f64, f64)| Point {
-            x,
-            y,
-            label: looks
-                .way(&row.settings)
-                .strip_prefix("mesh:")
-                .map(str::to_owned),
+        let fineness = |row: &Row| {
+            let way = looks.way(&row.settings);
+            way.strip_prefix("mesh:").map(str::to_owned)
         };
         series.push(Series {
             name: "mesh, segments x rings".into(),
-            style: of_line(&coarsest.settings),
-            points: meshes.iter().map(point).collect(),
+            style: looks.style(&coarsest.settings),
+            points: meshes
+                .iter()
+                .map(|(row, time, y)| point(time, *y, fineness(row)))
+                .collect(),
             joined: true,
         });
     }
-    let places: Vec<(f64, f64)> = points.iter().map(|(_, x, y)| (*x, *y)).collect();
+    let places: Vec<(f64, f64)> = points.iter().map(|(_, time, y)| (time.value, *y)).collect();
     let best: Vec<_> = front(&places, WORTH)
         .into_iter()
         .map(|i| places[i])
@@ -162,8 +168,8 @@ pub fn write(
         )?;
         page.figure(
             &figure,
-            "Each marker is a search, filled in the fragment stage and hollow in the compute stage, or a mesh; lower is more exact, further left is faster, and what lies on the dashed \
-             line is beaten by nothing in both. Depth errors are the 99th percentile over the pixels hit, in texels of a map of 512 rows.",
+            "Each marker is a search, filled in the fragment stage and hollow in the compute stage, or a mesh; lower is more exact, further left is faster, and bars are 95 % intervals of \
+             times. No method is better in both than one on the dashed line, the Pareto front. Depth errors are the 99th percentile over the pixels hit, in h/512, 1/512 of the solid's height.",
         );
     }
     page.chapter("Times");
@@ -193,7 +199,7 @@ pub fn write(
 #[cfg(test)]
 mod tests {
     use super::super::chart::svg::svg;
-    use super::super::plan::{ALL_MESHES, papers_loop};
+    use super::super::plan::{ALL_MESHES, rbm_baseline};
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
@@ -201,7 +207,7 @@ mod tests {
     use crate::method::{Method, MethodSettings};
     use revmap::settings::{DrawStage, Solver};
 
-    /// As much as one picture can hold: every search in both stages, five meshes, the papers' loop.
+    /// As much as one picture can hold: every search in both stages, five meshes, the RBM baseline.
     fn crowded() -> Vec<Row> {
         let mut rows = Vec::new();
         let meshes = ALL_MESHES.map(|(segments, rings)| Method::Mesh { segments, rings });
@@ -222,7 +228,7 @@ mod tests {
                 });
                 rows.push(one.clone());
                 if method == Solver::Circle {
-                    one.settings = papers_loop(&spindle(), &one.settings);
+                    one.settings = rbm_baseline(&spindle(), &one.settings);
                     rows.push(one);
                 }
             }

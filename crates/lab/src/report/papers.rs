@@ -1,4 +1,5 @@
-//! The papers' tables of frame rates (article of 2022, tables 1 to 3), measured again here, each search beside the print.
+//! The tables of frame rates that were published (article of 2022, tables 1 to 3), measured again, each method beside the published
+//! figures.
 
 mod chart;
 mod printed;
@@ -127,35 +128,35 @@ fn lines<'a>(rows: &'a [Row], table: usize) -> Vec<Measures<'a>> {
     lines
 }
 
-/// A table's header and records, the print first.
+/// A table's header and records, the published figures first.
 fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<String>>) {
     let table = &TABLES[index];
-    let mut header = vec!["size".to_owned(), "search".to_owned(), "stage".to_owned()];
+    let mut header = vec!["size".to_owned(), "method".to_owned(), "stage".to_owned()];
     header.extend(
         table
             .values
             .iter()
             .map(|v| format!("{} = {}", table.letter, number(*v, 3))),
     );
-    header.extend(["speed, last / first".to_owned(), "speed".to_owned()]);
+    header.extend(["last rate / first".to_owned(), "trend".to_owned()]);
     let all = lines(rows, index);
     let mut records = Vec::new();
-    // At sizes of the reader's own there is no print, and the rest stands alone.
+    // At sizes of the reader's own nothing was published, and the rest stands alone.
     for lines in all.chunk_by(|a, b| a.size == b.size) {
         let size = lines[0].size;
         let printed = SIZES.iter().position(|printed| *printed == size);
         if let Some(rates) = printed.map(|k| table.rates[k]) {
-            let mut print = vec![
+            let mut published = vec![
                 format!("{}x{}", size.0, size.1),
-                "print, GT 630M".into(),
+                "published, GT 630M".into(),
                 "fragment".into(),
             ];
-            print.extend(rates.iter().map(|r| number(*r, 4)));
-            print.extend([
+            published.extend(rates.iter().map(|r| number(*r, 4)));
+            published.extend([
                 number(rates[2] / rates[0], 3),
                 table.claim.name().to_owned(),
             ]);
-            records.push(print);
+            records.push(published);
         }
         for line in lines {
             let mut record = vec![
@@ -205,8 +206,8 @@ pub fn as_text(rows: &[Row]) -> String {
 
 /// What may be compared, and what may not.
 const COMPARABLE: [&str; 3] = [
-    "The print names neither the solid, nor its textures, nor what of the picture it covers, and gives rates rounded to five frames: its rates cannot be set against ours, \
-     on whatever device. Its pictures hold a displacement map as well; ours here hold the plain solid, which is cheaper to shade.",
+    "The article names neither the solid, nor its textures, nor its share of the picture, and rounds rates to five frames a second. Its rates cannot be compared with ours on any \
+     device. Its pictures hold a displacement map as well; ours here hold the plain solid, which is cheaper to shade.",
     "What can be compared is the trend along a line: how a rate changes as a parameter grows, all else equal. That is why each line ends with the ratio of its last rate to its first, with the interval of \
      this run.",
     "e and b are fractions of the largest distance that the map of the plain solid holds, as the papers scale them; the bevel's 25 steps are followed by 10 halvings there, 35 \
@@ -226,7 +227,7 @@ pub fn write(
 ) -> Result<()> {
     let rows = &measured.rows;
     let looks = Looks::of(rows);
-    let mut page = Page::new("revmap: the papers' tables, measured again");
+    let mut page = Page::new("revmap: the published tables, measured again");
     chapters::begin(&mut page, machine, measured);
     page.chapter("What can be compared");
     COMPARABLE.iter().for_each(|words| page.text(words));
@@ -234,7 +235,7 @@ pub fn write(
         page.chapter(&format!("Table {}: {}", table.number, table.title));
         let (header, records) = records(rows, index, &looks);
         let header: Vec<&str> = header.iter().map(String::as_str).collect();
-        page.text("Frames per second; the print, and below it every search as measured here.");
+        page.text("Frames per second: the published figures, and below them every method as measured here.");
         page.table(&header, &records, &[0, 1, 2, 7]);
         for size in SIZES {
             let name = format!("table{}-{}x{}", table.number, size.0, size.1);
@@ -318,7 +319,7 @@ mod tests {
         }
         let looks = Looks::of(&rows);
         let (_, records) = records(&rows, 1, &looks);
-        // The print stands above what was measured at its size, and nowhere else.
+        // Published figures stand above what was measured at their size, and nowhere else.
         assert_eq!(records.len(), 3);
         assert_eq!(records[2][..3], ["1000x600", "circle", "fragment"]);
         assert_eq!(records[2][3..6], ["250", "250", "250"]);

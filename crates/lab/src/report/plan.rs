@@ -120,10 +120,10 @@ impl Plan {
         }
     }
 
-    /// Adds, for every view, size and stage of the plan, the loop of the papers, to which speeds are put in proportion.
-    pub fn add_papers_loop(&mut self) {
+    /// Adds, for every view, size and stage of the plan, the RBM baseline, to which speeds are put in proportion.
+    pub fn add_rbm_baseline(&mut self) {
         for case in self.cases.clone() {
-            let papers = papers_loop(&self.views[case.view], &case.settings);
+            let papers = rbm_baseline(&self.views[case.view], &case.settings);
             self.add(case.view, papers);
         }
     }
@@ -187,7 +187,7 @@ pub const USUAL: [Method; 5] = [
     Method::Search(Solver::Hull),
 ];
 
-/// The searches of a look: the papers' loop is there anyhow.
+/// The searches of a look: the RBM baseline is there anyhow.
 pub const FEW: [Method; 3] = [
     Method::Search(Solver::Live),
     Method::Search(Solver::Quadric),
@@ -217,7 +217,7 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a bevel of 25 and 10
 /// halvings, on a binary image's distances in 8 bits.
 #[must_use]
-pub fn papers_loop(view: &View, settings: &MethodSettings) -> MethodSettings {
+pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
     MethodSettings {
         method: Method::Search(Solver::Circle),
         max_steps: Some(if view.technique().is_beveled() {
@@ -253,10 +253,10 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Labels for these ways; the loop of the papers and meshes have their own names and do not count.
+    /// Labels for these ways; the RBM baseline and meshes have their own names and do not count.
     #[must_use]
     pub fn new<'a>(ways: impl IntoIterator<Item = &'a MethodSettings>) -> Self {
-        let counts = |s: &&MethodSettings| !is_papers_loop(s) && !s.method.is_mesh();
+        let counts = |s: &&MethodSettings| !is_rbm_baseline(s) && !s.method.is_mesh();
         let ways: Vec<_> = ways.into_iter().filter(counts).collect();
         fn differs<T: PartialEq>(
             ways: &[&MethodSettings],
@@ -275,8 +275,8 @@ impl Labels {
     /// The search and what else tells this way from the others, without the stage.
     #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
-        if is_papers_loop(s) {
-            return PAPERS_LOOP.to_owned();
+        if is_rbm_baseline(s) {
+            return RBM_BASELINE.to_owned();
         }
         let mut name = s.method.to_string();
         if s.method.is_mesh() {
@@ -300,12 +300,12 @@ impl Labels {
     }
 }
 
-/// What reports call the loop of the papers.
-pub const PAPERS_LOOP: &str = "papers' loop";
+/// What reports call the RBM baseline.
+pub const RBM_BASELINE: &str = "RBM baseline";
 
-/// Whether settings are those of [`papers_loop`].
+/// Whether settings are those of [`rbm_baseline`].
 #[must_use]
-pub fn is_papers_loop(s: &MethodSettings) -> bool {
+pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
     s.method == Solver::Circle
         && matches!(s.max_steps, Some(20 | 25))
         && s.map_source == Some(MapSource::Binary)
@@ -359,20 +359,20 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_loop_is_added_to_each_stage_and_size_once() {
+    fn the_rbm_baseline_is_added_to_each_stage_and_size_once() {
         let mut plan = Plan::new(vec![spindle()], &axes().combinations());
-        plan.add_papers_loop();
-        plan.add_papers_loop();
+        plan.add_rbm_baseline();
+        plan.add_rbm_baseline();
         let papers = plan
             .cases
             .iter()
-            .filter(|c| is_papers_loop(&c.settings))
+            .filter(|c| is_rbm_baseline(&c.settings))
             .count();
         assert_eq!((papers, plan.cases.len()), (4, 36));
         let mut beveled = spindle();
         beveled.scene.objects[0].offset.bevel = 0.3;
         assert_eq!(
-            papers_loop(&beveled, &plan.cases[0].settings).max_steps,
+            rbm_baseline(&beveled, &plan.cases[0].settings).max_steps,
             Some(25)
         );
     }
@@ -384,12 +384,12 @@ mod tests {
         assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
         assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
         let mut plan = Plan::new(vec![spindle()], &Axes::default().combinations());
-        plan.add_papers_loop();
+        plan.add_rbm_baseline();
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         assert_eq!(labels.way(&plan.cases[0].settings), Method::ALL[0].name());
         assert_eq!(
             labels.way(&plan.cases.last().unwrap().settings),
-            PAPERS_LOOP
+            RBM_BASELINE
         );
     }
 }

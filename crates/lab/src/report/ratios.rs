@@ -1,11 +1,11 @@
 //! Times in proportion to a rival's, over all views: the tables that say which search is faster, and how sure that is.
 
-use super::plan::{is_papers_loop, variant};
+use super::plan::{is_rbm_baseline, variant};
 use super::row::Row;
 use super::stats::{self, Interval};
 use crate::method::{Method, MethodSettings};
 
-/// One way of drawing against a rival: the loop of the papers in the same stage, or a mesh.
+/// One way of drawing against a rival: the RBM baseline in the same stage, or a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ratio {
     /// The way, without its size.
@@ -27,11 +27,11 @@ pub struct Ratio {
     pub normal_rms: Option<f64>,
 }
 
-/// Every way's ratio to the loop of the papers, in the order in which the ways first appear. Rows whose clocks disagree count for
+/// Every way's ratio to the RBM baseline, in the order in which the ways first appear. Rows whose clocks disagree count for
 /// nothing, and neither do pictures of which the rival has no usable row.
 #[must_use]
-pub fn over_papers_loop(rows: &[Row]) -> Vec<Ratio> {
-    let pairs = |way: &MethodSettings| of_way(rows, way, |row| papers_row(rows, row));
+pub fn over_rbm_baseline(rows: &[Row]) -> Vec<Ratio> {
+    let pairs = |way: &MethodSettings| of_way(rows, way, |row| baseline_row(rows, row));
     ways(rows).iter().filter_map(pairs).collect()
 }
 
@@ -166,10 +166,10 @@ fn of_way<'a>(
     })
 }
 
-/// The papers' loop that shows the same picture in the same stage.
-fn papers_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
+/// The RBM baseline that shows the same picture in the same stage.
+fn baseline_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     rows.iter().find(|r| {
-        is_papers_loop(&r.settings)
+        is_rbm_baseline(&r.settings)
             && r.view == row.view
             && (r.settings.width, r.settings.height, r.settings.stage)
                 == (row.settings.width, row.settings.height, row.settings.stage)
@@ -209,7 +209,7 @@ fn paired(a: &Row, b: &Row, pass: usize) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::plan::papers_loop;
+    use super::super::plan::rbm_baseline;
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
@@ -217,7 +217,7 @@ mod tests {
     use revmap::settings::DrawStage;
 
     fn papers(mut row: Row) -> Row {
-        row.settings = papers_loop(&spindle(), &row.settings);
+        row.settings = rbm_baseline(&spindle(), &row.settings);
         row
     }
 
@@ -229,7 +229,7 @@ mod tests {
             &[(None, 20.0), (None, 60.0)],
             &[(None, 40.0), (None, 22.0)],
         ]));
-        let ratios = over_papers_loop(&[ours, theirs]);
+        let ratios = over_rbm_baseline(&[ours, theirs]);
         assert_eq!(ratios.len(), 2);
         let time = ratios[0].time;
         assert!(
@@ -248,7 +248,7 @@ mod tests {
             (a.view, b.view) = (view, view);
             rows.extend([a, b]);
         }
-        let ratio = &over_papers_loop(&rows)[0];
+        let ratio = &over_rbm_baseline(&rows)[0];
         assert!((ratio.time.value - 0.5).abs() < 1e-12);
         assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
         assert_eq!(ratio.pictures, 2);
@@ -260,7 +260,7 @@ mod tests {
                 max: p99,
             });
         }
-        let ratio = &over_papers_loop(&rows)[0];
+        let ratio = &over_rbm_baseline(&rows)[0];
         assert!(ratio.depth_p99.is_some_and(|p| (p - 0.02).abs() < 1e-12));
         assert_eq!(ratio.depth_worst, Some(0.04));
     }
@@ -269,13 +269,13 @@ mod tests {
     fn what_cannot_be_trusted_counts_for_nothing() {
         let lies = row(&[&[(Some(0.04), 20.0)]]);
         let fine = papers(row(&[&[(Some(20.0), 20.0)]]));
-        let ratios = over_papers_loop(&[lies.clone(), fine.clone()]);
-        assert_eq!(ratios.len(), 1, "only the papers' loop itself");
+        let ratios = over_rbm_baseline(&[lies.clone(), fine.clone()]);
+        assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
         // A rival that lies leaves nothing to compare with, and another stage or size is no rival.
-        assert!(over_papers_loop(&[row(&[&[(None, 20.0)]]), papers(lies)]).is_empty());
+        assert!(over_rbm_baseline(&[row(&[&[(None, 20.0)]]), papers(lies)]).is_empty());
         let mut compute = row(&[&[(None, 20.0)]]);
         compute.settings.stage = DrawStage::Compute;
-        assert_eq!(over_papers_loop(&[compute, fine]).len(), 1);
+        assert_eq!(over_rbm_baseline(&[compute, fine]).len(), 1);
     }
 
     /// A run that was ended in its second pass: the picture that lacks the pass must not shift the mean.
@@ -292,7 +292,7 @@ mod tests {
             (a.view, b.view) = (view, view);
             rows.extend([a, b]);
         }
-        let time = over_papers_loop(&rows)[0].time;
+        let time = over_rbm_baseline(&rows)[0].time;
         assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
     }
 

@@ -12,8 +12,8 @@ use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::Offset;
 
-/// Columns of `results.csv`, in their order.
-pub const COLUMNS: [&str; 31] = [
+/// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of the passes' medians.
+pub const COLUMNS: [&str; 33] = [
     "scene",
     "technique",
     "extend",
@@ -45,7 +45,20 @@ pub const COLUMNS: [&str; 31] = [
     "flip",
     "device",
     "driver",
+    "gpu_ms_low",
+    "gpu_ms_high",
 ];
+
+/// Those that every version writes, in this order before all others.
+pub(super) const CONTRACT: [&str; 31] = {
+    let mut first = [""; 31];
+    let mut i = 0;
+    while i < first.len() {
+        first[i] = COLUMNS[i];
+        i += 1;
+    }
+    first
+};
 
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
@@ -191,10 +204,10 @@ impl Row {
     /// Whether the two clocks agree.
     #[must_use]
     pub fn clocks(&self) -> Clocks {
-        let Some(gpu_ms) = stats::median(&self.gpu_ms()) else {
+        let Some(gpu_ms) = self.typical(|s| s.gpu_ms) else {
             return Clocks::Wall;
         };
-        let frame_ms = stats::median(&self.frame_ms()).unwrap_or(0.0);
+        let frame_ms = self.typical(|s| Some(s.frame_ms)).unwrap_or(0.0);
         if (gpu_ms - frame_ms).abs() <= CLOCKS_APART * frame_ms {
             Clocks::Agree
         } else {
@@ -211,10 +224,18 @@ impl Row {
     /// The median of each pass, ms.
     #[must_use]
     pub fn pass_medians(&self) -> Vec<f64> {
-        let times = |pass: &Vec<Sample>| {
-            stats::median(&pass.iter().map(Self::sample_ms).collect::<Vec<_>>())
-        };
-        self.passes.iter().filter_map(times).collect()
+        self.medians(|s| Some(Self::sample_ms(s)))
+    }
+
+    /// The geometric mean of the passes' medians of one clock, ms.
+    fn typical(&self, of: impl Fn(&Sample) -> Option<f64>) -> Option<f64> {
+        stats::geometric(&self.medians(of)).map(|i| i.value)
+    }
+
+    fn medians(&self, of: impl Fn(&Sample) -> Option<f64>) -> Vec<f64> {
+        let median =
+            |pass: &Vec<Sample>| stats::median(&pass.iter().filter_map(&of).collect::<Vec<_>>());
+        self.passes.iter().filter_map(median).collect()
     }
 
     /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was timed.
@@ -234,7 +255,8 @@ impl Row {
             Clocks::Agree => self.gpu_ms(),
             Clocks::Wall | Clocks::Disagree { .. } => Vec::new(),
         };
-        let frame = stats::median(&self.frame_ms());
+        let time = self.time().filter(|_| !gpu.is_empty());
+        let frame = self.typical(|s| Some(s.frame_ms));
         let num = |v: Option<f64>| v.map(|v| number(v, 6)).unwrap_or_default();
         let offset = |f: fn(&Offset) -> f64| num(self.offset.as_ref().map(f));
         let e = &self.errors;
@@ -261,7 +283,7 @@ impl Row {
             self.source.map(names::source).unwrap_or_default().into(),
             search(names::format(s.map_format).into()),
             whole(self.solids),
-            num(stats::median(&gpu)),
+            num(time.map(|t| t.value)),
             num(stats::quantile(&gpu, 0.95)),
             num(frame),
             num(frame.map(|ms| 1e3 / ms)),
@@ -278,6 +300,8 @@ impl Row {
             num(e.flip),
             device.into(),
             driver.into(),
+            num(time.and_then(|t| t.ends()).map(|(low, _)| low)),
+            num(time.and_then(|t| t.ends()).map(|(_, high)| high)),
         ]
     }
 }

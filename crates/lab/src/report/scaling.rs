@@ -82,11 +82,12 @@ fn records(all: &[Growth], looks: &Looks) -> Vec<Vec<String>> {
     all.iter().map(record).collect()
 }
 
-const HEADER: [&str; 6] = [
-    "search",
+/// Columns of the table of growth.
+pub(super) const HEADER: [&str; 6] = [
+    "method",
     "stage",
-    "ms, first",
-    "ms, last",
+    "time at the least (ms)",
+    "time at the most (ms)",
     "exponent (95 % interval)",
     "exponent of the last step",
 ];
@@ -129,6 +130,12 @@ fn looks(rows: &[Row]) -> Looks {
     Looks::new(&ways)
 }
 
+/// What tells meshes apart, which look alike.
+fn fineness(way: &MethodSettings) -> Option<String> {
+    let name = way.method.to_string();
+    name.strip_prefix("mesh:").map(str::to_owned)
+}
+
 fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     let (unit, label) = match quantity {
         Quantity::Pixels => (1e6, "pixels (millions)"),
@@ -140,13 +147,12 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
         .map(|g| Series {
             name: looks.way(&g.way),
             style: looks.style(&g.way),
-            points: g
-                .points
-                .iter()
-                .map(|&(x, y)| Point {
+            points: (g.points.iter().enumerate())
+                .map(|(k, &(x, y))| Point {
                     x: x / unit,
                     y,
-                    label: None,
+                    spread: None,
+                    label: fineness(&g.way).filter(|_| k + 1 == g.points.len()),
                 })
                 .collect(),
             joined: false,

@@ -22,6 +22,12 @@ impl Interval {
         (self.high - self.low) / (2.0 * self.value)
     }
 
+    /// Both ends, where they are known.
+    #[must_use]
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        self.high.is_finite().then_some((self.low, self.high))
+    }
+
     /// Whether the two have a point in common.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {

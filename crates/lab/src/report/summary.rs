@@ -1,4 +1,4 @@
-//! The chapters that sum a benchmark up: times over those of the papers' loop and of meshes, of all pictures and of each framing.
+//! The chapters that sum a benchmark up: times over those of the RBM baseline and of meshes, of all pictures and of each framing.
 
 use super::chart::Figure;
 use super::chart::axis::Axis;
@@ -7,11 +7,11 @@ use super::covered::{Part, parts};
 use super::curves::{self, Measure};
 use super::folder::keep_figure;
 use super::looks::Looks;
-use super::names::{number, stage};
+use super::names::stage;
 use super::page::Page;
-use super::ratios::{Ratio, over_papers_loop};
+use super::ratios::{Ratio, over_rbm_baseline};
 use super::row::Row;
-use super::text::{self, percent};
+use super::text;
 use crate::method::MethodSettings;
 use revmap::error::Result;
 use revmap::settings::DrawStage;
@@ -23,23 +23,25 @@ use std::path::Path;
 /// When a chart cannot be written.
 pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> Result<()> {
     let parts = parts(rows);
-    if !over_papers_loop(rows).is_empty() {
-        page.chapter("Against the papers' loop");
+    if !over_rbm_baseline(rows).is_empty() {
+        page.chapter("Against the RBM baseline");
         page.text(
-            "Times over that of the papers' loop in the same stage. Ratios are geometric means \
-             over all pictures, below 1 is faster; single pictures: the least and the greatest ratio of one of them. Wrong pixels are those of all pictures together; depth p99 is the geometric mean over the pictures of each one's 99th percentile, with that of the worst beside it; errors of normals are the root mean square of the \
-             worst picture.",
+            "Each method's time of a frame over that of the RBM baseline in the same stage: geometric means over all pictures. Below 1 the method is faster.",
         );
         for part in &parts {
-            let ratios = over_papers_loop(&part.rows);
+            let ratios = over_rbm_baseline(&part.rows);
             if ratios.is_empty() {
                 continue;
             }
             page.heading(&part.heading());
             let figure = ratio_chart(part.views(), &ratios, looks);
             keep_figure(folder, &format!("ratios{}", part.ending(&parts)), &figure)?;
-            page.figure(&figure, "Each marker is a search's time over that of the papers' loop in the same stage, with its 95 % interval, and its number at the right; further left is faster.");
-            ratio_table(page, &ratios, looks);
+            page.figure(&figure, "Time of each method over that of the RBM baseline in the same stage, with its 95 % interval; the numbers at the right are the values. Further left is faster.");
+            page.table(
+                &text::RATIOS,
+                &text::ratio_records(&ratios, looks.labels()),
+                &[0, 1],
+            );
         }
     }
     mesh_tables(page, &parts);
@@ -53,7 +55,7 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
 pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<()> {
     let parts = parts(rows);
     for part in &parts {
-        let ratios = over_papers_loop(&part.rows);
+        let ratios = over_rbm_baseline(&part.rows);
         if ratios.is_empty() {
             continue;
         }
@@ -67,8 +69,9 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
         page.figure(
             &figure,
             &format!(
-                "{}: the time of each search over that of the papers' loop in the same stage, and its depth error (the geometric mean over the pictures). Filled in the fragment stage, hollow in the \
-                 compute stage; lower is more exact, further left is faster, and what lies on the dashed line is beaten by nothing in both.",
+                "{}: time of each method over that of the RBM baseline in the same stage, and its depth error (geometric means over the pictures). Filled markers: fragment \
+                 stage; hollow markers: compute stage; bars: 95 % intervals. Lower is more exact, further left is faster. No method is better in both than one on the \
+                 dashed line, the Pareto front.",
                 part.heading()
             ),
         );
@@ -76,7 +79,7 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
     Ok(())
 }
 
-/// The chart of ratios to the papers' loop over `views`.
+/// The chart of ratios to the RBM baseline over `views`.
 #[must_use]
 pub fn ratio_chart(views: &str, ratios: &[Ratio], looks: &Looks) -> Figure {
     let mut blocks = Vec::new();
@@ -98,50 +101,13 @@ pub fn ratio_chart(views: &str, ratios: &[Ratio], looks: &Looks) -> Figure {
         }
     }
     DotChart {
-        title: format!("{views}: time of a frame, the papers' loop in the same stage being 1"),
-        axis: Axis::log("time / time of the papers' loop (left is faster)"),
+        title: format!("{views}: time of a frame, the RBM baseline in the same stage being 1"),
+        axis: Axis::log("time / time of the RBM baseline (left is faster)"),
         mark: Some(1.0),
         blocks,
         legend: Vec::new(),
     }
     .figure()
-}
-
-/// The table of ratios.
-pub fn ratio_table(page: &mut Page, ratios: &[Ratio], looks: &Looks) {
-    let records: Vec<Vec<String>> = ratios
-        .iter()
-        .map(|r| {
-            vec![
-                looks.way(&r.settings),
-                stage(r.settings.stage).into(),
-                number(r.time.value, 3),
-                text::ends(&r.time),
-                format!("{} to {}", number(r.range.0, 3), number(r.range.1, 3)),
-                r.pictures.to_string(),
-                percent(r.wrong),
-                r.depth_p99.map(|v| number(v, 3)).unwrap_or_default(),
-                r.depth_worst.map(|v| number(v, 3)).unwrap_or_default(),
-                r.normal_rms.map(|v| number(v, 3)).unwrap_or_default(),
-            ]
-        })
-        .collect();
-    page.table(
-        &[
-            "search",
-            "stage",
-            "time / papers' loop",
-            "95 % interval",
-            "single pictures",
-            "pictures",
-            "wrong pixels",
-            "depth p99 (texels)",
-            "worst (texels)",
-            "normals (degrees)",
-        ],
-        &records,
-        &[0, 1],
-    );
 }
 
 /// The default search against meshes, where both were measured.
@@ -156,10 +122,9 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
     }
     page.chapter("Against meshes");
     page.text(
-        "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment \
-         stage, geometric means over all pictures; below 1 the search is faster. A ratio is one of equals in the pictures in which the mesh's depth error \
-         (99th percentile) is no worse; the last column counts them. Depths (99th percentile) are geometric means over the pictures, of the search and of the mesh. \"Coarsest no worse\" takes in each picture the coarsest of the meshes measured for which that holds, and leaves out \
-         pictures without one.",
+        "The same solid as triangles, rasterised by the same device with the same shading. Times are those of the default search over those of the mesh in the fragment stage, geometric means over \
+         all pictures; below 1 the search is faster. Times compare like with like only in pictures in which the mesh is at least as accurate in depth (99th percentile); the last column counts these. \
+         \"Coarsest as accurate\" takes, in each picture, the coarsest measured mesh that is at least as accurate, and excludes pictures without one.",
     );
     for (part, records) in tables {
         page.heading(&part.heading());
@@ -171,7 +136,7 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::framing::Framing;
-    use super::super::plan::papers_loop;
+    use super::super::plan::rbm_baseline;
     use super::super::row::tests::row;
     use super::super::view::tests::spindle;
     use super::*;
@@ -179,7 +144,7 @@ mod tests {
     use crate::method::MethodSettings;
     use revmap::settings::Solver;
 
-    /// A view drawn by the papers' loop and in half its time by the default, as the clocks tell it.
+    /// A view drawn by the RBM baseline and in half its time by the default, as the clocks tell it.
     fn drawn(view: usize, framing: Framing, gpu_over_frame: f64) -> [Row; 2] {
         let timed = |ms: f64, settings| {
             let row = row(&[&[(Some(gpu_over_frame * ms), ms)]]);
@@ -196,7 +161,7 @@ mod tests {
         };
         [
             timed(5.0, ours),
-            timed(10.0, papers_loop(&spindle(), &ours)),
+            timed(10.0, rbm_baseline(&spindle(), &ours)),
         ]
     }
 

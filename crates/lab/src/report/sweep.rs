@@ -1,6 +1,6 @@
 //! Which budgets, maps and searches a chart of speed against accuracy sweeps over.
 
-use super::plan::{Axes, Plan, papers_loop, plain};
+use super::plan::{Axes, Plan, plain, rbm_baseline};
 use super::view::View;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
@@ -62,7 +62,7 @@ impl Sweep {
     }
 
     /// The plan over these views: for each view the sweeps over steps, over rows with every source, and over formats, over meshes, and the
-    /// papers' loop.
+    /// RBM baseline.
     #[must_use]
     pub fn plan(&self, views: Vec<View>) -> Plan {
         let mut plan = Plan {
@@ -135,7 +135,7 @@ impl Sweep {
                         plan.add(view, plain(&base, Method::Mesh { segments, rings }));
                     }
                 }
-                let papers = papers_loop(&plan.views[view], &base);
+                let papers = rbm_baseline(&plan.views[view], &base);
                 plan.add(view, papers);
             }
         }
@@ -180,7 +180,7 @@ pub fn has_rows(method: Method) -> bool {
     method.is_of_cones()
 }
 
-/// Maps are swept with the papers' search and with `live`, the most exact of those that read them, or with what is named in place of both: the
+/// Maps are swept with `circle` and with `live`, the most exact of those that read them, or with what is named in place of both: the
 /// others read the same maps in the same way. The default reads none.
 fn sweeps_maps(method: Method, all: &[Method]) -> bool {
     let usual = [Method::Search(Solver::Circle), Method::Search(Solver::Live)];
@@ -199,7 +199,7 @@ fn ample(method: Method, steps: &[u32]) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plan::is_papers_loop;
+    use super::super::plan::is_rbm_baseline;
     use super::super::view::tests::spindle;
     use super::*;
 
@@ -216,7 +216,7 @@ mod tests {
         let of = |method| {
             plan.cases
                 .iter()
-                .filter(move |c| c.settings.method == method && !is_papers_loop(&c.settings))
+                .filter(move |c| c.settings.method == method && !is_rbm_baseline(&c.settings))
         };
         // Steps in both stages, rows x sources and formats in one; a format that is the default is there already.
         let circle = of(Method::Search(Solver::Circle)).count();
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(
             plan.cases
                 .iter()
-                .filter(|c| is_papers_loop(&c.settings))
+                .filter(|c| is_rbm_baseline(&c.settings))
                 .count(),
             2
         );

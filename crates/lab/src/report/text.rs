@@ -2,8 +2,8 @@
 
 use super::covered::{PICTURES, parts, pictures};
 use super::names::{number, stage};
-use super::plan::{Labels, PAPERS_LOOP};
-use super::ratios::{Duel, over_meshes, over_papers_loop};
+use super::plan::{Labels, RBM_BASELINE};
+use super::ratios::{Duel, Ratio, over_meshes, over_rbm_baseline};
 use super::row::Row;
 use super::stats::Interval;
 
@@ -61,44 +61,57 @@ pub fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share, 3))
 }
 
+/// Columns of the table of times over the RBM baseline's.
+pub const RATIOS: [&str; 10] = [
+    "method",
+    "stage",
+    "time / RBM baseline",
+    "95 % interval",
+    "range over pictures",
+    "pictures",
+    "wrong pixels",
+    "depth p99 (h/512)",
+    "worst depth p99 (h/512)",
+    "worst normal rms (°)",
+];
+
+/// Its records.
+#[must_use]
+pub fn ratio_records(ratios: &[Ratio], labels: &Labels) -> Vec<Vec<String>> {
+    let record = |r: &Ratio| {
+        vec![
+            labels.way(&r.settings),
+            stage(r.settings.stage).to_owned(),
+            number(r.time.value, 3),
+            ends(&r.time),
+            range(r.range),
+            r.pictures.to_string(),
+            percent(r.wrong),
+            maybe(r.depth_p99),
+            maybe(r.depth_worst),
+            maybe(r.normal_rms),
+        ]
+    };
+    ratios.iter().map(record).collect()
+}
+
 /// The table of ratios, headed.
 #[must_use]
 pub fn ratios(rows: &[Row]) -> String {
     let labels = Labels::new(rows.iter().map(|r| &r.settings));
-    let mut lines = vec![
-        [
-            "search",
-            "stage",
-            "time / papers",
-            "95 % interval",
-            "single pictures",
-            "wrong pixels",
-            "depth p99 (texels)",
-            "worst picture's",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-    ];
-    for ratio in over_papers_loop(rows) {
-        lines.push(vec![
-            labels.way(&ratio.settings),
-            stage(ratio.settings.stage).to_owned(),
-            number(ratio.time.value, 3),
-            ends(&ratio.time),
-            format!(
-                "{} to {}",
-                number(ratio.range.0, 3),
-                number(ratio.range.1, 3)
-            ),
-            percent(ratio.wrong),
-            ratio.depth_p99.map(|p| number(p, 3)).unwrap_or_default(),
-            ratio.depth_worst.map(|p| number(p, 3)).unwrap_or_default(),
-        ]);
+    let records = ratio_records(&over_rbm_baseline(rows), &labels);
+    if records.is_empty() {
+        return format!("no ratios: no usable row of the {RBM_BASELINE}\n");
     }
-    if lines.len() == 1 {
-        return format!("no ratios: no usable row of the {PAPERS_LOOP}\n");
-    }
-    table(&lines)
+    table(&[vec![RATIOS.map(str::to_owned).to_vec()], records].concat())
+}
+
+fn range((least, most): (f64, f64)) -> String {
+    format!("{} to {}", number(least, 3), number(most, 3))
+}
+
+fn maybe(value: Option<f64>) -> String {
+    value.map(|v| number(v, 3)).unwrap_or_default()
 }
 
 /// An interval's ends, as `0.40 to 0.44`.
@@ -113,42 +126,41 @@ pub fn ends(i: &Interval) -> String {
 
 /// Columns of the table of the default search against meshes.
 pub const AGAINST_MESHES: [&str; 9] = [
-    "search / mesh",
+    "method / mesh",
     "stage",
     "time / mesh",
     "95 % interval",
-    "single pictures",
+    "range over pictures",
     "pictures",
-    "depth p99 (texels)",
-    "the mesh's",
-    "pictures, mesh no worse",
+    "depth p99 (h/512)",
+    "mesh depth p99 (h/512)",
+    "mesh at least as accurate",
 ];
 
-/// Its records: the default search in each stage over each mesh, then over the coarsest that is no worse; none without both.
+/// Its records: the default search in each stage over each mesh, then over the coarsest that is at least as accurate; none without both.
 #[must_use]
 pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
-    let texels = |p: Option<f64>| p.map(|p| number(p, 3)).unwrap_or_default();
     let record = |duel: Duel| {
         let ours = &duel.ours;
         let mesh = duel
             .mesh
-            .map_or("coarsest no worse".into(), |m| m.to_string());
+            .map_or("coarsest as accurate".into(), |m| m.to_string());
         vec![
             format!("{} / {mesh}", ours.settings.method),
             stage(ours.settings.stage).to_owned(),
             number(ours.time.value, 3),
             ends(&ours.time),
-            format!("{} to {}", number(ours.range.0, 3), number(ours.range.1, 3)),
+            range(ours.range),
             ours.pictures.to_string(),
-            texels(ours.depth_p99),
-            texels(duel.mesh_p99),
+            maybe(ours.depth_p99),
+            maybe(duel.mesh_p99),
             duel.no_worse.to_string(),
         ]
     };
     over_meshes(rows).into_iter().map(record).collect()
 }
 
-/// The tables that sum a run up: over the papers' loop, and over meshes where there are any, of all pictures and of each framing; then the
+/// The tables that sum a run up: over the RBM baseline, and over meshes where there are any, of all pictures and of each framing; then the
 /// pictures themselves.
 #[must_use]
 pub fn summary(rows: &[Row]) -> String {

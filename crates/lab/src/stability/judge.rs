@@ -9,7 +9,8 @@
 //! - a tenth of a texel of 512 rows: what the maps and the pieces promise;
 //! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays are 32-bit numbers;
 //! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's direction, of their product, and of the
-//!   reference's own number. Frames store distances in 32 bits.
+//!   reference's own number. Frames store distances in 32 bits;
+//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes with the place.
 //!
 //! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is outside of what the 3 x 3 pixels about
 //! it have in the reference, by more than [`COLOR`]. A shadow's edge may lie a pixel off, and a texture may be filtered.
@@ -134,7 +135,10 @@ impl Truth {
         };
         let half_diagonal = camera.middle[0].hypot(camera.middle[1]) * camera.right.length();
         let (mut extent, mut distance, mut texel) = (0.0f64, 0.0f64, f64::INFINITY);
+        let mut rate = 1.0f64;
         for object in &scene.objects {
+            let cells = object.repeat.into_iter().max().unwrap_or(1);
+            rate = rate.max((1.0 + object.offset.bevel) * f64::from(cells));
             for copy in object.placements() {
                 let local = copy.rotation.conjugate() * (eye - copy.position) / copy.scale;
                 let far = (local - DVec3::new(0.0, 0.0, 0.5)).length();
@@ -151,7 +155,7 @@ impl Truth {
             reference,
             camera,
             eye,
-            tolerance: [silhouette, silhouette + 4.0 * ROUNDING * distance],
+            tolerance: [silhouette, silhouette + 4.0 * ROUNDING * distance].map(|t| rate * t),
             texel: if texel.is_finite() { texel } else { TEXEL },
             colors: scene.shadow != Shadow::Soft,
         })
@@ -219,7 +223,9 @@ impl Truth {
         let [silhouette, tolerance] = self.tolerance;
         let fine = 0.05 * silhouette;
         if drawn {
-            let there = self.reference.clearance_within(ray, [z, z], fine);
+            // A hit on a face between cells may be rounded into the cell beyond, which need not be solid there.
+            let about = [z * (1.0 - 4.0 * ROUNDING), z * (1.0 + 4.0 * ROUNDING)];
+            let there = self.reference.clearance_within(ray, about, fine);
             if there > tolerance {
                 return true;
             }
@@ -245,7 +251,7 @@ fn not_finite(frame: &Frame) -> usize {
         CHANNELS
             .iter()
             .zip(values)
-            .any(|(name, v)| !v.is_finite() && !(*name == "Z" && v == f32::INFINITY))
+            .any(|(name, v)| !(v.is_finite() || *name == "Z" && v == f32::INFINITY))
     };
     (0..frame.pixels())
         .into_par_iter()

@@ -299,17 +299,23 @@ impl Draft {
             with(&|d| drop(d.lines.remove(k)));
         }
         for k in 0..self.lights.len() {
-            with(&|d| drop(d.lights.remove(k)));
+            with(&|d| {
+                d.lights.remove(k);
+            });
         }
         for (k, object) in self.objects.iter().enumerate() {
             for n in 0..object.keys.len() {
                 with(&|d| drop(d.objects[k].keys.remove(n)));
             }
             for n in 0..object.copies.len() {
-                with(&|d| drop(d.objects[k].copies.remove(n)));
+                with(&|d| {
+                    d.objects[k].copies.remove(n);
+                });
             }
             for n in 0..object.polygon.len() {
-                with(&|d| drop(d.objects[k].polygon.remove(n)));
+                with(&|d| {
+                    d.objects[k].polygon.remove(n);
+                });
             }
         }
         all

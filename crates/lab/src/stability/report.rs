@@ -23,7 +23,7 @@ use std::path::Path;
 const FLOOR: f64 = 1e-3;
 
 /// Trials of a case by a search, in both stages.
-fn of<'a>(outcome: &'a Outcome, case: usize, solver: Solver) -> impl Iterator<Item = &'a Trial> {
+fn of(outcome: &Outcome, case: usize, solver: Solver) -> impl Iterator<Item = &Trial> {
     let own = move |t: &&Trial| t.case == case && t.solver == solver;
     outcome.trials.iter().filter(own)
 }
@@ -191,6 +191,7 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
                 .filter_map(|t| {
                     let judged = t.judged.as_ref().ok()?;
                     Some(Point {
+                        spread: None,
                         x: case.steps[t.step].value,
                         y: (100.0 * judged.share()).max(FLOOR),
                         label: None,

@@ -106,7 +106,7 @@ fn a_runs_folder_is_whole() {
     .unwrap();
     folder::write(folder.path(), &plan, &outcome, &machine).unwrap();
     overview::write(folder.path(), &plan, &outcome, &machine, &album).unwrap();
-    for (file, records) in [("results.csv", 6), ("left-out.csv", 2)] {
+    for (file, records) in [("results.csv", 6), ("excluded.csv", 2)] {
         let table = revmap_lab::report::csv::Table::load(&folder.path().join(file)).unwrap();
         assert_eq!(table.records.len(), records, "{file}");
     }

@@ -342,6 +342,46 @@ fn eyes_may_be_inside() {
     }
 }
 
+/// A camera that is shifted by whole pixels draws what its neighbours drew, by every method.
+#[test]
+fn a_shift_moves_the_picture() {
+    let plain = scene_of(shapes::vase(), eye(20.0, 1.8));
+    let mut shifted = plain.clone();
+    shifted.camera.shift = [3.0, -2.0];
+    let mesh = settings(256, 512);
+    let search = |stage| {
+        let settings = Settings {
+            stage,
+            ..Settings::from(&mesh)
+        };
+        move |scene: &Scene| {
+            let drawn = revmap::gpu::draw(pipelines().device(), scene, &settings);
+            drawn.unwrap().frame
+        }
+    };
+    type Draw<'a> = &'a dyn Fn(&Scene) -> Frame;
+    let by: [(&str, Draw); 4] = [
+        ("reference", &|scene| reference(scene, &mesh)),
+        ("fragment", &search(DrawStage::Fragment)),
+        ("compute", &search(DrawStage::Compute)),
+        ("mesh", &|scene| draw(scene, &mesh)),
+    ];
+    for (name, draw) in by {
+        let (before, after) = (draw(&plain), draw(&shifted));
+        let (mut hits, mut wrong) = (0, 0);
+        for y in 2..before.height as usize {
+            for x in 0..before.width as usize - 3 {
+                let from = before.distance[(y - 2) * before.width as usize + x + 3];
+                let to = after.distance[y * before.width as usize + x];
+                hits += usize::from(from.is_finite());
+                let same = from == to || (from - to).abs() < 1e-4;
+                wrong += usize::from(!same);
+            }
+        }
+        assert!(hits > 4000 && wrong <= 3, "{name}: {wrong} of {hits}");
+    }
+}
+
 fn crowd() -> Scene {
     let mut scene = scene_of(shapes::vase(), eye(20.0, 3.0));
     let place = |k: usize, z: f64| {

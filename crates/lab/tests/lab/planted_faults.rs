@@ -8,14 +8,14 @@ use revmap_lab::report::chart::front::front;
 use revmap_lab::report::curves::{self, Measure};
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
-use revmap_lab::report::plan::is_papers_loop;
-use revmap_lab::report::ratios::over_papers_loop;
+use revmap_lab::report::plan::is_rbm_baseline;
+use revmap_lab::report::ratios::over_rbm_baseline;
 use revmap_lab::report::row::{Clocks, Row};
 use std::sync::atomic::AtomicBool;
 
 fn of(rows: &[Row], method: Method) -> Vec<&Row> {
     rows.iter()
-        .filter(|r| r.settings.method == method && !is_papers_loop(&r.settings))
+        .filter(|r| r.settings.method == method && !is_rbm_baseline(&r.settings))
         .collect()
 }
 
@@ -48,7 +48,7 @@ fn without_a_fault_all_is_as_it_was_planted() {
         ),
         (6, 0, false)
     );
-    let ratios = over_papers_loop(&outcome.rows);
+    let ratios = over_rbm_baseline(&outcome.rows);
     let live = ratios
         .iter()
         .find(|r| r.settings.method == Solver::Live)
@@ -64,7 +64,7 @@ fn without_a_fault_all_is_as_it_was_planted() {
 #[test]
 fn a_search_that_sleeps_is_charted_slower() {
     let outcome = measured(Fault::Sleeps);
-    let ratios = over_papers_loop(&outcome.rows);
+    let ratios = over_rbm_baseline(&outcome.rows);
     let live = ratios
         .iter()
         .find(|r| r.settings.method == Solver::Live)
@@ -106,7 +106,7 @@ fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
         [Method::Search(Solver::Circle)],
         "it must not stand on the front"
     );
-    let ratio = &over_papers_loop(&outcome.rows)[0];
+    let ratio = &over_rbm_baseline(&outcome.rows)[0];
     assert!(ratio.wrong > 0.2 && ratio.depth_p99.unwrap() > 10.0);
 }
 
@@ -118,12 +118,12 @@ fn a_clock_that_lies_is_rejected() {
         assert_eq!(row.time(), None);
     }
     assert!(
-        over_papers_loop(&outcome.rows)
+        over_rbm_baseline(&outcome.rows)
             .iter()
             .all(|r| r.settings.method != Solver::Live)
     );
     assert!(!on_front(&outcome.rows).contains(&Method::Search(Solver::Live)));
-    let marked = folder::left_out(&plan(), &outcome);
+    let marked = folder::excluded(&plan(), &outcome);
     assert_eq!(marked.records.len(), 2);
     assert!(
         marked.records[0][4].contains("more than 15 % apart"),

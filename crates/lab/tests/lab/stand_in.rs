@@ -8,7 +8,7 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::measure::{Bench, Limits, Measured, Sample, Subject, Watch, measure};
-use revmap_lab::report::plan::{Axes, Plan, is_papers_loop};
+use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::view::View;
 use revmap_reference as reference;
 use std::cell::RefCell;
@@ -98,7 +98,11 @@ impl Bench for StandIn {
         self.refusal(settings)?;
         self.made += 1;
         let live = settings.method == Solver::Live;
-        let base = if is_papers_loop(settings) { 20.0 } else { 10.0 };
+        let base = if is_rbm_baseline(settings) {
+            20.0
+        } else {
+            10.0
+        };
         let frame_ms = if live && self.fault == Fault::Sleeps {
             base * 3.0
         } else {
@@ -158,7 +162,7 @@ fn views() -> Vec<View> {
     ]
 }
 
-/// Two searches and the papers' loop on both views, small.
+/// Two searches and the RBM baseline on both views, small.
 pub fn plan() -> Plan {
     let axes = Axes {
         stages: vec![DrawStage::Fragment],
@@ -167,7 +171,7 @@ pub fn plan() -> Plan {
         ..Axes::default()
     };
     let mut plan = Plan::new(views(), &axes.combinations());
-    plan.add_papers_loop();
+    plan.add_rbm_baseline();
     plan
 }
 

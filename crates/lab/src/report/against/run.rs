@@ -1,7 +1,7 @@
 //! A run read back from its folder.
 
 use crate::report::csv::Table;
-use crate::report::row::COLUMNS;
+use crate::report::row::{COLUMNS, CONTRACT};
 use crate::report::stats;
 use revmap::error::{Error, Result, Stage};
 use std::collections::HashMap;
@@ -15,8 +15,8 @@ pub(super) struct Run {
     pub(super) medians: HashMap<usize, Vec<f64>>,
 }
 
-/// Columns that make a row the papers' loop, and their values.
-const LOOP: [(&str, &[&str]); 4] = [
+/// Columns that make a row the RBM baseline, and their values.
+const BASELINE: [(&str, &[&str]); 4] = [
     ("solver", &["circle"]),
     ("max_steps", &["20", "25"]),
     ("map_source", &["binary"]),
@@ -27,7 +27,8 @@ impl Run {
     /// Reads the folder of a run.
     pub(super) fn load(folder: &Path) -> Result<Self> {
         let results = Table::load(&folder.join("results.csv"))?;
-        if results.header != COLUMNS {
+        // Later versions may add columns.
+        if !results.header.starts_with(&CONTRACT.map(str::to_owned)) {
             return Err(Error::new(
                 Stage::Report,
                 "has other columns than this version writes; measure again",
@@ -89,15 +90,16 @@ impl Run {
         })
     }
 
-    /// The passes' medians of a row (counted from 1), each over that of the papers' loop which shows the same picture in the same stage.
-    pub(super) fn over_loop(&self, row: usize) -> Option<Vec<f64>> {
+    /// The passes' medians of a row (counted from 1), each over that of the RBM baseline which shows the same picture in the same stage.
+    pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
         let at = |name: &str| COLUMNS.iter().position(|c| *c == name);
         let record = self.results.records.get(row.checked_sub(1)?)?;
-        let is_loop = |r: &[String]| {
-            LOOP.iter()
+        let is_baseline = |r: &[String]| {
+            BASELINE
+                .iter()
                 .all(|(c, values)| at(c).is_some_and(|k| values.contains(&r[k].as_str())))
         };
-        if is_loop(record) {
+        if is_baseline(record) {
             return None;
         }
         let picture = [
@@ -120,7 +122,7 @@ impl Run {
             .results
             .records
             .iter()
-            .position(|r| is_loop(r) && same(r))?
+            .position(|r| is_baseline(r) && same(r))?
             + 1;
         let (own, rival) = (self.medians.get(&row)?, self.medians.get(&rival)?);
         Some(own.iter().zip(rival).map(|(a, b)| a / b).collect())
@@ -131,6 +133,9 @@ impl Run {
         let Some(record) = self.results.records.first() else {
             return String::new();
         };
-        record[COLUMNS.len() - 2..].join(", ")
+        let named = |name: &str| self.results.column(name).ok().map(|at| record[at].as_str());
+        [named("device"), named("driver")]
+            .map(Option::unwrap_or_default)
+            .join(", ")
     }
 }

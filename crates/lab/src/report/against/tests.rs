@@ -58,13 +58,15 @@ fn planted_changes_are_found() {
     assert_eq!(back.pairs[0].better.len(), 1);
 }
 
-/// One run had a machine of half the speed: the papers' loop, in both, tells so, and nothing counts as slower but what is.
+/// One run had a machine of half the speed: the RBM baseline, in both, tells so, and nothing counts as slower but what is.
 #[test]
 fn a_slower_machine_is_told_from_a_slower_search() {
     let papers = |times| {
         let mut row = timed(times, DrawStage::Fragment);
-        row.settings =
-            crate::report::plan::papers_loop(&crate::report::view::tests::spindle(), &row.settings);
+        row.settings = crate::report::plan::rbm_baseline(
+            &crate::report::view::tests::spindle(),
+            &row.settings,
+        );
         row.source = row.settings.map_source;
         row
     };
@@ -89,7 +91,7 @@ fn a_slower_machine_is_told_from_a_slower_search() {
         [Verdict::Slower, Verdict::Same, Verdict::Slower]
     );
     assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
-    assert!(as_text(&found).contains("the papers' loop itself differs"));
+    assert!(as_text(&found).contains("the RBM baseline itself differs"));
 }
 
 #[test]

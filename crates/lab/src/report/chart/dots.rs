@@ -181,6 +181,7 @@ impl DotChart {
         Figure {
             width: WIDTH,
             height: below + EDGE,
+            top: top - 6.0,
             title: self.title.clone(),
             marks,
         }
@@ -206,8 +207,8 @@ mod tests {
             },
         };
         DotChart {
-            title: "Time over that of the papers' loop".into(),
-            axis: Axis::log("time / time of the papers' loop"),
+            title: "Time over that of the RBM baseline".into(),
+            axis: Axis::log("time / time of the RBM baseline"),
             mark: Some(1.0),
             blocks: vec![
                 Block {

@@ -1,4 +1,5 @@
-//! Charts as plain figures of polygons, lines and words, written as SVG for pages and as pixels for places that show no SVG.
+//! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for papers, and as pixels for
+//! places that show neither.
 //!
 //! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each series has a marker of its own as well, so
 //! that a print in grey still reads.
@@ -8,6 +9,7 @@ pub mod dots;
 pub mod front;
 mod legend;
 pub mod letters;
+pub mod pdf;
 pub mod raster;
 pub mod style;
 pub mod svg;
@@ -76,6 +78,8 @@ pub struct Figure {
     pub width: f64,
     /// Pixels down.
     pub height: f64,
+    /// Pixels of the title, above all else.
+    pub top: f64,
     /// What it shows, for those who cannot see it.
     pub title: String,
     /// Its parts, those in front last.

@@ -165,6 +165,7 @@ mod tests {
         let figure = Figure {
             width: 100.0,
             height: 80.0,
+            top: 0.0,
             title: String::new(),
             marks: vec![
                 Mark::Shape {

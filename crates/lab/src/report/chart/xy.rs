@@ -13,6 +13,8 @@ pub struct Point {
     pub x: f64,
     /// Up.
     pub y: f64,
+    /// The ends of its interval across, where they are known.
+    pub spread: Option<(f64, f64)>,
     /// A word beside it, where there is room.
     pub label: Option<String>,
 }
@@ -139,34 +141,53 @@ impl XyChart {
                 });
             }
             for (place, point) in places {
+                let ends = point.spread.and_then(|(a, b)| {
+                    let level = |x: f64| Some((at(x, point.y)?.0.clamp(plot[0], plot[2]), place.1));
+                    Some(vec![level(a)?, level(b)?])
+                });
+                if let Some(points) = ends {
+                    taken.push([points[0].0, place.1 - 1.0, points[1].0, place.1 + 1.0]);
+                    marks.push(Mark::Line {
+                        points,
+                        color: series.style.color,
+                        width: 1.2,
+                        dash: Dash::Solid,
+                    });
+                }
                 let dot = dot(series.style, place);
                 taken.push(dot.bounds());
-                dots.push((series.style.heavy, dot));
+                dots.push(((series.style.filled, !series.style.heavy), dot));
                 if let Some(label) = &point.label {
                     labels.push((place, label));
                 }
             }
         }
-        // The larger ones below, or they would hide what is near.
-        let (above, below): (Vec<_>, Vec<_>) = dots.into_iter().partition(|(heavy, _)| !heavy);
-        marks.extend(below.into_iter().chain(above).map(|(_, dot)| dot));
+        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what is near.
+        dots.sort_by_key(|(order, _)| *order);
+        marks.extend(dots.into_iter().map(|(_, dot)| dot));
         for (place, label) in labels {
             if let Some(word) = beside(place, label, plot, &taken) {
                 taken.push(word.bounds());
                 marks.push(word);
             }
         }
-        let entries = self.legend();
+        // What lies outside of the plot is not drawn, and not told.
+        let drawn = |g: &Guide| {
+            let points: Vec<_> = g.points.iter().filter_map(|p| at(p.0, p.1)).collect();
+            !clip(&points, plot).is_empty()
+        };
+        let entries = self.legend(drawn);
         let bottom = legend(&mut marks, plot[3] + 2.0 * TEXT + 32.0, &entries);
         Figure {
             width: WIDTH,
             height: bottom + EDGE,
+            top: top - 8.0,
             title: self.title.clone(),
             marks,
         }
     }
 
-    fn legend(&self) -> Vec<(String, Vec<Key>)> {
+    fn legend(&self, drawn: impl Fn(&Guide) -> bool) -> Vec<(String, Vec<Key>)> {
         let series = self.series.iter().map(|s| {
             (
                 s.name.clone(),
@@ -176,6 +197,7 @@ impl XyChart {
         let guides = self
             .guides
             .iter()
+            .filter(|g| drawn(g))
             .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
         let mut all: Vec<(String, Vec<Key>)> = Vec::new();
         for (name, key) in series.chain(guides).filter(|(name, _)| !name.is_empty()) {

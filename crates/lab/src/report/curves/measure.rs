@@ -36,7 +36,7 @@ impl Measure {
     #[must_use]
     pub fn axis(self) -> Axis {
         match self {
-            Self::Depth => Axis::log("depth error, p99 (texels of 512 rows)").from(LEAST_DEPTH),
+            Self::Depth => Axis::log("depth error, p99 (h/512)").from(LEAST_DEPTH),
             Self::Wrong => Axis::log("wrong pixels (% of pixels hit)").from(1e-4),
             Self::Normal => Axis::log("error of normals, rms (degrees)").from(1e-3),
             Self::Flip => Axis::log("FLIP, mean over the picture").from(1e-6),

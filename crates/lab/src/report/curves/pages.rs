@@ -14,7 +14,7 @@ use crate::report::names::{number, safe, stage};
 use crate::report::page::Page;
 use crate::report::pictures::Album;
 use crate::report::plan::{Labels, Plan, variant};
-use crate::report::ratios::over_papers_loop;
+use crate::report::ratios::over_rbm_baseline;
 use crate::report::row::Row;
 use crate::report::text::percent;
 use revmap::error::Result;
@@ -56,8 +56,8 @@ pub fn write(
             )?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage (filled markers: fragment, hollow: compute), its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers on the front), or the mesh, growing finer; nothing beats what lies on the dashed line \
-                 in both time and error.",
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute), its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers: at both ends, and on the front), or the mesh, growing finer; bars are 95 % intervals of times. No \
+                 method is better in both time and error than one on the dashed line, the Pareto front.",
             );
         }
         page.chapter("Maps");
@@ -115,12 +115,12 @@ fn summary(
     chapters::begin(&mut page, machine, measured);
     page.chapter("All views together");
     page.text(
-        "Times are ratios to the papers' loop in the same stage, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
+        "Times are ratios to the RBM baseline in the same stage, as geometric means over all views; errors are those of all views together, the worst view's for depth and \
          normals. A search that is fast because it misses the surface stands at the top.",
     );
     let parts = parts(&measured.rows);
     for part in &parts {
-        let ratios = over_papers_loop(&part.rows);
+        let ratios = over_rbm_baseline(&part.rows);
         page.heading(&part.heading());
         for measure in [Measure::Depth, Measure::Wrong, Measure::Normal] {
             let figure = summed(part.views(), &ratios, measure, base);
@@ -128,12 +128,12 @@ fn summary(
             keep_figure(folder, &format!("{name}{}", part.ending(&parts)), &figure)?;
             page.figure(
                 &figure,
-                "Each line is a search in one stage (filled markers: fragment, hollow: compute) over its bound on steps, or the mesh over its segments x rings (numbers: at meshes, and on the front), its time put in proportion to the papers' loop of the same stage; nothing beats what lies on the dashed line \
-                 in both.",
+                "Each line is a search in one stage (filled markers: fragment, hollow: compute) over its bound on steps, or the mesh over its segments x rings (numbers: at meshes, at both ends, and on the front), its time over that of the RBM baseline in the same stage; bars are 95 % intervals. No \
+                 method is better in both than one on the dashed line, the Pareto front.",
             );
         }
     }
-    page.chapter("Fronts");
+    page.chapter("Pareto fronts");
     page.text("Ways of drawing that are on the front of depth error against time of at least one view, best first.");
     let (header, records) = fronts(&measured.rows);
     page.table(&header, &records, &[0, 1]);
@@ -144,6 +144,15 @@ fn summary(
     chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }
+
+/// Columns of the table of Pareto fronts.
+pub(in crate::report) const FRONTS: [&str; 5] = [
+    "method",
+    "stage",
+    "on the front of",
+    "worst depth p99 (h/512)",
+    "worst wrong pixels",
+];
 
 /// Which ways are on fronts: header and records, the most frequent first.
 fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
@@ -183,14 +192,5 @@ fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
             ]
         })
         .collect();
-    (
-        [
-            "search",
-            "stage",
-            "on the front of",
-            "worst depth p99 (texels)",
-            "worst wrong pixels",
-        ],
-        records,
-    )
+    (FRONTS, records)
 }

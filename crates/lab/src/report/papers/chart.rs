@@ -1,4 +1,4 @@
-//! A table of frame rates as a chart, the print's line among those measured.
+//! A table of frame rates as a chart, the published line among those measured.
 
 use super::{Printed, SIZES, lines};
 use crate::report::chart::Figure;
@@ -10,9 +10,9 @@ use crate::report::row::Row;
 /// How a chart of a table shows rates.
 #[derive(Clone, Copy)]
 pub(super) enum Scaled {
-    /// As frames per second, beside the print's.
+    /// As frames per second, beside the published ones.
     Rate,
-    /// Over the first of each line: what can be compared with the print.
+    /// Over the first of each line: what can be compared with what was published.
     Trend,
 }
 
@@ -29,11 +29,11 @@ impl Scaled {
     pub(super) fn caption(self, letter: char) -> String {
         match self {
             Self::Rate => format!(
-                "Frames per second as {letter} grows; each line is a search in one stage, filled for fragment and hollow for compute. The dashed line is the print, a GeForce GT 630M on a solid that it \
-                 does not name: how high it lies against ours says something of that device and that picture, nothing of the searches."
+                "Frames per second as {letter} grows; each line is a method in one stage, filled markers for fragment and hollow ones for compute. The dashed line was published for a GeForce GT 630M and a solid \
+                 that is not named: its height against ours tells of device and picture, not of methods."
             ),
             Self::Trend => format!(
-                "The same rates, each over its own at the smallest {letter}: lines that rise get faster. This is what can be compared with the print, the dashed line."
+                "The same rates, each over its own at the smallest {letter}: lines that rise get faster. This can be compared with the published figures, the dashed line."
             ),
         }
     }
@@ -68,7 +68,12 @@ pub(super) fn chart(
         let Some(points) = over(rates).filter(|p| !p.is_empty()) else {
             continue;
         };
-        let point = |(x, y)| Point { x, y, label: None };
+        let point = |(x, y)| Point {
+            x,
+            y,
+            spread: None,
+            label: None,
+        };
         series.push(Series {
             name: looks.way(&line.way),
             style: looks.style(&line.way),
@@ -80,15 +85,15 @@ pub(super) fn chart(
     if series.is_empty() {
         return None;
     }
-    let print = over(table.rates[place].map(Some))?;
+    let published = over(table.rates[place].map(Some))?;
     let y = match scale {
-        // The print has to be in sight.
+        // The published line has to be in sight.
         Scaled::Rate => table.rates[place]
             .iter()
             .fold(Axis::log("frames per second"), |axis, rate| {
                 axis.with(*rate)
             }),
-        Scaled::Trend => print
+        Scaled::Trend => published
             .iter()
             .fold(Axis::linear("rate / rate at the first value"), |a, p| {
                 a.with(p.1)
@@ -106,7 +111,7 @@ pub(super) fn chart(
         x: Axis::linear(format!("{} ({unit})", table.letter)).at(table.values),
         y,
         series,
-        guides: vec![Guide::dashed("print, GeForce GT 630M", print)],
+        guides: vec![Guide::dashed("published, GeForce GT 630M", published)],
     };
     Some(figure.figure())
 }

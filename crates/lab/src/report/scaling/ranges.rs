@@ -1,7 +1,7 @@
 //! What is measured to see how time grows: sizes of pictures, numbers of copies, rows of maps.
 
 use crate::method::{Method, MethodSettings};
-use crate::report::plan::{Plan, papers_loop};
+use crate::report::plan::{Plan, rbm_baseline};
 use crate::report::suite;
 use crate::report::sweep::has_rows;
 use crate::report::view::View;
@@ -55,7 +55,7 @@ impl Ranges {
     };
 }
 
-/// The plan: every stage and search over each of the quantities, the papers' loop among them.
+/// The plan: every stage and search over each of the quantities, the RBM baseline among them.
 ///
 /// # Errors
 /// Of the solid that the program carries.
@@ -79,7 +79,7 @@ pub fn plan(stages: &[DrawStage], methods: &[Method], ranges: Ranges) -> Result<
             .iter()
             .map(|&method| MethodSettings { method, ..base })
             .collect();
-        ways.push(papers_loop(&one, &base));
+        ways.push(rbm_baseline(&one, &base));
         let sized = |s: &MethodSettings, (width, height): (u32, u32)| MethodSettings {
             width,
             height,

@@ -1,5 +1,5 @@
 use super::super::front::stairs;
-use super::super::style::{Marker, color};
+use super::super::style::{Marker, PAPER, color};
 use super::*;
 
 fn crowded() -> XyChart {
@@ -12,6 +12,7 @@ fn crowded() -> XyChart {
         },
         points: (0..7)
             .map(|k| Point {
+                spread: None,
                 x: 10.0 * 1.05f64.powi(k + index as i32),
                 y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
                 label: Some(format!("{k} steps")),
@@ -22,7 +23,7 @@ fn crowded() -> XyChart {
     XyChart {
         title: "A title that is long enough to need more than one line, since it says a great deal about what is shown below".into(),
         x: Axis::log("time of a frame (ms)"),
-        y: Axis::log("depth error, p99 (texels of 512 rows)").from(1e-3),
+        y: Axis::log("depth error, p99 (h/512)").from(1e-3),
         series: (0..9).map(series).collect(),
         guides: vec![Guide::dashed("Pareto front", stairs(&[(10.0, 1.0), (12.0, 0.1)]))],
     }
@@ -36,6 +37,7 @@ fn no_words_cover_each_other_however_crowded() {
         chart.series.truncate(1);
         chart.series[0].points = [low, high]
             .map(|v| Point {
+                spread: None,
                 x: v,
                 y: v,
                 label: None,
@@ -66,7 +68,7 @@ fn series_of_one_name_share_an_entry() {
         series.name = ["hull", "hull", "live"][k].to_owned();
     }
     let keys: Vec<_> = chart
-        .legend()
+        .legend(|_| true)
         .into_iter()
         .map(|(n, k)| (n, k.len()))
         .collect();
@@ -85,7 +87,12 @@ fn points_stand_where_their_values_are() {
         points: vec![],
     }];
     chart.series[0].points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
-        .map(|(x, y)| Point { x, y, label: None })
+        .map(|(x, y)| Point {
+            x,
+            y,
+            spread: None,
+            label: None,
+        })
         .to_vec();
     chart.guides.clear();
     let centers: Vec<_> = chart
@@ -112,4 +119,79 @@ fn lines_are_cut_at_the_plot() {
         [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]
     );
     assert!(clip(&[(-5.0, -5.0), (-1.0, 20.0)], plot).is_empty());
+}
+
+/// Three series at one place: heavy and filled, hollow, filled.
+fn piled() -> XyChart {
+    let at = |style: Style| Series {
+        name: String::new(),
+        style,
+        points: vec![Point {
+            x: 2.0,
+            y: 3.0,
+            spread: Some((1.0, 4.0)),
+            label: None,
+        }],
+        joined: false,
+    };
+    let plain = Style::new(color::BLUE, Marker::Disk);
+    let hollow = Style {
+        filled: false,
+        ..plain
+    };
+    let heavy = Style {
+        heavy: true,
+        ..plain
+    };
+    XyChart {
+        title: "A pile".into(),
+        x: Axis::log("x"),
+        y: Axis::log("y"),
+        series: vec![at(heavy), at(plain), at(hollow)],
+        guides: vec![Guide::dashed("Pareto front", vec![(2.0, 3.0)])],
+    }
+}
+
+#[test]
+fn hollow_markers_hide_nothing_and_bars_lie_below() {
+    let figure = piled().figure();
+    let fills: Vec<&str> = (figure.marks.iter())
+        .filter_map(|m| match m {
+            Mark::Shape { fill, .. } => Some(*fill),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(fills, [PAPER, color::BLUE, color::BLUE]);
+    let sizes: Vec<f64> = (figure.marks.iter())
+        .filter(|m| matches!(m, Mark::Shape { .. }))
+        .map(|m| m.bounds()[2] - m.bounds()[0])
+        .collect();
+    assert!(
+        sizes[1] > sizes[2],
+        "the heavier of the filled ones lies below"
+    );
+    // A bar from 1 to 4 is twice as long to the left of 2 as to its right, in octaves as long.
+    let bar = |m: &Mark| matches!(m, Mark::Line { color, .. } if *color == color::BLUE);
+    let first_dot = figure
+        .marks
+        .iter()
+        .position(|m| matches!(m, Mark::Shape { .. }));
+    assert_eq!(figure.marks.iter().filter(|m| bar(m)).count(), 3);
+    assert!(figure.marks.iter().rposition(bar) < first_dot);
+}
+
+#[test]
+fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
+    let words = |chart: &XyChart| {
+        let figure = chart.figure();
+        let said = figure.marks.into_iter().filter_map(|m| match m {
+            Mark::Word { text, .. } => Some(text),
+            _ => None,
+        });
+        said.collect::<Vec<_>>()
+    };
+    let mut chart = piled();
+    assert!(!words(&chart).contains(&"Pareto front".to_owned()));
+    chart.guides[0].points.push((2.5, 3.0));
+    assert!(words(&chart).contains(&"Pareto front".to_owned()));
 }

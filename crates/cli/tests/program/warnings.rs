@@ -1,0 +1,118 @@
+//! What looks unintended is said in one line each, and changes no exit code.
+
+use crate::run::{Bench, CAMERA, lines};
+
+const RENDER: &str = "render scene.toml -o out.png --size 32x24";
+
+/// Warnings of a run that is done.
+#[track_caller]
+fn warned(bench: &Bench, arguments: &str) -> Vec<String> {
+    let said = lines(&bench.done(arguments));
+    said.into_iter()
+        .filter(|l| l.starts_with("warning: "))
+        .collect()
+}
+
+#[test]
+fn scenes_that_look_unintended() {
+    let bench = Bench::new();
+    assert_eq!(warned(&bench, RENDER), [""; 0]);
+    for (set, words) in [
+        ("camera.fov_y=0.7", "camera.fov_y"),
+        ("object.0.color=[200,100,0]", "object.0.color"),
+        ("camera.target=[9,0,0.5]", "nothing is in view"),
+    ] {
+        let arguments = format!("{RENDER} --set {set}");
+        let found = warned(&bench, &arguments);
+        assert!(found.len() == 1 && found[0].contains(words), "{found:?}");
+        assert!(lines(&bench.done(&format!("{arguments} --quiet"))).is_empty());
+    }
+}
+
+#[test]
+fn options_that_are_passed_over() {
+    let bench = Bench::new();
+    for (options, words) in [
+        ("--max-steps 9", Some("--max-steps: --solver hull")),
+        ("--solver quadric --map-rows 64", Some("--map-rows")),
+        ("--solver mesh:8x8 --map-format r16", Some("--map-format")),
+        (
+            "--stage reference --solver live",
+            Some("--solver: --stage reference"),
+        ),
+        (
+            "--solver live --max-steps 99 --map-rows 64 --map-source exact --map-format r16",
+            None,
+        ),
+        ("--solver cone --map-rows 64", None),
+    ] {
+        let found = warned(&bench, &format!("{RENDER} {options}"));
+        match words {
+            Some(words) => assert!(found.len() == 1 && found[0].contains(words), "{found:?}"),
+            None => assert_eq!(found, [""; 0], "{options}"),
+        }
+    }
+    let found = warned(
+        &bench,
+        "animate scene.toml --frames 1 --size 32x24 --samples 4",
+    );
+    assert!(
+        found.len() == 1 && found[0].contains("--samples"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
+    let bench = Bench::new();
+    let ball = |x: u32, y: u32| (f64::from(x) - 31.5).hypot(f64::from(y) - 31.5) < 20.0;
+    bench.grey("light.png", 64, 64, |x, y| if ball(x, y) { 255 } else { 0 });
+    let found = warned(&bench, "render light.png -o out.png --size 32x24");
+    assert!(
+        found.len() == 1 && found[0].contains("object.0.profile: "),
+        "{found:?}"
+    );
+    assert!(found[0].contains("profile_invert = true"), "{found:?}");
+    let mended = "render light.png -o out.png --size 32x24 --set object.0.profile_invert=true";
+    assert_eq!(warned(&bench, mended), [""; 0]);
+
+    let found = warned(&bench, "bake light.png -o map.png --map-rows 64");
+    assert!(
+        found.len() == 1 && found[0].contains("profile_invert"),
+        "{found:?}"
+    );
+    bench.done("bake light.png -o map.png --map-rows 64 --profile-invert");
+    bench.refused(
+        "bake light.png -o map2.png --profile-threshold 2",
+        1,
+        &["light.png", "profile_threshold"],
+    );
+
+    bench.object("profile = \"light.png\"\nprofile_smooth = -1");
+    bench.refused(RENDER, 1, &["object.0.profile_smooth", "0 to 100"]);
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M0,5h12v35h-12z'/></svg>";
+    bench.file("a.svg", svg);
+    bench.object("profile = \"a.svg\"\nprofile_invert = true");
+    bench.refused(RENDER, 1, &["object.0.profile_invert", "pictures"]);
+}
+
+#[test]
+fn faults_of_instances_name_file_and_line() {
+    let bench = Bench::new();
+    let cone =
+        "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\ninstances = \"copies.csv\"\n";
+    bench.file("scene.toml", format!("{CAMERA}{cone}"));
+    bench.file(
+        "copies.csv",
+        "\u{feff}x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n0,0,0,0,0,0,1,1,1,1\r\n",
+    );
+    bench.done(RENDER);
+    for (row, words) in [
+        ("1,2", "has 2 values"),
+        ("0,0,0,0,0,0,1,1,0,1", "scale"),
+        ("0,0,0,0,0,0,1,1,x,1", "\"x\""),
+    ] {
+        bench.file("copies.csv", format!("0,0,0,0,0,0,1,1,1,1\n{row}\n"));
+        bench.refused(RENDER, 1, &["copies.csv", "line 2", words]);
+    }
+}

@@ -1,0 +1,111 @@
+//! What the program says to people, shells and programs.
+
+use crate::run::Bench;
+use serde_json::Value;
+
+const COMMANDS: [&str; 10] = [
+    "render",
+    "animate",
+    "bake",
+    "bench",
+    "chart",
+    "stability",
+    "devices",
+    "compare",
+    "completions",
+    "man",
+];
+
+fn text(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).unwrap()
+}
+
+/// Every example is a command line that the program takes.
+#[test]
+fn every_help_has_examples() {
+    let bench = Bench::new();
+    for command in COMMANDS {
+        let help = text(bench.done(&format!("{command} --help")).stdout);
+        let examples = help.split("Examples:\n").nth(1).unwrap();
+        let lines: Vec<_> = examples
+            .lines()
+            .map(str::trim)
+            .filter(|l| !l.is_empty())
+            .collect();
+        assert!(lines.len() >= 2, "{command}: {lines:?}");
+        let own = lines
+            .iter()
+            .filter(|l| l.contains(&format!("revmap {command}")));
+        assert!(own.count() >= 1, "{command}: {lines:?}");
+        for line in lines {
+            // With `--help` behind its options, each is read as far as it is sound.
+            let words = line.split("revmap ").nth(1).unwrap();
+            let words = words.split(['|', '>']).next().unwrap();
+            bench.done(&format!("{} --help", words.trim()));
+        }
+    }
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(bench.done(&format!("completions {shell}")).stdout);
+        for command in COMMANDS {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+    }
+    let page = text(bench.done("man").stdout);
+    assert!(
+        page.contains(".TH revmap") && page.contains("render"),
+        "{page}"
+    );
+    bench.done("man -o pages");
+    for command in COMMANDS {
+        let page = bench.path(&format!("pages/revmap-{command}.1"));
+        assert!(std::fs::read_to_string(page).unwrap().contains("Examples"));
+    }
+}
+
+#[test]
+fn programs_get_json() {
+    let bench = Bench::new();
+    let json = |arguments: &str| -> Value {
+        serde_json::from_slice(&bench.done(arguments).stdout).unwrap()
+    };
+    let devices = json("devices --json");
+    let all = devices.as_array().unwrap();
+    let preferred: Vec<_> = all.iter().filter(|d| d["preferred"] == true).collect();
+    assert_eq!(preferred.len(), 1, "{devices}");
+    let listed = text(bench.done("devices").stdout);
+    let marked: Vec<_> = listed
+        .lines()
+        .filter(|l| l.contains("taken unless"))
+        .collect();
+    assert_eq!(marked.len(), 1, "{listed}");
+    assert!(marked[0].contains(preferred[0]["name"].as_str().unwrap()));
+
+    let drawn = json("render scene.toml -o a.exr --size 32x24 --json --solver live");
+    assert_eq!(drawn["device"]["name"], preferred[0]["name"]);
+    assert_eq!(
+        (&drawn["width"], &drawn["solver"]),
+        (&32.into(), &"live".into())
+    );
+    assert!(drawn["hits"].as_u64().unwrap() > 50 && drawn["steps_mean"].as_f64().unwrap() >= 1.0);
+    assert!(drawn["map_bytes"].as_u64().unwrap() > 1000 && drawn["gpu_ms"].as_f64().unwrap() > 0.0);
+    assert_eq!(drawn["warnings"], serde_json::json!([]));
+
+    let truth = json("render scene.toml -o truth.exr --size 32x24 --json --stage reference");
+    assert_eq!(
+        (&truth["device"], &truth["solver"]),
+        (&Value::Null, &Value::Null)
+    );
+    let found = json("compare truth.exr a.exr --json");
+    assert_eq!(found["hits"], truth["hits"]);
+    assert!(found["depth_p99_texels"].as_f64().unwrap() < 0.5 && found["flip"].is_f64());
+    assert!(found["first_difference"].is_string());
+    assert_eq!(
+        json("compare a.exr a.exr --json")["first_difference"],
+        Value::Null
+    );
+}

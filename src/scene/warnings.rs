@@ -1,0 +1,135 @@
+//! What about a scene is allowed but looks unintended.
+
+use super::{CameraFrame, Scene};
+use glam::DVec3;
+
+/// A field of view below this many degrees looks like one in radians.
+const NARROW: f64 = 2.0;
+/// A light brighter than this looks like a colour from 0 to 255.
+const BRIGHT: f32 = 16.0;
+
+impl Scene {
+    /// What looks unintended in a picture of `width x height` pixels, a sentence each, with its key: a field of view that looks like
+    /// radians, colours above 1, what the profiles' pictures [warn of](crate::profile::Profile::warnings), nothing in view.
+    #[must_use]
+    pub fn warnings(&self, width: u32, height: u32) -> Vec<String> {
+        let mut found = Vec::new();
+        let fov = self.camera.fov_y;
+        if fov < NARROW {
+            found.push(format!(
+                "camera.fov_y: is {fov} degrees; if radians are meant, give {:.1}",
+                fov.to_degrees()
+            ));
+        }
+        let mut color = |key: &str, channels: &[f32], most: f32| {
+            if let Some(c) = channels.iter().find(|c| **c > most) {
+                found.push(format!(
+                    "{key}: has {c}; colours are linear from 0 to 1, divide by 255 if bytes are meant"
+                ));
+            }
+        };
+        color("background", &self.background, 1.0);
+        color("ambient", &self.ambient, BRIGHT);
+        for (i, light) in self.lights.iter().enumerate() {
+            color(&format!("light.{i}.color"), &light.color, BRIGHT);
+        }
+        for (i, object) in self.objects.iter().enumerate() {
+            color(&format!("object.{i}.color"), &object.color, 1.0);
+        }
+        for (i, object) in self.objects.iter().enumerate() {
+            let of_profile = object.profile.warnings.iter();
+            found.extend(of_profile.map(|w| format!("object.{i}.profile: {w}")));
+        }
+        if !self.is_in_view(width, height) {
+            found.push(
+                "nothing is in view; turn camera.target to the objects, or move camera.eye"
+                    .to_owned(),
+            );
+        }
+        found
+    }
+
+    /// Whether a ball about any copy's box reaches into the picture.
+    fn is_in_view(&self, width: u32, height: u32) -> bool {
+        let Ok(camera) = CameraFrame::new(&self.camera, width, height) else {
+            return true;
+        };
+        // The four sides of the view, normals inwards.
+        let (w, h) = (f64::from(width), f64::from(height));
+        let corner = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(x, y)| camera.direction(x, y));
+        let sides = [0, 1, 2, 3].map(|k| corner[k].cross(corner[(k + 1) % 4]).normalize_or_zero());
+        self.objects.iter().any(|object| {
+            let grown = object.offset.extend.max(0.0) + object.offset.bevel;
+            let radius = object.profile.radius + grown;
+            let half = DVec3::new(radius, radius, 0.5 + grown);
+            object.placements().iter().any(|p| {
+                let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));
+                let from = middle - camera.eye;
+                let reach = (p.scale * half).length();
+                from.dot(camera.forward) > -reach && sides.iter().all(|s| s.dot(from) > -reach)
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::profile::Profile;
+    use crate::scene::{Camera, Object, Scene};
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    fn scene() -> Scene {
+        let points = [[0.0, 0.1], [0.3, 0.1], [0.0, 0.9]];
+        let profile = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+        let mut scene = Scene::new(Camera::new(
+            DVec3::new(2.0, 0.0, 0.5),
+            DVec3::new(0.0, 0.0, 0.5),
+        ));
+        scene.objects.push(Object::new("cone", profile));
+        scene
+    }
+
+    #[track_caller]
+    fn warns(words: &str, change: impl Fn(&mut Scene)) {
+        let mut scene = scene();
+        assert!(scene.warnings(80, 60).is_empty());
+        change(&mut scene);
+        scene.check().unwrap();
+        let found = scene.warnings(80, 60);
+        assert!(found.len() == 1 && found[0].contains(words), "{found:?}");
+    }
+
+    #[test]
+    fn what_looks_unintended_is_named() {
+        warns(
+            "camera.fov_y: is 0.7 degrees; if radians are meant, give 40.1",
+            |s| s.camera.fov_y = 0.7,
+        );
+        warns("background", |s| s.background = [255.0, 0.0, 0.0, 1.0]);
+        warns("object.0.color: has 200", |s| s.objects[0].color[1] = 200.0);
+        warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
+    }
+
+    #[test]
+    fn a_camera_that_looks_elsewhere_sees_nothing() {
+        for target in [
+            DVec3::new(4.0, 0.0, 0.5),
+            DVec3::new(2.0, 1.0, 0.5),
+            DVec3::new(2.1, 0.0, 5.0),
+            DVec3::new(2.0, -1.0, -3.0),
+        ] {
+            warns("nothing is in view", |s| s.camera.target = target);
+        }
+        // Within the solid's box, whichever way one looks.
+        let mut within = scene();
+        within.camera.eye = DVec3::new(0.1, 0.0, 0.5);
+        within.camera.target = DVec3::new(1.0, 0.2, 0.5);
+        assert!(within.warnings(80, 60).is_empty());
+        // A solid at the picture's edge counts.
+        let mut edge = scene();
+        edge.camera.target = DVec3::new(0.0, 1.0, 0.5);
+        assert!(edge.warnings(80, 60).is_empty());
+    }
+}
