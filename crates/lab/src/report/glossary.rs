@@ -27,10 +27,10 @@ pub fn meaning(method: Method) -> &'static str {
             "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame"
         }
         Method::Search(Solver::Quadric) => {
-            "no map: the outline as pieces of quadrics, solved exactly, found by a tree"
+            "no map: the outline as quadric patches, solved exactly, found by a tree"
         }
         Method::Search(Solver::Hull) => {
-            "the default: the same pieces, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
+            "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
         }
         Method::Mesh { .. } => {
             "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"

@@ -195,7 +195,7 @@ pub const FEW: [Method; 3] = [
 ];
 
 /// The tessellations that are measured where none is named, segments and rings: one that a game would take, and finer ones up to the errors of
-/// exact pieces. Each is a quarter as wrong as the one before.
+/// exact patches. Each is a quarter as wrong as the one before.
 pub const MESHES: [(u32, u32); 3] = [(128, 256), (256, 512), (512, 1024)];
 
 /// The tessellations of the whole sweep.
