@@ -90,7 +90,9 @@ impl Stability {
         })?;
         drop(progress);
         report::write(&out, &chosen, &solvers, &outcome, &machine)?;
-        for line in report::table(&chosen, &solvers, &outcome).lines() {
+        for line in report::table(&chosen, &solvers, &outcome)
+            .aligned()
+            .lines() {
             output::result(line);
         }
         output::result(&format!(

@@ -1,6 +1,6 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On a real device, small and brief.
 
-use revmap_lab::report::csv::Table;
+use revmap_lab::report::table::Table;
 use revmap_lab::report::row::COLUMNS;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -5,7 +5,7 @@ mod run;
 use super::names::number;
 use super::row::COLUMNS;
 use super::stats::{self, Interval};
-use super::text;
+use super::table::Table;
 use revmap::error::{Error, Result, Stage};
 use run::Run;
 use std::collections::HashMap;
@@ -179,18 +179,15 @@ pub fn as_text(against: &Against) -> String {
             .collect::<Vec<_>>()
             .join(" ")
     };
-    let mut table = vec![
-        [
-            "measurement",
-            "new / old",
-            "95 % interval",
-            "over the RBM baseline",
-            "95 % interval",
-            "",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+    let header = [
+        "measurement",
+        "new / old",
+        "95 % interval",
+        "over the RBM baseline",
+        "95 % interval",
+        "",
     ];
+    let mut table = Table::new(header, Vec::new());
     let told = |i: Option<Interval>| match i {
         Some(t) if t.high.is_finite() => [
             number(t.value, 3),
@@ -208,9 +205,9 @@ pub fn as_text(against: &Against) -> String {
         };
         let [a, b] = told(pair.time);
         let [c, d] = told(pair.relative);
-        table.push(vec![name(pair), a, b, c, d, verdict.to_owned()]);
+        table.records.push(vec![name(pair), a, b, c, d, verdict.to_owned()]);
     }
-    out += &text::table(&table);
+    out += &table.aligned();
     let count = |v: Verdict| against.pairs.iter().filter(|p| p.verdict() == v).count();
     let ratios: Vec<f64> = against
         .pairs

@@ -11,6 +11,7 @@ use super::page::Page;
 use super::pictures::{Album, heat_key};
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, Row};
+use super::table::Table;
 use super::text;
 
 /// The beginning of every page: where and how this was measured.
@@ -36,7 +37,7 @@ pub(super) fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
         page.text("None: every measurement could be made, and in every row the device's clock and the wall clock agree.");
     } else {
         page.text("These rows are in no summary, ratio or Pareto front. Row numbers count the records of results.csv; rows without a number could not be drawn.");
-        page.table(&EXCLUDED, &out.records, &[1, 2, 3, 4]);
+        page.table(&Table::new(EXCLUDED, out.records), &[1, 2, 3, 4]);
     }
     page.chapter("How this was measured");
     let passes = measured
@@ -75,7 +76,7 @@ pub(super) fn picture_table(page: &mut Page, rows: &[Row]) {
     page.text(
         "In pictures with few hit pixels, fixed costs of a frame (clear, store, end of frame) dominate, and methods look more alike than they are.",
     );
-    page.table(&covered::PICTURES, &covered::pictures(rows), &[0, 1, 5]);
+    page.table(&covered::pictures(rows), &[0, 1, 5]);
 }
 
 /// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for paper.
@@ -127,9 +128,9 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
     };
     let all = |of: &dyn Fn(&Row) -> Vec<String>| rows.iter().map(of).collect::<Vec<_>>();
     page.heading("Times and look-ups");
-    page.table(&TIMES, &all(&times), &[0, 1, 2]);
+    page.table(&Table::new(TIMES, all(&times)), &[0, 1, 2]);
     page.heading("Errors");
-    page.table(&ERRORS, &all(&errors), &[0, 1, 2]);
+    page.table(&Table::new(ERRORS, all(&errors)), &[0, 1, 2]);
 }
 
 /// Columns of the table of excluded rows.

@@ -3,6 +3,7 @@
 use super::framing::Framing;
 use super::names::number;
 use super::row::Row;
+use super::table::Table;
 use super::text::percent;
 
 /// Rows of one framing, or of all.
@@ -113,9 +114,9 @@ pub(super) fn pictures_of<'a>(rows: &[&'a Row]) -> Vec<Vec<&'a Row>> {
 /// Columns of the table of pictures.
 pub const PICTURES: [&str; 6] = ["picture", "framing", "size", "pixels hit", "solids", "form"];
 
-/// Its records, in the order of the rows: a picture is a view at a size.
+/// The pictures, in the order of the rows: a picture is a view at a size.
 #[must_use]
-pub fn pictures(rows: &[Row]) -> Vec<Vec<String>> {
+pub fn pictures(rows: &[Row]) -> Table {
     let all: Vec<&Row> = rows.iter().collect();
     let record = |row: &Row| {
         vec![
@@ -127,11 +128,9 @@ pub fn pictures(rows: &[Row]) -> Vec<Vec<String>> {
             row.technique.name().to_owned(),
         ]
     };
-    pictures_of(&all)
-        .iter()
-        .filter_map(|p| p.first())
-        .map(|r| record(r))
-        .collect()
+    let all = pictures_of(&all);
+    let firsts = all.iter().filter_map(|p| p.first());
+    Table::new(PICTURES, firsts.map(|r| record(r)).collect())
 }
 
 #[cfg(test)]
@@ -182,7 +181,7 @@ mod tests {
             seen(0, Framing::Whole, 21),
             seen(1, Framing::Close, 100),
         ];
-        let records = pictures(&rows);
+        let records = pictures(&rows).records;
         assert_eq!(records.len(), 2);
         assert_eq!(
             records[0],

@@ -4,7 +4,7 @@ use super::chart::Figure;
 use super::chart::pdf::pdf;
 use super::chart::raster::raster;
 use super::chart::svg::svg;
-use super::csv::Table;
+use super::table::Table;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
@@ -165,20 +165,17 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
 /// `results.csv`: one record a row, with the columns of [`COLUMNS`].
 #[must_use]
 pub fn results(rows: &[Row], machine: &Machine) -> Table {
-    let mut table = Table::new(&COLUMNS);
-    table.records = rows
-        .iter()
-        .map(|row| row.record(&machine.device, &machine.driver))
-        .collect();
-    table
+    let record = |row: &Row| row.record(&machine.device, &machine.driver);
+    Table::new(COLUMNS, rows.iter().map(record).collect())
 }
 
 /// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds count from 1.
 #[must_use]
 pub fn raw(rows: &[Row]) -> Table {
-    let mut table = Table::new(&[
+    let header = [
         "row", "scene", "stage", "solver", "pass", "round", "gpu_ms", "frame_ms",
-    ]);
+    ];
+    let mut table = Table::new(header, Vec::new());
     for (number, row) in rows.iter().enumerate() {
         for (pass, samples) in row.passes.iter().enumerate() {
             for (round, sample) in samples.iter().enumerate() {
@@ -205,7 +202,7 @@ pub fn raw(rows: &[Row]) -> Table {
 /// be made (`row` is empty).
 #[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
-    let mut table = Table::new(&["row", "scene", "stage", "solver", "reason"]);
+    let mut table = Table::new(["row", "scene", "stage", "solver", "reason"], Vec::new());
     for (number, row) in measured.rows.iter().enumerate() {
         if let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() {
             table.records.push(vec![
@@ -242,8 +239,8 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
 /// # Errors
 /// [`Stage::Report`], naming the file.
 pub fn write_rows(folder: &Path, rows: &[Row], machine: &Machine) -> Result<()> {
-    write_text(&folder.join("results.csv"), &results(rows, machine).text())?;
-    write_text(&folder.join("raw.csv"), &raw(rows).text())
+    write_text(&folder.join("results.csv"), &results(rows, machine).csv())?;
+    write_text(&folder.join("raw.csv"), &raw(rows).csv())
 }
 
 /// Writes the four files that every run has.
@@ -255,7 +252,7 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
     write_rows(folder, &measured.rows, machine)?;
     write_text(
         &folder.join("excluded.csv"),
-        &excluded(plan, measured).text(),
+        &excluded(plan, measured).csv(),
     )?;
     let note: String = machine
         .lines()

@@ -7,7 +7,6 @@ pub mod against;
 mod chapters;
 pub mod chart;
 pub mod covered;
-pub mod csv;
 pub mod curves;
 mod device;
 pub mod folder;
@@ -31,6 +30,7 @@ pub mod stats;
 pub mod suite;
 pub mod summary;
 pub mod sweep;
+pub mod table;
 pub mod text;
 pub mod view;
 

@@ -5,6 +5,8 @@ use super::chart::Figure;
 use super::chart::letters::{FAMILY, FONT};
 use super::chart::svg::{escape, svg};
 use super::pictures::Shot;
+use super::table::Table;
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::fmt::Write;
 
 /// A page in the making.
@@ -143,12 +145,11 @@ impl Page {
     }
 
     /// A table; columns named in `left` are aligned left.
-    pub fn table(&mut self, header: &[&str], records: &[Vec<String>], left: &[usize]) {
+    pub fn table(&mut self, table: &Table, left: &[usize]) {
         // Sentences wrap; numbers and names stay in one line.
         let wide = |c: usize| {
-            records
-                .iter()
-                .any(|r| r.get(c).is_some_and(|f| f.len() > 60))
+            let mut records = table.records.iter();
+            records.any(|r| r.get(c).is_some_and(|f| f.len() > 60))
         };
         let class = |c: usize| match (left.contains(&c), wide(c)) {
             (true, true) => " class=\"l w\"",
@@ -158,11 +159,11 @@ impl Page {
         };
         self.body
             .push_str("<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>");
-        for (c, name) in header.iter().enumerate() {
+        for (c, name) in table.header.iter().enumerate() {
             let _ = write!(self.body, "<th{}>{}</th>", class(c), escape(name));
         }
         self.body.push_str("</tr></thead><tbody>\n");
-        for record in records {
+        for record in &table.records {
             self.body.push_str("<tr>");
             for (c, field) in record.iter().enumerate() {
                 let _ = write!(self.body, "<td{}>{}</td>", class(c), escape(field));
@@ -179,7 +180,7 @@ impl Page {
             let _ = write!(
                 self.body,
                 "<figure><img src=\"data:image/png;base64,{}\" alt=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}</figcaption></figure>",
-                base64(&shot.small),
+                BASE64_STANDARD.encode(&shot.small),
                 escape(&shot.caption),
                 shot.size.0,
                 shot.size.1,
@@ -202,7 +203,7 @@ impl Page {
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
              content=\"width=device-width,initial-scale=1\"><title>{title}</title>\n<style>@font-face{{font-family:'{FAMILY}';\
              src:url(data:font/ttf;base64,{})}}{STYLE}</style></head>\n<body><h1>{title}</h1>\n<nav><ul>{contents}</ul></nav>\n{}</body></html>\n",
-            base64(FONT),
+            BASE64_STANDARD.encode(FONT),
             self.body
         )
     }
@@ -223,45 +224,9 @@ fn words(text: &str) -> String {
     out
 }
 
-/// Bytes as base64 (RFC 4648, section 4).
-#[must_use]
-pub fn base64(bytes: &[u8]) -> String {
-    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for k in 0..4 {
-            let sign = SIGNS[(word >> (18 - 6 * k)) as usize & 63];
-            out.push(if k > chunk.len() {
-                '='
-            } else {
-                char::from(sign)
-            });
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_of_the_standards_examples() {
-        for (text, wanted) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(text.as_bytes()), wanted);
-        }
-        assert_eq!(base64(&[0xff, 0xfe, 0xfd]), "//79");
-    }
 
     #[test]
     fn a_page_stands_alone_and_escapes_what_it_is_told() {
@@ -269,7 +234,8 @@ mod tests {
         page.chapter("First");
         page.text("1 < 2");
         page.note("<script>alert(1)</script>");
-        page.table(&["a<b", "n"], &[vec!["\"x\"".into(), "1".into()]], &[]);
+        let records = vec![vec!["\"x\"".into(), "1".into()]];
+        page.table(&Table::new(["a<b", "n"], records), &[]);
         let html = page.html();
         for wanted in [
             "A &lt;title&gt; &amp; more",

@@ -19,6 +19,7 @@ use super::ratios::between;
 use super::row::Row;
 use super::stats::Interval;
 use super::suite;
+use super::table::Table;
 use super::text;
 use super::view::View;
 use crate::method::MethodSettings;
@@ -128,8 +129,8 @@ fn lines<'a>(rows: &'a [Row], table: usize) -> Vec<Measures<'a>> {
     lines
 }
 
-/// A table's header and records, the published figures first.
-fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<String>>) {
+/// One of the published tables, the published figures first.
+fn measured_table(rows: &[Row], index: usize, looks: &Looks) -> Table {
     let table = &TABLES[index];
     let mut header = vec!["size".to_owned(), "method".to_owned(), "stage".to_owned()];
     header.extend(
@@ -184,7 +185,7 @@ fn records(rows: &[Row], index: usize, looks: &Looks) -> (Vec<String>, Vec<Vec<S
             records.push(record);
         }
     }
-    (header, records)
+    Table::new(header, records)
 }
 
 /// All three tables as text.
@@ -193,12 +194,11 @@ pub fn as_text(rows: &[Row]) -> String {
     let looks = Looks::of(rows);
     let mut out = String::new();
     for (index, table) in TABLES.iter().enumerate() {
-        let (header, records) = records(rows, index, &looks);
         out += &format!(
             "Table {}: {}, frames per second\n",
             table.number, table.title
         );
-        out += &text::table(&[vec![header], records].concat());
+        out += &measured_table(rows, index, &looks).aligned();
         out.push('\n');
     }
     out
@@ -233,10 +233,8 @@ pub fn write(
     COMPARABLE.iter().for_each(|words| page.text(words));
     for (index, table) in TABLES.iter().enumerate() {
         page.chapter(&format!("Table {}: {}", table.number, table.title));
-        let (header, records) = records(rows, index, &looks);
-        let header: Vec<&str> = header.iter().map(String::as_str).collect();
         page.text("Frames per second: the published figures, and below them every method as measured here.");
-        page.table(&header, &records, &[0, 1, 2, 7]);
+        page.table(&measured_table(rows, index, &looks), &[0, 1, 2, 7]);
         for size in SIZES {
             let name = format!("table{}-{}x{}", table.number, size.0, size.1);
             for scale in [Scaled::Rate, Scaled::Trend] {
@@ -318,7 +316,7 @@ mod tests {
             rows.push(r);
         }
         let looks = Looks::of(&rows);
-        let (_, records) = records(&rows, 1, &looks);
+        let records = measured_table(&rows, 1, &looks).records;
         // Published figures stand above what was measured at their size, and nowhere else.
         assert_eq!(records.len(), 3);
         assert_eq!(records[2][..3], ["1000x600", "circle", "fragment"]);

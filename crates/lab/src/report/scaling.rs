@@ -18,6 +18,7 @@ use super::names::{number, stage};
 use super::page::Page;
 use super::plan::{Plan, variant};
 use super::row::Row;
+use super::table::Table;
 use super::text;
 use crate::method::MethodSettings;
 use revmap::error::Result;
@@ -65,7 +66,7 @@ impl Quantity {
     }
 }
 
-fn records(all: &[Growth], looks: &Looks) -> Vec<Vec<String>> {
+fn table(all: &[Growth], looks: &Looks) -> Table {
     let record = |g: &Growth| {
         let ends = |k: Option<&(f64, f64)>| k.map(|p| number(p.1, 3)).unwrap_or_default();
         vec![
@@ -79,7 +80,7 @@ fn records(all: &[Growth], looks: &Looks) -> Vec<Vec<String>> {
             g.last.map(|e| number(e, 2)).unwrap_or_else(|| "–".into()),
         ]
     };
-    all.iter().map(record).collect()
+    Table::new(HEADER, all.iter().map(record).collect())
 }
 
 /// Columns of the table of growth.
@@ -107,13 +108,7 @@ pub fn as_text(rows: &[Row]) -> String {
             quantity.name(),
             quantity.name()
         );
-        out += &text::table(
-            &[
-                vec![HEADER.map(str::to_owned).to_vec()],
-                records(&all, &looks),
-            ]
-            .concat(),
-        );
+        out += &table(&all, &looks).aligned();
         out.push('\n');
     }
     out
@@ -212,7 +207,7 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
             &figure,
             "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, thinner in the compute stage.",
         );
-        page.table(&HEADER, &records(&all, &looks), &[0, 1]);
+        page.table(&table(&all, &looks), &[0, 1]);
     }
     page.chapter("All rows");
     // Here the rows of maps tell rows apart.

@@ -37,11 +37,7 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
             let figure = ratio_chart(part.views(), &ratios, looks);
             keep_figure(folder, &format!("ratios{}", part.ending(&parts)), &figure)?;
             page.figure(&figure, "Time of each method over that of the RBM baseline in the same stage, with its 95 % interval; the numbers at the right are the values. Further left is faster.");
-            page.table(
-                &text::RATIOS,
-                &text::ratio_records(&ratios, looks.labels()),
-                &[0, 1],
-            );
+            page.table(&text::ratio_table(&ratios, looks.labels()), &[0, 1]);
         }
     }
     mesh_tables(page, &parts);
@@ -115,7 +111,7 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
     let tables: Vec<_> = parts
         .iter()
         .map(|part| (part, text::against_meshes(&part.rows)))
-        .filter(|(_, records)| !records.is_empty())
+        .filter(|(_, table)| !table.records.is_empty())
         .collect();
     if tables.is_empty() {
         return;
@@ -126,9 +122,9 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
          all pictures; below 1 the search is faster. Times compare like with like only in pictures in which the mesh is at least as accurate in depth (99th percentile); the last column counts these. \
          \"Coarsest as accurate\" takes, in each picture, the coarsest measured mesh that is at least as accurate, and excludes pictures without one.",
     );
-    for (part, records) in tables {
+    for (part, table) in tables {
         page.heading(&part.heading());
-        page.table(&text::AGAINST_MESHES, &records, &[0, 1]);
+        page.table(&table, &[0, 1]);
     }
 }
 

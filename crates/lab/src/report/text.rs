@@ -1,44 +1,12 @@
-//! Tables as plain text, for standard output.
+//! The tables that sum a run up, and what their fields look like.
 
-use super::covered::{PICTURES, parts, pictures};
+use super::covered::{parts, pictures};
 use super::names::{number, stage};
 use super::plan::{Labels, RBM_BASELINE};
 use super::ratios::{Duel, Ratio, over_meshes, over_rbm_baseline};
 use super::row::Row;
 use super::stats::Interval;
-
-/// Columns of text, the first aligned left, the others right.
-#[must_use]
-pub fn table(rows: &[Vec<String>]) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns)
-        .map(|c| {
-            rows.iter()
-                .filter_map(|r| r.get(c))
-                .map(|f| f.chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    let mut out = String::new();
-    for row in rows {
-        let line: Vec<String> = row
-            .iter()
-            .zip(&widths)
-            .enumerate()
-            .map(|(c, (field, &width))| {
-                if c < 1 {
-                    format!("{field:width$}")
-                } else {
-                    format!("{field:>width$}")
-                }
-            })
-            .collect();
-        out += line.join("  ").trim_end();
-        out.push('\n');
-    }
-    out
-}
+use super::table::Table;
 
 /// An interval as `0.42 (0.40 to 0.44)`; only the value where a single observation says nothing about spread.
 #[must_use]
@@ -75,9 +43,9 @@ pub const RATIOS: [&str; 10] = [
     "worst normal rms (°)",
 ];
 
-/// Its records.
+/// Times over the RBM baseline's.
 #[must_use]
-pub fn ratio_records(ratios: &[Ratio], labels: &Labels) -> Vec<Vec<String>> {
+pub fn ratio_table(ratios: &[Ratio], labels: &Labels) -> Table {
     let record = |r: &Ratio| {
         vec![
             labels.way(&r.settings),
@@ -92,18 +60,18 @@ pub fn ratio_records(ratios: &[Ratio], labels: &Labels) -> Vec<Vec<String>> {
             maybe(r.normal_rms),
         ]
     };
-    ratios.iter().map(record).collect()
+    Table::new(RATIOS, ratios.iter().map(record).collect())
 }
 
 /// The table of ratios, headed.
 #[must_use]
 pub fn ratios(rows: &[Row]) -> String {
     let labels = Labels::new(rows.iter().map(|r| &r.settings));
-    let records = ratio_records(&over_rbm_baseline(rows), &labels);
-    if records.is_empty() {
+    let table = ratio_table(&over_rbm_baseline(rows), &labels);
+    if table.records.is_empty() {
         return format!("no ratios: no usable row of the {RBM_BASELINE}\n");
     }
-    table(&[vec![RATIOS.map(str::to_owned).to_vec()], records].concat())
+    table.aligned()
 }
 
 fn range((least, most): (f64, f64)) -> String {
@@ -137,9 +105,9 @@ pub const AGAINST_MESHES: [&str; 9] = [
     "mesh at least as accurate",
 ];
 
-/// Its records: the default search in each stage over each mesh, then over the coarsest that is at least as accurate; none without both.
+/// The default search in each stage over each mesh, then over the coarsest that is at least as accurate; none without both.
 #[must_use]
-pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
+pub fn against_meshes(rows: &[Row]) -> Table {
     let record = |duel: Duel| {
         let ours = &duel.ours;
         let mesh = duel
@@ -157,7 +125,10 @@ pub fn against_meshes(rows: &[Row]) -> Vec<Vec<String>> {
             duel.no_worse.to_string(),
         ]
     };
-    over_meshes(rows).into_iter().map(record).collect()
+    Table::new(
+        AGAINST_MESHES,
+        over_meshes(rows).into_iter().map(record).collect(),
+    )
 }
 
 /// The tables that sum a run up: over the RBM baseline, and over meshes where there are any, of all pictures and of each framing; then the
@@ -168,13 +139,10 @@ pub fn summary(rows: &[Row]) -> String {
     for part in parts(rows) {
         out += &format!("{}\n\n{}\n", part.title(), ratios(&part.rows));
         let against = against_meshes(&part.rows);
-        if !against.is_empty() {
-            let header = AGAINST_MESHES.map(str::to_owned).to_vec();
-            out += &table(&[vec![header], against].concat());
+        if !against.records.is_empty() {
+            out += &against.aligned();
             out.push('\n');
         }
     }
-    let header = PICTURES.map(str::to_owned).to_vec();
-    out += &table(&[vec![header], pictures(rows)].concat());
-    out
+    out + &pictures(rows).aligned()
 }

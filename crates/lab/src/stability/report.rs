@@ -6,7 +6,7 @@ use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::csv::Table;
+use crate::report::table::Table;
 use crate::report::folder::{keep_figure, write_text};
 use crate::report::looks;
 use crate::report::machine::Machine;
@@ -16,7 +16,6 @@ use crate::report::pictures::{Shot, png};
 use revmap::error::Result;
 use revmap::frame::Picture;
 use revmap::settings::Solver;
-use std::fmt::Write;
 use std::path::Path;
 
 /// What shares of faults are drawn at where there are none, percent.
@@ -65,25 +64,18 @@ fn cell(trial: Option<&Trial>) -> String {
 
 /// The table of cases and searches: the worst share of faults in each, and the verdict.
 #[must_use]
-pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> String {
-    let widest = cases.iter().map(|c| c.name.len()).max().unwrap_or(0).max(4);
-    let mut out = String::new();
-    let _ = write!(out, "{:widest$}", "case");
-    for solver in solvers {
-        let _ = write!(out, "  {:>15}", solver.name());
-    }
-    out.push('\n');
-    for (k, case) in cases.iter().enumerate() {
-        if !outcome.trials.iter().any(|t| t.case == k) {
-            continue;
-        }
-        let _ = write!(out, "{:widest$}", case.name);
-        for &solver in solvers {
-            let _ = write!(out, "  {:>15}", cell(worst(of(outcome, k, solver))));
-        }
-        out.push('\n');
-    }
-    out
+pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
+    let names = solvers.iter().map(|s| s.name());
+    let drawn = |k: &usize| outcome.trials.iter().any(|t| t.case == *k);
+    let record = |k: usize| {
+        let cells = solvers.iter().map(|&s| cell(worst(of(outcome, k, s))));
+        let named = [cases[k].name.to_owned(), cases[k].parameter.to_owned()];
+        named.into_iter().chain(cells).collect()
+    };
+    Table::new(
+        ["case", "swept over"].into_iter().chain(names),
+        (0..cases.len()).filter(drawn).map(record).collect(),
+    )
 }
 
 /// What the default fails, a line for each.
@@ -112,7 +104,7 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
 /// `results.csv`: a record for each trial.
 #[must_use]
 pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
-    let mut table = Table::new(&[
+    let header = [
         "case",
         "parameter",
         "value",
@@ -134,7 +126,8 @@ pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
         "error",
         "device",
         "driver",
-    ]);
+    ];
+    let mut table = Table::new(header, Vec::new());
     for trial in &outcome.trials {
         let case = &cases[trial.case];
         let mut record = vec![
@@ -264,7 +257,7 @@ pub fn write(
 ) -> Result<()> {
     write_text(
         &folder.join("results.csv"),
-        &results(cases, outcome, machine).text(),
+        &results(cases, outcome, machine).csv(),
     )?;
     let mut page = Page::new("revmap: stability");
     page.facts(&machine.lines());
@@ -274,18 +267,8 @@ pub fn write(
          share of faults in each case.",
     );
     page.chapter("All cases");
-    let mut header = vec!["case", "swept over"];
-    header.extend(solvers.iter().map(|s| s.name()));
+    page.table(&table(cases, solvers, outcome), &[0, 1]);
     let drawn = |k: usize| outcome.trials.iter().any(|t| t.case == k);
-    let records: Vec<Vec<String>> = (0..cases.len())
-        .filter(|&k| drawn(k))
-        .map(|k| {
-            let mut record = vec![cases[k].name.to_owned(), cases[k].parameter.to_owned()];
-            record.extend(solvers.iter().map(|&s| cell(worst(of(outcome, k, s)))));
-            record
-        })
-        .collect();
-    page.table(&header, &records, &[0, 1]);
     for (k, case) in cases.iter().enumerate().filter(|(k, _)| drawn(*k)) {
         page.chapter(case.name);
         page.text(case.why);

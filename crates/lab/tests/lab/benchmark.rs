@@ -107,10 +107,10 @@ fn a_runs_folder_is_whole() {
     folder::write(folder.path(), &plan, &outcome, &machine).unwrap();
     overview::write(folder.path(), &plan, &outcome, &machine, &album).unwrap();
     for (file, records) in [("results.csv", 6), ("excluded.csv", 2)] {
-        let table = revmap_lab::report::csv::Table::load(&folder.path().join(file)).unwrap();
+        let table = revmap_lab::report::table::Table::load(&folder.path().join(file)).unwrap();
         assert_eq!(table.records.len(), records, "{file}");
     }
-    let raw = revmap_lab::report::csv::Table::load(&folder.path().join("raw.csv")).unwrap();
+    let raw = revmap_lab::report::table::Table::load(&folder.path().join("raw.csv")).unwrap();
     let samples: usize = outcome.rows.iter().map(|r| r.frame_ms().len()).sum();
     assert_eq!(raw.records.len(), samples);
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();

@@ -1,6 +1,6 @@
 //! A run read back from its folder.
 
-use crate::report::csv::Table;
+use crate::report::table::Table;
 use crate::report::row::{COLUMNS, CONTRACT};
 use crate::report::stats;
 use revmap::error::{Error, Result, Stage};

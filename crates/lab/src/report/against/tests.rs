@@ -11,10 +11,10 @@ fn run(rows: &[Row]) -> tempfile::TempDir {
     let machine = Machine::here("device, with a comma", "cpu", "driver", "revmap bench");
     write_text(
         &folder.path().join("results.csv"),
-        &results(rows, &machine).text(),
+        &results(rows, &machine).csv(),
     )
     .unwrap();
-    write_text(&folder.path().join("raw.csv"), &raw(rows).text()).unwrap();
+    write_text(&folder.path().join("raw.csv"), &raw(rows).csv()).unwrap();
     folder
 }
 

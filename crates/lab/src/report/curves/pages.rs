@@ -16,6 +16,7 @@ use crate::report::pictures::Album;
 use crate::report::plan::{Labels, Plan, variant};
 use crate::report::ratios::over_rbm_baseline;
 use crate::report::row::Row;
+use crate::report::table::Table;
 use crate::report::text::percent;
 use revmap::error::Result;
 use std::path::Path;
@@ -135,8 +136,7 @@ fn summary(
     }
     page.chapter("Pareto fronts");
     page.text("Ways of drawing that are on the front of depth error against time of at least one view, best first.");
-    let (header, records) = fronts(&measured.rows);
-    page.table(&header, &records, &[0, 1]);
+    page.table(&fronts(&measured.rows), &[0, 1]);
     page.chapter("Views");
     page.links(pages);
     chapters::picture_table(&mut page, &measured.rows);
@@ -155,7 +155,7 @@ pub(in crate::report) const FRONTS: [&str; 5] = [
 ];
 
 /// Which ways are on fronts: header and records, the most frequent first.
-fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
+fn fronts(rows: &[Row]) -> Table {
     let all: Vec<&Row> = rows.iter().collect();
     let groups = pictures_of(&all);
     let labels = Labels::new(rows.iter().map(|r| &r.settings));
@@ -192,5 +192,5 @@ fn fronts(rows: &[Row]) -> ([&'static str; 5], Vec<Vec<String>>) {
             ]
         })
         .collect();
-    (FRONTS, records)
+    Table::new(FRONTS, records)
 }

@@ -1,0 +1,180 @@
+//! The table of all outputs: comma-separated values in files, aligned columns on standard output, rows of a page
+//! ([`Page::table`](super::page::Page::table)).
+
+use revmap::error::{Error, Result, Stage};
+use std::path::Path;
+
+/// A table of text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Records, each as long as the header.
+    pub records: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these columns.
+    pub fn new(
+        header: impl IntoIterator<Item = impl Into<String>>,
+        records: Vec<Vec<String>>,
+    ) -> Self {
+        Self {
+            header: header.into_iter().map(Into::into).collect(),
+            records,
+        }
+    }
+
+    /// The header, then the records.
+    fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
+        std::iter::once(&self.header).chain(&self.records)
+    }
+
+    /// Its text as comma-separated values (RFC 4180), lines ended by a line feed.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let written = self.lines().try_for_each(|line| writer.write_record(line));
+        // Memory takes whatever is written, and records are as long as the header.
+        let bytes = written.ok().and_then(|()| writer.into_inner().ok());
+        String::from_utf8(bytes.unwrap_or_default()).unwrap_or_default()
+    }
+
+    /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
+    #[must_use]
+    pub fn aligned(&self) -> String {
+        let width = |column: usize| {
+            let fields = self.lines().filter_map(|line| line.get(column));
+            fields.map(|f| f.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        let mut out = String::new();
+        for line in self.lines() {
+            let fields = line.iter().zip(&widths).enumerate();
+            let padded: Vec<String> = fields
+                .map(|(column, (field, &width))| match column {
+                    0 => format!("{field:width$}"),
+                    _ => format!("{field:>width$}"),
+                })
+                .collect();
+            out += padded.join("  ").trim_end();
+            out.push('\n');
+        }
+        out
+    }
+
+    /// Reads comma-separated values.
+    ///
+    /// # Errors
+    /// [`Stage::Report`]: no header, a quote that is not closed, a record of another length than the header.
+    pub fn parse(text: &str) -> Result<Self> {
+        let fault = |message: String| {
+            let message = format!("{message}; write the file again with `revmap bench`");
+            Err(Error::new(Stage::Report, message))
+        };
+        if text.matches('"').count() % 2 == 1 {
+            return fault("a quoted field has no end".into());
+        }
+        // Spreadsheets begin a file with a byte order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let header = match reader.headers() {
+            Ok(header) if !header.is_empty() => header.iter().map(str::to_owned).collect(),
+            _ => return fault("is empty".into()),
+        };
+        let mut records = Vec::new();
+        for record in reader.records() {
+            match record {
+                Ok(record) => records.push(record.iter().map(str::to_owned).collect()),
+                Err(e) => return fault(e.to_string()),
+            }
+        }
+        Ok(Self { header, records })
+    }
+
+    /// Reads a file of comma-separated values.
+    ///
+    /// # Errors
+    /// As [`Table::parse`], with the file; and when it cannot be read.
+    pub fn load(file: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(file).map_err(|e| {
+            Error::new(
+                Stage::Report,
+                format!("cannot be read ({e}); give a folder that `revmap bench` wrote"),
+            )
+            .in_file(file)
+        })?;
+        Self::parse(&text).map_err(|e| e.in_file(file))
+    }
+
+    /// The place of a column.
+    ///
+    /// # Errors
+    /// [`Stage::Report`] when there is none of this name.
+    pub fn column(&self, name: &str) -> Result<usize> {
+        self.header.iter().position(|n| n == name).ok_or_else(|| {
+            Error::new(
+                Stage::Report,
+                format!("has no column `{name}`; write it again with `revmap bench`"),
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn table(header: &[&str], records: &[&[&str]]) -> Table {
+        let owned = |record: &&[&str]| record.iter().map(ToString::to_string).collect();
+        Table::new(header.iter().copied(), records.iter().map(owned).collect())
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let written = table(
+            &["a", "b,c", "d"],
+            &[
+                &["1", "", "x y"],
+                &["\"q\"", "l1\nl2", "a,b"],
+                &["", "", ""],
+            ],
+        );
+        let text = written.csv();
+        assert!(
+            text.starts_with("a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\","),
+            "{text}"
+        );
+        assert_eq!(Table::parse(&text).unwrap(), written);
+        let windows = text.replace('\n', "\r\n").replace("l1\r\n", "l1\n");
+        assert_eq!(Table::parse(&windows).unwrap(), written);
+        assert_eq!(
+            Table::parse(&format!("\u{feff}{windows}")).unwrap(),
+            written
+        );
+        assert_eq!(written.column("d").unwrap(), 2);
+        assert!(written.column("e").is_err());
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let text = table(&["name", "ms"], &[&["a", "10.5"], &["long name", "1"]]).aligned();
+        assert_eq!(text, "name         ms\na          10.5\nlong name     1\n");
+    }
+
+    #[test]
+    fn damaged_tables_are_refused() {
+        for (text, wanted) in [
+            ("", "is empty"),
+            ("a,b\n1\n", "1 field"),
+            ("a,b\n1,2,3\n", "3 fields"),
+            ("a,b\n1,\"2\n", "no end"),
+        ] {
+            let error = Table::parse(text).unwrap_err();
+            assert!(error.to_string().contains(wanted), "{error}");
+        }
+        // The last line may lack its end.
+        assert_eq!(Table::parse("a,b\n1,2").unwrap().records, [["1", "2"]]);
+    }
+}
