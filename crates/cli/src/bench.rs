@@ -9,12 +9,12 @@ use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::machine::Machine;
-use revmap_lab::report::measure::{Limits, Measured, Seen, Watch, measure};
+use revmap_lab::report::measure::{Measured, Observer, RenderedCase, TimeBudget, measure};
 use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::Extent;
-use revmap_lab::report::{DeviceBench, against, folder, overview, papers, scaling, text};
+use revmap_lab::report::{DeviceBench, compare_runs, folder, overview, papers, scaling, text};
 use std::path::PathBuf;
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
@@ -48,8 +48,8 @@ impl Bench {
     pub fn run(self) -> Result<()> {
         self.lists.check()?;
         if let [old, new] = self.compare.as_slice() {
-            let found = against::compare(old, new)?;
-            print(&against::as_text(&found));
+            let found = compare_runs::compare(old, new)?;
+            print(&compare_runs::as_text(&found));
             return Ok(());
         }
         if self.tables {
@@ -58,17 +58,17 @@ impl Bench {
         if self.scaling {
             return self.scaling();
         }
-        let (limits, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
-            (Limits::QUICK, Extent::One, &[25.0], &[(800, 600)])
+        let (budget, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
+            (TimeBudget::QUICK, Extent::One, &[25.0], &[(800, 600)])
         } else if self.full {
             (
-                Limits::FULL,
+                TimeBudget::FULL,
                 Extent::All,
                 &[0.0, 25.0, 60.0],
                 &papers::SIZES,
             )
         } else {
-            (Limits::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
+            (TimeBudget::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
         };
         let (methods, meshes): (&[Method], &[(u32, u32)]) = if self.quick {
             (&plan::FEW, &plan::MESHES[..1])
@@ -85,8 +85,12 @@ impl Bench {
         }
         plan.add_rbm_baseline();
         let session = Session::open(&self.lists)?;
-        let (measured, album) =
-            session.measure(&plan, &self.lists.limits(&limits), |_| true, &mut |_| {})?;
+        let (measured, album) = session.measure(
+            &plan,
+            &self.lists.time_budget(&budget),
+            |_| true,
+            &mut |_| {},
+        )?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&text::summary(&measured.rows));
@@ -109,15 +113,15 @@ impl Bench {
         );
         plan.add_rbm_baseline();
         plan.mixed = true;
-        let limits = if self.quick {
-            Limits::QUICK
+        let budget = if self.quick {
+            TimeBudget::QUICK
         } else {
-            Limits::CHART
+            TimeBudget::CHART
         };
         let session = Session::open(&self.lists)?;
         let (measured, album) = session.measure(
             &plan,
-            &self.lists.limits(&limits),
+            &self.lists.time_budget(&budget),
             is_rbm_baseline,
             &mut |_| {},
         )?;
@@ -133,15 +137,19 @@ impl Bench {
             let mesh = |(segments, rings)| Method::Mesh { segments, rings };
             axes.methods.extend(scaling::MESHES.map(mesh));
         }
-        let (limits, ranges) = if self.quick {
-            (Limits::QUICK, Ranges::QUICK)
+        let (budget, ranges) = if self.quick {
+            (TimeBudget::QUICK, Ranges::QUICK)
         } else {
-            (Limits::CHART, Ranges::ALL)
+            (TimeBudget::CHART, Ranges::ALL)
         };
         let plan = scaling::plan(&axes.stages, &axes.methods, ranges)?;
         let session = Session::open(&self.lists)?;
-        let (measured, _) =
-            session.measure(&plan, &self.lists.limits(&limits), |_| false, &mut |_| {})?;
+        let (measured, _) = session.measure(
+            &plan,
+            &self.lists.time_budget(&budget),
+            |_| false,
+            &mut |_| {},
+        )?;
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));
@@ -188,9 +196,9 @@ impl Session {
     pub fn measure(
         &self,
         plan: &Plan,
-        limits: &Limits,
+        budget: &TimeBudget,
         worth: fn(&MethodSettings) -> bool,
-        also: &mut dyn FnMut(&Seen),
+        also: &mut dyn FnMut(&RenderedCase),
     ) -> Result<(Measured, Album)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.out, labels, worth)?;
@@ -199,8 +207,8 @@ impl Session {
         let measured = measure(
             plan,
             &mut bench,
-            limits,
-            &mut Watch {
+            budget,
+            &mut Observer {
                 stop: interrupt::flag()?,
                 progress: &|what, gone, all| {
                     progress.say(what);

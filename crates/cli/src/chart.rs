@@ -7,7 +7,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::Result;
 use revmap_lab::method::MethodSettings;
-use revmap_lab::report::measure::{Limits, Seen};
+use revmap_lab::report::measure::{RenderedCase, TimeBudget};
 use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::suite::Extent;
 use revmap_lab::report::sweep::Sweep;
@@ -36,12 +36,17 @@ pub struct Chart {
 impl Chart {
     pub fn run(self) -> Result<()> {
         self.lists.check()?;
-        let (mut sweep, limits, extent, elevations): (_, _, _, &[f64]) = if self.quick {
-            (Sweep::quick(), Limits::QUICK, Extent::One, &[25.0])
+        let (mut sweep, budget, extent, elevations): (_, _, _, &[f64]) = if self.quick {
+            (Sweep::quick(), TimeBudget::QUICK, Extent::One, &[25.0])
         } else if self.full {
-            (Sweep::full(), Limits::FULL, Extent::All, &[0.0, 25.0, 60.0])
+            (
+                Sweep::full(),
+                TimeBudget::FULL,
+                Extent::All,
+                &[0.0, 25.0, 60.0],
+            )
         } else {
-            (Sweep::new(), Limits::CHART, Extent::Three, &[25.0])
+            (Sweep::new(), TimeBudget::CHART, Extent::Three, &[25.0])
         };
         let views = self.lists.views(extent, elevations)?;
         let lists = &self.lists;
@@ -82,13 +87,17 @@ impl Chart {
             .first()
             .map_or(sweep.size, |c| (c.settings.width, c.settings.height));
         let mut truths = map_error::Truths::default();
-        let mut keep = |seen: &Seen| {
+        let mut keep = |seen: &RenderedCase| {
             if (seen.truth.width, seen.truth.height) == size {
                 truths.keep(seen.case.view, seen.truth);
             }
         };
-        let (measured, album) =
-            session.measure(&plan, &lists.limits(&limits), worth_a_picture, &mut keep)?;
+        let (measured, album) = session.measure(
+            &plan,
+            &lists.time_budget(&budget),
+            worth_a_picture,
+            &mut keep,
+        )?;
         let alone = if measured.interrupted {
             Vec::new()
         } else {

@@ -9,7 +9,7 @@ use revmap::settings::DrawStage;
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::framing::Framing;
-use revmap_lab::report::measure::Limits;
+use revmap_lab::report::measure::TimeBudget;
 use revmap_lab::report::plan::Axes;
 use revmap_lab::report::suite::{self, Extent};
 use revmap_lab::report::view::View;
@@ -113,10 +113,10 @@ impl Lists {
     }
 
     /// How often, as named; what is not comes from `base`.
-    pub fn limits(&self, base: &Limits) -> Limits {
+    pub fn time_budget(&self, base: &TimeBudget) -> TimeBudget {
         let exactly =
             |given: Option<u16>, other| given.map_or(other, |n| (usize::from(n), usize::from(n)));
-        Limits {
+        TimeBudget {
             passes: exactly(self.passes, base.passes),
             rounds: exactly(self.rounds, base.rounds),
             ..*base

@@ -90,9 +90,7 @@ impl Stability {
         })?;
         drop(progress);
         report::write(&out, &chosen, &solvers, &outcome, &machine)?;
-        for line in report::table(&chosen, &solvers, &outcome)
-            .aligned()
-            .lines() {
+        for line in report::table(&chosen, &solvers, &outcome).aligned().lines() {
             output::result(line);
         }
         output::result(&format!(

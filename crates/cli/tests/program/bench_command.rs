@@ -1,7 +1,7 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On a real device, small and brief.
 
-use revmap_lab::report::table::Table;
 use revmap_lab::report::row::COLUMNS;
+use revmap_lab::report::table::Table;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};

@@ -1,16 +1,16 @@
 //! The chapters that pages of every kind share: where and how it was measured, what was drawn, all rows, and what was left out.
 
-use super::covered;
 use super::folder::excluded;
 use super::glossary;
-use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
 use super::page::Page;
+use super::picture_groups;
 use super::pictures::{Album, heat_key};
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, Row};
+use super::series_style::SeriesStyles;
 use super::table::Table;
 use super::text;
 
@@ -76,17 +76,17 @@ pub(super) fn picture_table(page: &mut Page, rows: &[Row]) {
     page.text(
         "In pictures with few hit pixels, fixed costs of a frame (clear, store, end of frame) dominate, and methods look more alike than they are.",
     );
-    page.table(&covered::pictures(rows), &[0, 1, 5]);
+    page.table(&picture_groups::pictures(rows), &[0, 1, 5]);
 }
 
 /// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for paper.
-pub(super) fn row_table(page: &mut Page, rows: &[Row], looks: &Looks) {
+pub(super) fn row_table(page: &mut Page, rows: &[Row], styles: &SeriesStyles) {
     let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
     let named = |r: &Row| {
         let s = &r.settings;
         vec![
             r.scene.clone(),
-            looks.way(s),
+            styles.way(s),
             stage(s.stage).to_owned(),
             format!("{}x{}", s.width, s.height),
         ]

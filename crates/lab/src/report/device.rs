@@ -1,6 +1,6 @@
 //! The real thing: measuring on a Vulkan device, against the double-precision reference.
 
-use super::measure::{Bench, Sample, Subject};
+use super::measure::{Bench, Sample, TimedRenderer};
 use super::view::View;
 use crate::method::MethodSettings;
 use crate::renderer::{MethodDevice, MethodRenderer};
@@ -27,7 +27,7 @@ impl DeviceBench {
 
 struct Ready(MethodRenderer);
 
-impl Subject for Ready {
+impl TimedRenderer for Ready {
     fn sample(&mut self) -> Result<Sample> {
         // One stage per submission: timestamps around both in one lie on some drivers.
         let times = self.0.draw()?;
@@ -39,7 +39,11 @@ impl Subject for Ready {
 }
 
 impl Bench for DeviceBench {
-    fn subject(&mut self, view: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>> {
+    fn timed_renderer(
+        &mut self,
+        view: &View,
+        settings: &MethodSettings,
+    ) -> Result<Box<dyn TimedRenderer>> {
         let renderer = self.device.renderer(&view.scene, settings)?;
         Ok(Box::new(Ready(renderer)))
     }

@@ -238,7 +238,7 @@ mod tests {
     use super::super::plan::rbm_baseline;
     use super::super::row::tests::row as one_row;
     use super::super::view::tests::spindle;
-    use super::super::{chapters, covered, curves, row, scaling, text};
+    use super::super::{chapters, curves, picture_groups, row, scaling, text};
     use super::*;
 
     #[test]
@@ -250,7 +250,7 @@ mod tests {
             &chapters::TIMES,
             &chapters::ERRORS,
             &chapters::EXCLUDED,
-            &covered::PICTURES,
+            &picture_groups::PICTURES,
             &curves::FRONTS,
             &scaling::HEADER,
         ];

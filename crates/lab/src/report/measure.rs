@@ -4,9 +4,9 @@
 //! them. All groups are gone through several times (*passes*), each time with everything built anew: what one placement in memory,
 //! or one bout of work beside ours, does to a time shows as spread between passes (see [`stats`](super::stats)).
 
-pub use super::limits::Limits;
 use super::plan::{Case, Plan, together};
 use super::row::{Row, Steps};
+pub use super::time_budget::TimeBudget;
 use super::view::View;
 use crate::compare::{self, CompareOptions, Comparison};
 use crate::method::MethodSettings;
@@ -27,7 +27,7 @@ pub struct Sample {
 }
 
 /// A way of drawing a view, ready to be timed.
-pub trait Subject {
+pub trait TimedRenderer {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
@@ -35,18 +35,22 @@ pub trait Subject {
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// What makes subjects and pictures: a Vulkan device, or a stand-in that tests the benchmark itself.
+/// What makes renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark itself.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
     /// # Errors
     /// Where this way of drawing does not apply to the view; a failure of the device itself is [`Stage::Device`] and ends the run.
-    fn subject(&mut self, view: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>>;
+    fn timed_renderer(
+        &mut self,
+        view: &View,
+        settings: &MethodSettings,
+    ) -> Result<Box<dyn TimedRenderer>>;
 
     /// One frame with all planes, and the bytes of its maps.
     ///
     /// # Errors
-    /// As [`Bench::subject`].
+    /// As [`Bench::timed_renderer`].
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
     /// What should be seen.
@@ -57,19 +61,19 @@ pub trait Bench {
 }
 
 /// Whoever waits for the measurement.
-pub struct Watch<'a> {
+pub struct Observer<'a> {
     /// Set from anywhere to end early; what was measured is kept.
     pub stop: &'a AtomicBool,
     /// Told what is under way, milliseconds gone, and milliseconds expected in all.
     pub progress: &'a dyn Fn(&str, u64, u64),
     /// Shown every picture once, with what should be seen.
-    pub picture: &'a mut dyn FnMut(&Seen) -> Result<()>,
+    pub picture: &'a mut dyn FnMut(&RenderedCase) -> Result<()>,
     /// Given the rows so far after each pass, so that not even a crash loses them.
     pub passed: &'a mut dyn FnMut(&[Row]) -> Result<()>,
 }
 
 /// A picture and its measure.
-pub struct Seen<'a> {
+pub struct RenderedCase<'a> {
     /// The plan.
     pub plan: &'a Plan,
     /// Which of its cases.
@@ -106,49 +110,49 @@ type Compared = (Frame, Result<Comparison>);
 pub fn measure(
     plan: &Plan,
     bench: &mut dyn Bench,
-    limits: &Limits,
-    watch: &mut Watch,
+    budget: &TimeBudget,
+    observer: &mut Observer,
 ) -> Result<Measured> {
     let mut run = Run {
         plan,
         bench,
-        limits,
+        budget,
         start: Instant::now(),
         rows: plan.cases.iter().map(|_| None).collect(),
         left_out: Vec::new(),
     };
     let groups = plan.groups();
-    let mut visits = groups.len() * limits.passes.0;
+    let mut visits = groups.len() * budget.passes.0;
     let mut pass = 0;
     let mut began = Instant::now();
     'passes: loop {
         for group in &groups {
-            if watch.stop.load(Ordering::Relaxed) {
+            if observer.stop.load(Ordering::Relaxed) {
                 break 'passes;
             }
             let begin = Instant::now();
-            let left = limits.time.saturating_sub(run.start.elapsed());
+            let left = budget.time.saturating_sub(run.start.elapsed());
             let share = left / u32::try_from(visits.max(1)).unwrap_or(u32::MAX);
             if pass == 0 {
                 for picture in run.pictures(group) {
-                    run.accuracy(&picture, watch)?;
+                    run.accuracy(&picture, observer)?;
                 }
             }
-            run.time(group, pass, begin + share, watch)?;
+            run.time(group, pass, begin + share, observer)?;
             visits = visits.saturating_sub(1);
         }
         pass += 1;
-        (watch.passed)(&run.timed())?;
+        (observer.passed)(&run.timed())?;
         let last = std::mem::replace(&mut began, Instant::now()).elapsed();
-        if limits.would_overrun(pass, run.start.elapsed(), last) {
+        if budget.would_overrun(pass, run.start.elapsed(), last) {
             break;
         }
-        if pass >= limits.passes.1 || (pass >= limits.passes.0 && (run.known() || run.late(pass))) {
+        if pass >= budget.passes.1 || (pass >= budget.passes.0 && (run.known() || run.late(pass))) {
             break;
         }
-        visits = visits.max(groups.len() * limits.passes.0.saturating_sub(pass).max(1));
+        visits = visits.max(groups.len() * budget.passes.0.saturating_sub(pass).max(1));
     }
-    let interrupted = watch.stop.load(Ordering::Relaxed);
+    let interrupted = observer.stop.load(Ordering::Relaxed);
     let took = run.start.elapsed();
     let rows = run.timed();
     let left_out = run.left_out;
@@ -174,17 +178,17 @@ pub fn measure(
 struct Run<'a> {
     plan: &'a Plan,
     bench: &'a mut dyn Bench,
-    limits: &'a Limits,
+    budget: &'a TimeBudget,
     start: Instant,
     rows: Vec<Option<Row>>,
     left_out: Vec<(Case, String)>,
 }
 
 impl Run<'_> {
-    fn tell(&self, watch: &Watch, what: &str) {
+    fn tell(&self, observer: &Observer, what: &str) {
         let gone = self.start.elapsed();
-        let all = self.limits.time.max(gone);
-        (watch.progress)(what, gone.as_millis() as u64, all.as_millis() as u64);
+        let all = self.budget.time.max(gone);
+        (observer.progress)(what, gone.as_millis() as u64, all.as_millis() as u64);
     }
 
     /// Leaves a case out for good; a device that fails ends the run.
@@ -222,12 +226,12 @@ impl Run<'_> {
     }
 
     /// Draws each case that shows one picture once with all planes and compares it with the truth.
-    fn accuracy(&mut self, group: &[usize], watch: &mut Watch) -> Result<()> {
+    fn accuracy(&mut self, group: &[usize], observer: &mut Observer) -> Result<()> {
         let Some(&first) = group.first() else {
             return Ok(());
         };
         let view = &self.plan.views[self.plan.cases[first].view];
-        self.tell(watch, &format!("{}: the reference", view.name));
+        self.tell(observer, &format!("{}: the reference", view.name));
         let truth = self.bench.truth(view, &self.plan.cases[first].settings)?;
         let options = CompareOptions {
             texel: view.texel(),
@@ -238,18 +242,18 @@ impl Run<'_> {
         std::thread::scope(|scope| {
             let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
             for &index in group {
-                if watch.stop.load(Ordering::Relaxed) {
+                if observer.stop.load(Ordering::Relaxed) {
                     break;
                 }
                 let method = self.plan.cases[index].settings.method;
-                self.tell(watch, &format!("{}: errors of {method}", view.name));
+                self.tell(observer, &format!("{}: errors of {method}", view.name));
                 let settings = MethodSettings {
                     planes: Planes::All,
                     ..self.plan.cases[index].settings
                 };
                 let drawn = self.bench.picture(view, &settings);
                 if let Some(one) = compared.take() {
-                    self.keep(one, (&truth, &options), watch)?;
+                    self.keep(one, (&truth, &options), observer)?;
                 }
                 match drawn {
                     Ok((frame, map_bytes)) => {
@@ -264,7 +268,7 @@ impl Run<'_> {
                 }
             }
             match compared.take() {
-                Some(one) => self.keep(one, (&truth, &options), watch),
+                Some(one) => self.keep(one, (&truth, &options), observer),
                 None => Ok(()),
             }
         })
@@ -275,14 +279,14 @@ impl Run<'_> {
         &mut self,
         (index, map_bytes, work): (usize, u64, ScopedJoinHandle<Compared>),
         (truth, options): (&Frame, &CompareOptions),
-        watch: &mut Watch,
+        observer: &mut Observer,
     ) -> Result<()> {
         let (frame, comparison) = work
             .join()
             .map_err(|_| Error::new(Stage::Report, "a comparison was given up; report this"))?;
         let comparison = comparison?;
         let case = &self.plan.cases[index];
-        (watch.picture)(&Seen {
+        (observer.picture)(&RenderedCase {
             plan: self.plan,
             case,
             frame: &frame,
@@ -296,40 +300,46 @@ impl Run<'_> {
     }
 
     /// Times the cases of a group in turn until `end`, at least for the least number of rounds.
-    fn time(&mut self, group: &[usize], pass: usize, end: Instant, watch: &Watch) -> Result<()> {
-        let mut subjects = Vec::new();
+    fn time(
+        &mut self,
+        group: &[usize],
+        pass: usize,
+        end: Instant,
+        observer: &Observer,
+    ) -> Result<()> {
+        let mut renderers = Vec::new();
         for &index in group {
-            if self.rows[index].is_none() || watch.stop.load(Ordering::Relaxed) {
+            if self.rows[index].is_none() || observer.stop.load(Ordering::Relaxed) {
                 continue;
             }
             let case = &self.plan.cases[index];
             let view = &self.plan.views[case.view];
-            self.tell(watch, &format!("{}: pass {}", view.name, pass + 1));
+            self.tell(observer, &format!("{}: pass {}", view.name, pass + 1));
             let ready = self
                 .bench
-                .subject(view, &case.settings)
-                .and_then(|mut subject| {
-                    for _ in 0..self.limits.warm_up {
-                        subject.sample()?;
+                .timed_renderer(view, &case.settings)
+                .and_then(|mut renderer| {
+                    for _ in 0..self.budget.warm_up {
+                        renderer.sample()?;
                     }
-                    Ok(subject)
+                    Ok(renderer)
                 });
             match ready {
-                Ok(subject) => subjects.push((index, subject, Vec::new())),
+                Ok(renderer) => renderers.push((index, renderer, Vec::new())),
                 Err(error) => self.leave_out(index, error)?,
             }
         }
-        for round in 0..self.limits.rounds.1 {
-            let stop = watch.stop.load(Ordering::Relaxed);
+        for round in 0..self.budget.rounds.1 {
+            let stop = observer.stop.load(Ordering::Relaxed);
             let known = || {
-                subjects
+                renderers
                     .iter()
-                    .all(|(_, _, s)| settled(s, self.limits.precision))
+                    .all(|(_, _, s)| settled(s, self.budget.precision))
             };
-            if stop || (round >= self.limits.rounds.0 && (Instant::now() >= end || known())) {
+            if stop || (round >= self.budget.rounds.0 && (Instant::now() >= end || known())) {
                 break;
             }
-            let count = subjects.len();
+            let count = renderers.len();
             let mut failed = Vec::new();
             for turn in 0..count {
                 // There and back, so that nobody always follows the same neighbour.
@@ -338,19 +348,19 @@ impl Run<'_> {
                 } else {
                     count - 1 - turn
                 };
-                let (_, subject, samples) = &mut subjects[place];
-                match subject.sample() {
+                let (_, renderer, samples) = &mut renderers[place];
+                match renderer.sample() {
                     Ok(sample) => samples.push(sample),
                     Err(error) => failed.push((place, error)),
                 }
             }
             for (place, error) in failed.into_iter().rev() {
-                let (index, _, _) = subjects.remove(place);
+                let (index, _, _) = renderers.remove(place);
                 self.leave_out(index, error)?;
             }
-            self.tell(watch, &format!("pass {}, round {}", pass + 1, round + 1));
+            self.tell(observer, &format!("pass {}, round {}", pass + 1, round + 1));
         }
-        for (index, _, samples) in subjects {
+        for (index, _, samples) in renderers {
             if let Some(row) = &mut self.rows[index] {
                 row.passes.push(samples);
             }
@@ -362,7 +372,7 @@ impl Run<'_> {
     fn known(&self) -> bool {
         let narrow = |row: &Row| {
             row.time()
-                .is_some_and(|t| t.relative() <= self.limits.precision)
+                .is_some_and(|t| t.relative() <= self.budget.precision)
         };
         self.rows.iter().flatten().all(narrow)
     }
@@ -370,7 +380,7 @@ impl Run<'_> {
     /// Whether one more pass, as long as those before, would end too late.
     fn late(&self, passes: usize) -> bool {
         let gone = self.start.elapsed();
-        gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.limits.time
+        gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time
     }
 }
 

@@ -6,17 +6,17 @@ use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
 use super::chart::front::{WORTH, front, stairs};
 use super::chart::xy::{Guide, Point, Series, XyChart};
-use super::covered::pictures_of;
 use super::curves::Measure;
 use super::folder::{keep_figure, write_text};
-use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{safe, stage};
 use super::page::Page;
+use super::picture_groups::pictures_of;
 use super::pictures::Album;
 use super::plan::Plan;
 use super::row::Row;
+use super::series_style::SeriesStyles;
 use super::stats::Interval;
 use super::summary;
 use revmap::error::Result;
@@ -24,7 +24,7 @@ use std::path::Path;
 
 /// The chart of times, a block for each picture and stage.
 #[must_use]
-pub fn time_chart(rows: &[&Row], looks: &Looks) -> Figure {
+pub fn time_chart(rows: &[&Row], styles: &SeriesStyles) -> Figure {
     let mut blocks: Vec<Block> = Vec::new();
     for row in rows {
         let Some(value) = row.time() else { continue };
@@ -37,9 +37,9 @@ pub fn time_chart(rows: &[&Row], looks: &Looks) -> Figure {
             stage(s.stage)
         );
         let line = Line {
-            name: looks.way(s),
+            name: styles.way(s),
             value,
-            style: looks.style(s),
+            style: styles.style(s),
         };
         match blocks.iter_mut().find(|b| b.name == name) {
             Some(block) => block.lines.push(line),
@@ -74,7 +74,7 @@ fn pages<'a>(pictures: &[Vec<&'a Row>]) -> Vec<Vec<&'a Row>> {
 
 /// The chart of depth error against time of rows that show one picture, with its Pareto front.
 #[must_use]
-pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
+pub fn error_chart(title: &str, rows: &[&Row], styles: &SeriesStyles) -> Figure {
     let points: Vec<(&Row, Interval, f64)> = rows
         .iter()
         .filter_map(|r| Some((*r, r.time()?, r.errors.depth?.p99)))
@@ -94,8 +94,8 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
             continue;
         }
         series.push(Series {
-            name: looks.way(s),
-            style: looks.style(s),
+            name: styles.way(s),
+            style: styles.style(s),
             points: vec![point(&time, y, None)],
             joined: false,
         });
@@ -104,12 +104,12 @@ pub fn error_chart(title: &str, rows: &[&Row], looks: &Looks) -> Figure {
     meshes.sort_by_key(|(row, ..)| row.settings.method.quads());
     if let Some((coarsest, ..)) = meshes.first() {
         let fineness = |row: &Row| {
-            let way = looks.way(&row.settings);
+            let way = styles.way(&row.settings);
             way.strip_prefix("mesh:").map(str::to_owned)
         };
         series.push(Series {
             name: "mesh, segments x rings".into(),
-            style: looks.style(&coarsest.settings),
+            style: styles.style(&coarsest.settings),
             points: meshes
                 .iter()
                 .map(|(row, time, y)| point(time, *y, fineness(row)))
@@ -144,11 +144,11 @@ pub fn write(
     album: &Album,
 ) -> Result<()> {
     let rows = &measured.rows;
-    let looks = Looks::of(rows);
+    let styles = SeriesStyles::of(rows);
     let mut page = Page::new("revmap: frame rates, look-ups and errors");
     chapters::begin(&mut page, machine, measured);
 
-    summary::chapters(&mut page, folder, rows, &looks)?;
+    summary::chapters(&mut page, folder, rows, &styles)?;
 
     page.chapter("Speed and error");
     let all: Vec<&Row> = rows.iter().collect();
@@ -159,7 +159,7 @@ pub fn write(
         let figure = error_chart(
             &format!("{}, {size}: depth error against time", first.scene),
             &group,
-            &looks,
+            &styles,
         );
         keep_figure(
             folder,
@@ -175,7 +175,7 @@ pub fn write(
     page.chapter("Times");
     for chunk in pages(&pictures_of(&all)) {
         let Some(first) = chunk.first() else { continue };
-        let figure = time_chart(&chunk, &looks);
+        let figure = time_chart(&chunk, &styles);
         keep_figure(
             folder,
             &format!(
@@ -190,7 +190,7 @@ pub fn write(
     }
     chapters::picture_table(&mut page, rows);
     page.chapter("All rows");
-    chapters::row_table(&mut page, rows, &looks);
+    chapters::row_table(&mut page, rows, &styles);
     chapters::pictures(&mut page, plan, album);
     chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
@@ -241,16 +241,16 @@ mod tests {
     fn no_words_cover_each_other_in_the_fullest_charts() {
         let rows = crowded();
         let ways: Vec<MethodSettings> = rows.iter().map(|r| r.settings).collect();
-        let looks = Looks::new(&ways);
+        let styles = SeriesStyles::new(&ways);
         let all: Vec<&Row> = rows.iter().collect();
         for figure in [
-            error_chart("king@25:close, 1366x706", &all, &looks),
-            time_chart(&all, &looks),
+            error_chart("king@25:close, 1366x706", &all, &styles),
+            time_chart(&all, &styles),
         ] {
             assert_eq!(figure.faults(), Vec::<String>::new(), "{}", figure.title);
         }
         // Meshes are one line with a word at each, not an entry each in the legend.
-        let said = svg(&error_chart("t", &all, &looks));
+        let said = svg(&error_chart("t", &all, &styles));
         assert_eq!(said.matches(">mesh").count(), 1);
         assert!(said.contains(">512x1024<") || said.contains(">128x256<"));
     }

@@ -8,7 +8,6 @@ pub use printed::{Printed, SIZES, TABLES, Trend};
 
 use super::chapters;
 use super::folder::{keep_figure, write_text};
-use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
@@ -17,6 +16,7 @@ use super::pictures::Album;
 use super::plan::{Plan, variant};
 use super::ratios::between;
 use super::row::Row;
+use super::series_style::SeriesStyles;
 use super::stats::Interval;
 use super::suite;
 use super::table::Table;
@@ -130,7 +130,7 @@ fn lines<'a>(rows: &'a [Row], table: usize) -> Vec<Measures<'a>> {
 }
 
 /// One of the published tables, the published figures first.
-fn measured_table(rows: &[Row], index: usize, looks: &Looks) -> Table {
+fn measured_table(rows: &[Row], index: usize, styles: &SeriesStyles) -> Table {
     let table = &TABLES[index];
     let mut header = vec!["size".to_owned(), "method".to_owned(), "stage".to_owned()];
     header.extend(
@@ -162,7 +162,7 @@ fn measured_table(rows: &[Row], index: usize, looks: &Looks) -> Table {
         for line in lines {
             let mut record = vec![
                 format!("{}x{}", size.0, size.1),
-                looks.way(&line.way),
+                styles.way(&line.way),
                 stage(line.way.stage).to_owned(),
             ];
             record.extend(
@@ -191,14 +191,14 @@ fn measured_table(rows: &[Row], index: usize, looks: &Looks) -> Table {
 /// All three tables as text.
 #[must_use]
 pub fn as_text(rows: &[Row]) -> String {
-    let looks = Looks::of(rows);
+    let styles = SeriesStyles::of(rows);
     let mut out = String::new();
     for (index, table) in TABLES.iter().enumerate() {
         out += &format!(
             "Table {}: {}, frames per second\n",
             table.number, table.title
         );
-        out += &measured_table(rows, index, &looks).aligned();
+        out += &measured_table(rows, index, &styles).aligned();
         out.push('\n');
     }
     out
@@ -226,7 +226,7 @@ pub fn write(
     album: &Album,
 ) -> Result<()> {
     let rows = &measured.rows;
-    let looks = Looks::of(rows);
+    let styles = SeriesStyles::of(rows);
     let mut page = Page::new("revmap: the published tables, measured again");
     chapters::begin(&mut page, machine, measured);
     page.chapter("What can be compared");
@@ -234,11 +234,11 @@ pub fn write(
     for (index, table) in TABLES.iter().enumerate() {
         page.chapter(&format!("Table {}: {}", table.number, table.title));
         page.text("Frames per second: the published figures, and below them every method as measured here.");
-        page.table(&measured_table(rows, index, &looks), &[0, 1, 2, 7]);
+        page.table(&measured_table(rows, index, &styles), &[0, 1, 2, 7]);
         for size in SIZES {
             let name = format!("table{}-{}x{}", table.number, size.0, size.1);
             for scale in [Scaled::Rate, Scaled::Trend] {
-                let Some(figure) = chart(table, index, rows, size, &looks, scale) else {
+                let Some(figure) = chart(table, index, rows, size, &styles, scale) else {
                     continue;
                 };
                 keep_figure(folder, &format!("{name}-{}", scale.name()), &figure)?;
@@ -247,7 +247,7 @@ pub fn write(
         }
     }
     page.chapter("All rows");
-    chapters::row_table(&mut page, rows, &looks);
+    chapters::row_table(&mut page, rows, &styles);
     chapters::pictures(&mut page, plan, album);
     chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
@@ -315,8 +315,8 @@ mod tests {
             (r.settings.width, r.settings.height) = (1000, 600);
             rows.push(r);
         }
-        let looks = Looks::of(&rows);
-        let records = measured_table(&rows, 1, &looks).records;
+        let styles = SeriesStyles::of(&rows);
+        let records = measured_table(&rows, 1, &styles).records;
         // Published figures stand above what was measured at their size, and nowhere else.
         assert_eq!(records.len(), 3);
         assert_eq!(records[2][..3], ["1000x600", "circle", "fragment"]);

@@ -1,7 +1,7 @@
 //! Pictures beside the numbers: what was drawn, what each pixel cost, where it is wrong.
 
 use super::folder::{make, write_bytes};
-use super::measure::Seen;
+use super::measure::RenderedCase;
 use super::names::{self, safe};
 use super::plan::Labels;
 use crate::compare::{Heat, heat_map, ramp};
@@ -69,7 +69,7 @@ impl Album {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn add(&mut self, seen: &Seen) -> Result<()> {
+    pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let view = seen.case.view;
         let name = &seen.plan.views[view].name;

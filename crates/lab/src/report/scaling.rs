@@ -11,13 +11,13 @@ use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::{keep_figure, write_text};
-use super::looks::Looks;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names::{number, stage};
 use super::page::Page;
 use super::plan::{Plan, variant};
 use super::row::Row;
+use super::series_style::SeriesStyles;
 use super::table::Table;
 use super::text;
 use crate::method::MethodSettings;
@@ -66,11 +66,11 @@ impl Quantity {
     }
 }
 
-fn table(all: &[Growth], looks: &Looks) -> Table {
+fn table(all: &[Growth], styles: &SeriesStyles) -> Table {
     let record = |g: &Growth| {
         let ends = |k: Option<&(f64, f64)>| k.map(|p| number(p.1, 3)).unwrap_or_default();
         vec![
-            looks.way(&g.way),
+            styles.way(&g.way),
             stage(g.way.stage).to_owned(),
             ends(g.points.first()),
             ends(g.points.last()),
@@ -96,7 +96,7 @@ pub(super) const HEADER: [&str; 6] = [
 /// The exponents as text.
 #[must_use]
 pub fn as_text(rows: &[Row]) -> String {
-    let looks = looks(rows);
+    let styles = styles(rows);
     let mut out = String::new();
     for quantity in Quantity::ALL {
         let all = growth(rows, quantity);
@@ -108,13 +108,13 @@ pub fn as_text(rows: &[Row]) -> String {
             quantity.name(),
             quantity.name()
         );
-        out += &table(&all, &looks).aligned();
+        out += &table(&all, &styles).aligned();
         out.push('\n');
     }
     out
 }
 
-fn looks(rows: &[Row]) -> Looks {
+fn styles(rows: &[Row]) -> SeriesStyles {
     let ways: Vec<MethodSettings> = rows
         .iter()
         .map(|r| MethodSettings {
@@ -122,7 +122,7 @@ fn looks(rows: &[Row]) -> Looks {
             ..variant(&r.settings)
         })
         .collect();
-    Looks::new(&ways)
+    SeriesStyles::new(&ways)
 }
 
 /// What tells meshes apart, which look alike.
@@ -131,7 +131,7 @@ fn fineness(way: &MethodSettings) -> Option<String> {
     name.strip_prefix("mesh:").map(str::to_owned)
 }
 
-fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
+fn chart(all: &[Growth], quantity: Quantity, styles: &SeriesStyles) -> Figure {
     let (unit, label) = match quantity {
         Quantity::Pixels => (1e6, "pixels (millions)"),
         Quantity::Solids => (1.0, "solids (number)"),
@@ -140,8 +140,8 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
     let series = all
         .iter()
         .map(|g| Series {
-            name: looks.way(&g.way),
-            style: looks.style(&g.way),
+            name: styles.way(&g.way),
+            style: styles.style(&g.way),
             points: (g.points.iter().enumerate())
                 .map(|(k, &(x, y))| Point {
                     x: x / unit,
@@ -161,9 +161,9 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
             Some(Guide {
                 name: String::new(),
                 points: ends.map(|p| (p.0 / unit, law.at(p.0))).to_vec(),
-                color: looks.style(&g.way).color,
-                dash: looks.style(&g.way).dash,
-                width: looks.style(&g.way).line(),
+                color: styles.style(&g.way).color,
+                dash: styles.style(&g.way).dash,
+                width: styles.style(&g.way).line(),
             })
         })
         .collect();
@@ -187,7 +187,7 @@ fn chart(all: &[Growth], quantity: Quantity, looks: &Looks) -> Figure {
 /// When a file cannot be written.
 pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine) -> Result<()> {
     let rows = &measured.rows;
-    let looks = looks(rows);
+    let styles = styles(rows);
     let mut page = Page::new("revmap: how time grows");
     chapters::begin(&mut page, machine, measured);
     for quantity in Quantity::ALL {
@@ -197,7 +197,7 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
         }
         page.chapter(&format!("With {}", quantity.name()));
         page.text(quantity.setting());
-        let figure = chart(&all, quantity, &looks);
+        let figure = chart(&all, quantity, &styles);
         keep_figure(
             folder,
             &format!("scaling-{}", quantity.name().replace(' ', "-")),
@@ -207,11 +207,11 @@ pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine)
             &figure,
             "Markers are measured times, filled in the fragment stage and hollow in the compute stage; lines are the power laws fitted to them, thinner in the compute stage.",
         );
-        page.table(&table(&all, &looks), &[0, 1]);
+        page.table(&table(&all, &styles), &[0, 1]);
     }
     page.chapter("All rows");
     // Here the rows of maps tell rows apart.
-    chapters::row_table(&mut page, rows, &Looks::of(rows));
+    chapters::row_table(&mut page, rows, &SeriesStyles::of(rows));
     chapters::end(&mut page, plan, measured);
     write_text(&folder.join("report.html"), &page.html())
 }

@@ -3,14 +3,14 @@
 use super::chart::Figure;
 use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
-use super::covered::{Part, parts};
 use super::curves::{self, Measure};
 use super::folder::keep_figure;
-use super::looks::Looks;
 use super::names::stage;
 use super::page::Page;
+use super::picture_groups::{Part, parts};
 use super::ratios::{Ratio, over_rbm_baseline};
 use super::row::Row;
+use super::series_style::SeriesStyles;
 use super::text;
 use crate::method::MethodSettings;
 use revmap::error::Result;
@@ -21,7 +21,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// When a chart cannot be written.
-pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> Result<()> {
+pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], styles: &SeriesStyles) -> Result<()> {
     let parts = parts(rows);
     if !over_rbm_baseline(rows).is_empty() {
         page.chapter("Against the RBM baseline");
@@ -34,10 +34,10 @@ pub fn chapters(page: &mut Page, folder: &Path, rows: &[Row], looks: &Looks) -> 
                 continue;
             }
             page.heading(&part.heading());
-            let figure = ratio_chart(part.views(), &ratios, looks);
+            let figure = ratio_chart(part.views(), &ratios, styles);
             keep_figure(folder, &format!("ratios{}", part.ending(&parts)), &figure)?;
             page.figure(&figure, "Time of each method over that of the RBM baseline in the same stage, with its 95 % interval; the numbers at the right are the values. Further left is faster.");
-            page.table(&text::ratio_table(&ratios, looks.labels()), &[0, 1]);
+            page.table(&text::ratio_table(&ratios, styles.labels()), &[0, 1]);
         }
     }
     mesh_tables(page, &parts);
@@ -77,16 +77,16 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
 
 /// The chart of ratios to the RBM baseline over `views`.
 #[must_use]
-pub fn ratio_chart(views: &str, ratios: &[Ratio], looks: &Looks) -> Figure {
+pub fn ratio_chart(views: &str, ratios: &[Ratio], styles: &SeriesStyles) -> Figure {
     let mut blocks = Vec::new();
     for which in [DrawStage::Fragment, DrawStage::Compute] {
         let lines: Vec<Line> = ratios
             .iter()
             .filter(|r| r.settings.stage == which)
             .map(|r| Line {
-                name: looks.way(&r.settings),
+                name: styles.way(&r.settings),
                 value: r.time,
-                style: looks.style(&r.settings),
+                style: styles.style(&r.settings),
             })
             .collect();
         if !lines.is_empty() {
@@ -168,7 +168,7 @@ mod tests {
             &mut page,
             folder.path(),
             rows,
-            &Looks::new(rows.iter().map(|r| &r.settings)),
+            &SeriesStyles::new(rows.iter().map(|r| &r.settings)),
         )
         .unwrap();
         speed_and_error(&mut page, folder.path(), rows).unwrap();

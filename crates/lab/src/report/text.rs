@@ -1,7 +1,7 @@
 //! The tables that sum a run up, and what their fields look like.
 
-use super::covered::{parts, pictures};
 use super::names::{number, stage};
+use super::picture_groups::{parts, pictures};
 use super::plan::{Labels, RBM_BASELINE};
 use super::ratios::{Duel, Ratio, over_meshes, over_rbm_baseline};
 use super::row::Row;

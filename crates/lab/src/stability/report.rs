@@ -6,13 +6,13 @@ use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::table::Table;
 use crate::report::folder::{keep_figure, write_text};
-use crate::report::looks;
 use crate::report::machine::Machine;
 use crate::report::names::{number, stage};
 use crate::report::page::Page;
 use crate::report::pictures::{Shot, png};
+use crate::report::series_style;
+use crate::report::table::Table;
 use revmap::error::Result;
 use revmap::frame::Picture;
 use revmap::settings::Solver;
@@ -194,7 +194,7 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
             if !points.is_empty() {
                 series.push(Series {
                     name: solver.name().to_owned(),
-                    style: looks::style(&settings),
+                    style: series_style::style(&settings),
                     points,
                     joined: true,
                 });

@@ -5,7 +5,7 @@ use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::curves;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
-use revmap_lab::report::measure::{Watch, measure};
+use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::overview;
 use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::Labels;
@@ -45,13 +45,13 @@ fn no_truth_is_drawn_twice() {
         }
         plan.mixed = mixed;
         let mut bench = StandIn::new(Fault::None);
-        let mut watch = Watch {
+        let mut observer = Observer {
             stop: &AtomicBool::new(false),
             progress: &|_, _, _| {},
             picture: &mut |_| Ok(()),
             passed: &mut |_| Ok(()),
         };
-        measure(&plan, &mut bench, &LIMITS, &mut watch).unwrap();
+        measure(&plan, &mut bench, &LIMITS, &mut observer).unwrap();
         let mut asked = bench.truths.clone();
         asked.sort();
         asked.dedup();
@@ -93,7 +93,7 @@ fn a_runs_folder_is_whole() {
         &plan,
         &mut StandIn::new(Fault::ClockLies),
         &LIMITS,
-        &mut Watch {
+        &mut Observer {
             stop: &AtomicBool::new(false),
             progress: &|_, _, _| {},
             picture: &mut |seen| album.add(seen),

@@ -27,7 +27,10 @@ fn the_default_fails_what_is_known_and_nothing_else() {
         run(&device, &plan, &mut |_, _, _| true).unwrap()
     };
     let outcome = tried(&all, Solver::DEFAULT);
-    println!("{}", report::table(&all, &[Solver::DEFAULT], &outcome).aligned());
+    println!(
+        "{}",
+        report::table(&all, &[Solver::DEFAULT], &outcome).aligned()
+    );
     let failures = report::failures(&all, &outcome);
     assert!(failures.is_empty(), "{failures:#?}");
     for trial in &outcome.trials {

@@ -7,7 +7,9 @@ use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::measure::{Bench, Limits, Measured, Sample, Subject, Watch, measure};
+use revmap_lab::report::measure::{
+    Bench, Measured, Observer, Sample, TimeBudget, TimedRenderer, measure,
+};
 use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::view::View;
 use revmap_reference as reference;
@@ -54,7 +56,7 @@ struct Timed {
     stop_after: Option<(usize, &'static AtomicBool)>,
 }
 
-impl Subject for Timed {
+impl TimedRenderer for Timed {
     fn sample(&mut self) -> Result<Sample> {
         let mut frames = self.frames.borrow_mut();
         frames.push(self.method);
@@ -94,7 +96,11 @@ impl StandIn {
 }
 
 impl Bench for StandIn {
-    fn subject(&mut self, _: &View, settings: &MethodSettings) -> Result<Box<dyn Subject>> {
+    fn timed_renderer(
+        &mut self,
+        _: &View,
+        settings: &MethodSettings,
+    ) -> Result<Box<dyn TimedRenderer>> {
         self.refusal(settings)?;
         self.made += 1;
         let live = settings.method == Solver::Live;
@@ -176,7 +182,7 @@ pub fn plan() -> Plan {
 }
 
 /// Four passes of a few rounds, however long they take.
-pub const LIMITS: Limits = Limits {
+pub const LIMITS: TimeBudget = TimeBudget {
     time: Duration::from_secs(60),
     passes: (4, 4),
     rounds: (3, 6),
@@ -186,13 +192,13 @@ pub const LIMITS: Limits = Limits {
 
 /// Measures the plan.
 pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
-    let mut watch = Watch {
+    let mut observer = Observer {
         stop,
         progress: &|_, _, _| {},
         picture: &mut |_| Ok(()),
         passed: &mut |_| Ok(()),
     };
-    measure(&plan(), bench, &LIMITS, &mut watch)
+    measure(&plan(), bench, &LIMITS, &mut observer)
 }
 
 /// Measures the plan with a fault.

@@ -4,8 +4,8 @@ use super::{Printed, SIZES, lines};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::looks::Looks;
 use crate::report::row::Row;
+use crate::report::series_style::SeriesStyles;
 
 /// How a chart of a table shows rates.
 #[derive(Clone, Copy)]
@@ -45,7 +45,7 @@ pub(super) fn chart(
     index: usize,
     rows: &[Row],
     size: (u32, u32),
-    looks: &Looks,
+    styles: &SeriesStyles,
     scale: Scaled,
 ) -> Option<Figure> {
     let over = |rates: [Option<f64>; 3]| -> Option<Vec<(f64, f64)>> {
@@ -75,8 +75,8 @@ pub(super) fn chart(
             label: None,
         };
         series.push(Series {
-            name: looks.way(&line.way),
-            style: looks.style(&line.way),
+            name: styles.way(&line.way),
+            style: styles.style(&line.way),
             points: points.into_iter().map(point).collect(),
             joined: true,
         });

@@ -55,14 +55,14 @@ pub fn of_source(source: MapSource) -> Style {
 
 /// Names and looks of the ways of drawing that one report holds.
 #[derive(Clone, Debug)]
-pub struct Looks {
+pub struct SeriesStyles {
     labels: Labels,
     /// Each way's name and its look in the fragment stage.
     ways: Vec<(String, Style)>,
 }
 
-impl Looks {
-    /// Looks for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
+impl SeriesStyles {
+    /// SeriesStyles for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
     /// is free; meshes are alike.
     #[must_use]
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
@@ -91,7 +91,7 @@ impl Looks {
         Self { labels, ways }
     }
 
-    /// Looks for the ways in which rows were drawn.
+    /// SeriesStyles for the ways in which rows were drawn.
     pub(super) fn of(rows: &[Row]) -> Self {
         let ways: Vec<MethodSettings> = rows.iter().map(|r| variant(&r.settings)).collect();
         Self::new(&ways)
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn looks_are_the_same_in_every_report_and_both_stages() {
         let ways = all();
-        let (whole, few) = (Looks::new(&ways), Looks::new(&ways[4..8]));
+        let (whole, few) = (SeriesStyles::new(&ways), SeriesStyles::new(&ways[4..8]));
         for way in &ways[4..8] {
             assert_eq!(whole.style(way), few.style(way));
             let compute = MethodSettings {
@@ -209,8 +209,8 @@ mod tests {
             ..MethodSettings::default()
         };
         let ways: Vec<MethodSettings> = (1..=10).map(|k| steps(8 * k)).collect();
-        let looks = Looks::new(&ways);
-        let seen: Vec<Style> = ways.iter().map(|w| looks.style(w)).collect();
+        let styles = SeriesStyles::new(&ways);
+        let seen: Vec<Style> = ways.iter().map(|w| styles.style(w)).collect();
         for (i, a) in seen.iter().enumerate() {
             assert!(seen[..i].iter().all(|b| a.marker != b.marker));
             assert_eq!(a.color, color::GREY);

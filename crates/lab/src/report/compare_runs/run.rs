@@ -1,8 +1,8 @@
 //! A run read back from its folder.
 
-use crate::report::table::Table;
 use crate::report::row::{COLUMNS, CONTRACT};
 use crate::report::stats;
+use crate::report::table::Table;
 use revmap::error::{Error, Result, Stage};
 use std::collections::HashMap;
 use std::path::Path;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// How long and how often.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct TimeBudget {
     /// The time that all is meant to take. The least number of rounds is drawn even if that takes longer, and of passes unless it takes
     /// half as long again: drivers that compile slowly get two.
     pub time: Duration,
@@ -21,7 +21,7 @@ pub struct Limits {
 /// Fewest passes of which intervals can be told.
 const FEWEST: usize = 2;
 
-impl Limits {
+impl TimeBudget {
     /// Whether another pass as long as the `last` would take too long after `gone`, however few the `passes` were. A number of passes
     /// that was asked for is kept.
     pub(super) fn would_overrun(&self, passes: usize, gone: Duration, last: Duration) -> bool {
@@ -68,14 +68,14 @@ mod tests {
     fn slow_drivers_get_fewer_passes() {
         let seconds = Duration::from_secs;
         let over = |passes, gone, last| {
-            Limits::DEFAULT.would_overrun(passes, seconds(gone), seconds(last))
+            TimeBudget::DEFAULT.would_overrun(passes, seconds(gone), seconds(last))
         };
         assert!(!over(1, 600, 600), "an interval takes two passes");
         assert!(over(2, 90, 45) && !over(2, 60, 45));
         assert!(!over(4, 80, 20) && over(4, 110, 20));
-        let asked_for = Limits {
+        let asked_for = TimeBudget {
             passes: (4, 4),
-            ..Limits::DEFAULT
+            ..TimeBudget::DEFAULT
         };
         assert!(!asked_for.would_overrun(2, seconds(600), seconds(600)));
     }

@@ -205,7 +205,9 @@ pub fn as_text(against: &Against) -> String {
         };
         let [a, b] = told(pair.time);
         let [c, d] = told(pair.relative);
-        table.records.push(vec![name(pair), a, b, c, d, verdict.to_owned()]);
+        table
+            .records
+            .push(vec![name(pair), a, b, c, d, verdict.to_owned()]);
     }
     out += &table.aligned();
     let count = |v: Verdict| against.pairs.iter().filter(|p| p.verdict() == v).count();
