@@ -8,6 +8,7 @@ use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
+use std::ffi::CStr;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A Vulkan device and what all renderers on it share: memory and pipelines. Clones share it, too.
@@ -105,7 +106,7 @@ impl Device {
     fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
         let variable = variable();
         let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
-        let raw = create(&instance, &chosen)?;
+        let raw = create(&instance, &chosen, &[], None)?;
         // SAFETY: the queue was asked for when the device was made.
         let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
         let memory = Allocation::New(&instance.raw, chosen.physical);
@@ -241,20 +242,29 @@ impl<'a> Allocation<'a> {
     }
 }
 
-fn create(instance: &Instance, chosen: &Candidate) -> Result<ash::Device> {
+/// A device with the features that are used where they are offered, and with these extensions.
+pub(super) fn create(
+    instance: &Instance,
+    chosen: &Candidate,
+    extensions: &[&CStr],
+    more: Option<&mut dyn vk::ExtendsDeviceCreateInfo>,
+) -> Result<ash::Device> {
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(chosen.family)
         .queue_priorities(&priorities)];
     let features = chosen.wanted_features();
-    let mut extensions = Vec::new();
-    if chosen.portability_subset {
+    let mut extensions: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+    if chosen.offers(ash::khr::portability_subset::NAME) {
         extensions.push(ash::khr::portability_subset::NAME.as_ptr());
     }
-    let info = vk::DeviceCreateInfo::default()
+    let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
         .enabled_features(&features);
+    if let Some(more) = more {
+        info = info.push_next(more);
+    }
     // SAFETY: `info` asks only for what the physical device offers.
     unsafe { instance.raw.create_device(chosen.physical, &info, None) }
         .call("vkCreateDevice")

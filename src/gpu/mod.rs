@@ -12,6 +12,7 @@ mod buffers;
 mod call;
 mod clock;
 mod commands;
+mod compiler;
 mod device;
 mod frame_slot;
 mod hulls;
@@ -42,6 +43,7 @@ mod uploads;
 mod usage;
 mod view;
 
+pub use compiler::{CompiledShader, compiled_shaders};
 pub use device::{Device, HostDevice};
 pub use instance::VALIDATION_VARIABLE;
 pub use offscreen::{Guest, Offscreen, Times};

@@ -25,6 +25,7 @@ pub(crate) struct Pipelines {
     owners: AtomicU64,
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
     passes: Mutex<HashMap<Planes, vk::RenderPass>>,
+    flags: vk::PipelineCreateFlags,
     raw: ash::Device,
 }
 
@@ -49,6 +50,7 @@ impl Pipelines {
             compiled: AtomicU64::new(0),
             owners: AtomicU64::new(0),
             passes: Mutex::default(),
+            flags: vk::PipelineCreateFlags::empty(),
             raw,
         };
         let raw = &all.raw;
@@ -111,6 +113,12 @@ impl Pipelines {
             }
         }
         Ok(all)
+    }
+
+    /// The driver keeps its compiler's statistics of what is compiled from now on.
+    pub fn capturing_statistics(mut self) -> Self {
+        self.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
+        self
     }
 
     /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of [`Pipelines::owner`].
@@ -276,6 +284,7 @@ impl Pipelines {
     ) -> Result<vk::Pipeline> {
         let module = self.module(module, DepthOrder::Normal)?;
         let info = vk::ComputePipelineCreateInfo::default()
+            .flags(self.flags)
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
             .layout(self.layout);
         // SAFETY: `info` and all it points to live until the call returns.
@@ -332,6 +341,7 @@ impl Pipelines {
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
         let mut rendering = vk::PipelineRenderingCreateInfo::default();
         let mut info = vk::GraphicsPipelineCreateInfo::default()
+            .flags(self.flags)
             .stages(&stages)
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)

@@ -4,6 +4,7 @@ use super::call::Call;
 use super::instance::{API_VERSION, Instance, into_device};
 use crate::error::{Error, Result, Stage};
 use ash::vk;
+use std::ffi::CStr;
 
 /// The environment variable that names the device to take.
 pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
@@ -37,7 +38,7 @@ pub(crate) struct Candidate {
     pub timestamp_bits: u32,
     pub features: vk::PhysicalDeviceFeatures,
     pub properties: vk::PhysicalDeviceProperties,
-    pub portability_subset: bool,
+    pub extensions: Vec<vk::ExtensionProperties>,
 }
 
 impl Candidate {
@@ -47,9 +48,13 @@ impl Candidate {
         self.features.sampler_anisotropy == vk::TRUE
             && self.properties.device_type != vk::PhysicalDeviceType::CPU
     }
-}
 
-impl Candidate {
+    /// Whether it offers an extension.
+    pub fn offers(&self, extension: &CStr) -> bool {
+        let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
+        self.extensions.iter().any(named)
+    }
+
     /// The features that are used where they are offered.
     pub fn wanted_features(&self) -> vk::PhysicalDeviceFeatures {
         vk::PhysicalDeviceFeatures {
@@ -184,6 +189,16 @@ fn version(v: u32) -> String {
     )
 }
 
+/// A driver's text, up to its zero.
+pub(crate) fn text(raw: &[std::ffi::c_char]) -> String {
+    let bytes: Vec<u8> = raw
+        .iter()
+        .take_while(|c| **c != 0)
+        .map(|c| c.to_ne_bytes()[0])
+        .collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 pub(crate) fn inspect(
     raw: &ash::Instance,
     index: usize,
@@ -225,14 +240,6 @@ pub(crate) fn inspect(
         }
     }
     let timestamp_bits = family.map_or(0, |f| families[f].timestamp_valid_bits);
-    let text = |raw: &[std::ffi::c_char]| {
-        let bytes: Vec<u8> = raw
-            .iter()
-            .take_while(|c| **c != 0)
-            .map(|c| c.to_ne_bytes()[0])
-            .collect();
-        String::from_utf8_lossy(&bytes).into_owned()
-    };
     let driver_text = format!(
         "{} {}",
         text(&driver.driver_name),
@@ -268,10 +275,6 @@ pub(crate) fn inspect(
             ),
         ),
     ];
-    let portability_subset = extensions.iter().any(|e| {
-        e.extension_name_as_c_str()
-            .is_ok_and(|name| name == ash::khr::portability_subset::NAME)
-    });
     Candidate {
         report: DeviceReport {
             index,
@@ -288,7 +291,7 @@ pub(crate) fn inspect(
         timestamp_bits,
         features,
         properties: basic,
-        portability_subset,
+        extensions,
     }
 }
 

@@ -5,7 +5,7 @@ mod module;
 mod variant;
 
 pub use list::{Dispatch, Module};
-pub use module::{depth_less, words};
+pub use module::{depth_less, listed, words};
 pub(crate) use variant::is_beveled;
 pub use variant::{Kind, Met, Variant};
 

@@ -23,12 +23,16 @@ fn places() -> &'static HashMap<Module, Range<usize>> {
     })
 }
 
-/// The words of a module of [`modules`], or of the least general one that does its work; `None` where there is none.
+/// The module of [`modules`] that stands for this one: itself, or the least general one that does its work.
+#[must_use]
+pub fn listed(module: &Module) -> Option<Module> {
+    module.covered_by(|m| places().contains_key(m))
+}
+
+/// The words of the module that stands for this one; `None` where there is none.
 #[must_use]
 pub fn words(module: &Module) -> Option<Vec<u32>> {
-    let places = places();
-    let found = module.covered_by(|m| places.contains_key(m))?;
-    unpacked(ARCHIVE.get(places.get(&found)?.clone())?)
+    unpacked(ARCHIVE.get(places().get(&listed(module)?)?.clone())?)
 }
 
 /// Words from what `build.rs` has packed: deflated; seven bits a byte, the least first, the eighth says that more follow.

@@ -17,6 +17,7 @@ mod pipelines;
 mod progress;
 mod render;
 mod samples;
+mod shaders;
 mod shell;
 mod stability;
 mod usage;
@@ -50,6 +51,7 @@ enum Command {
     Bench(bench::Bench),
     Chart(chart::Chart),
     Stability(stability::Stability),
+    Shaders(shaders::Shaders),
     Devices(devices::Devices),
     Compare(compare::Compare),
     #[cfg(feature = "viewer")]
@@ -67,6 +69,7 @@ impl Command {
             Self::Bench(command) => command.run(),
             Self::Chart(command) => command.run(),
             Self::Stability(command) => command.run(),
+            Self::Shaders(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
             #[cfg(feature = "viewer")]

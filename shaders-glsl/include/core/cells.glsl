@@ -71,7 +71,7 @@ bool trace_cells(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
         vec3 next = (cell + stride - o) * inverse;
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
-        bool last = any(lessThan(beyond, vec3(0.0))) || any(greaterThanEqual(beyond, count));
+        bool last = CELLS == 0u || any(lessThan(beyond, vec3(0.0))) || any(greaterThanEqual(beyond, count));
         // Between two replicas that are solid at the border nothing is seen. A rounding must not ask the cell that the ray leaves.
         vec3 border = clamp(o + t * d, beyond + 1e-5, beyond + (1.0 - 1e-5));
         inside = CELLS != 0u && met && hit.at_border && !last && is_solid(in_cell(border, beyond), hit.steps);

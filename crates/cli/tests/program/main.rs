@@ -7,6 +7,7 @@ mod bench_command;
 mod command_line;
 mod pictures;
 mod run;
+mod shaders_command;
 mod stability_command;
 mod warnings;
 mod words;

@@ -3,13 +3,14 @@
 use crate::run::Bench;
 use serde_json::Value;
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "render",
     "animate",
     "bake",
     "bench",
     "chart",
     "stability",
+    "shaders",
     "devices",
     "compare",
     "completions",

@@ -1,0 +1,192 @@
+//! `revmap shaders`: what the driver's compiler says of each pipeline.
+
+use super::options::named;
+use super::output;
+use clap::Args;
+use revmap::gpu::{CompiledShader, DeviceReport, compiled_shaders};
+use revmap::settings::{DrawStage, Solver};
+use serde_json::{Map, Value, json};
+
+/// Names of the stages that a device draws in.
+const STAGES: [(&str, DrawStage); 2] = [
+    ("fragment", DrawStage::Fragment),
+    ("compute", DrawStage::Compute),
+];
+
+/// Names of the searches.
+const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
+    let mut all = [("default", Solver::DEFAULT); Solver::ALL.len() + 1];
+    let mut i = 0;
+    while i < Solver::ALL.len() {
+        all[i + 1] = (Solver::ALL[i].name(), Solver::ALL[i]);
+        i += 1;
+    }
+    all
+};
+
+/// Compiles what each stage, search and technique draws with, and prints what the driver's compiler says of it: registers, spills, instructions
+///
+/// Nothing is drawn and no memory is allocated. The driver must offer VK_KHR_pipeline_executable_properties. Mesa's RADV needs no GPU for it: the
+/// variable RADV_FORCE_FAMILY names the one to compile for.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap shaders --solver hull,live\n  \
+    revmap shaders --stage compute --json | jq '.shaders[] | {technique, solver, statistics}'\n  \
+    RADV_FORCE_FAMILY=navi21 revmap shaders --csv > navi21.csv")]
+pub struct Shaders {
+    /// Where rays are traced
+    #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&STAGES))]
+    stage: Vec<DrawStage>,
+    /// The searches [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
+    solver: Vec<Solver>,
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    device: Option<String>,
+    /// One JSON value on standard output in place of a table
+    #[arg(long)]
+    json: bool,
+    /// Comma-separated values on standard output in place of a table
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+}
+
+/// What the table shows of what drivers say, where they say it; all of it where none of this is said.
+const SHOWN: [&str; 9] = [
+    "Subgroups per SIMD",
+    "VGPRs",
+    "Spilled VGPRs",
+    "Spilled SGPRs",
+    "Scratch size",
+    "Instructions",
+    "Code size",
+    "Latency",
+    "Inverse Throughput",
+];
+
+impl Shaders {
+    pub fn run(self) -> revmap::Result<()> {
+        let solvers = if self.solver.is_empty() {
+            Solver::ALL.to_vec()
+        } else {
+            self.solver
+        };
+        let (device, shaders) = compiled_shaders(self.device.as_deref(), &self.stage, &solvers)?;
+        if self.json {
+            output::json(&as_json(&device, &shaders));
+            return Ok(());
+        }
+        let mut said: Vec<&str> = Vec::new();
+        for (name, _) in shaders.iter().flat_map(|s| &s.statistics) {
+            if !said.contains(&name.as_str()) {
+                said.push(name);
+            }
+        }
+        if self.csv {
+            let head = [
+                "technique,stage,solver,path,shader,module",
+                &said.join(","),
+                "device,driver",
+            ];
+            output::result(&head.join(","));
+            for shader in &shaders {
+                let of_device = [quoted(&device.name), quoted(&device.driver)];
+                let words = [
+                    words(shader).map(quoted).to_vec(),
+                    values(shader, &said),
+                    of_device.to_vec(),
+                ];
+                output::result(&words.concat().join(","));
+            }
+            return Ok(());
+        }
+        let known: Vec<&str> = SHOWN
+            .into_iter()
+            .filter(|name| said.contains(name))
+            .collect();
+        let shown = if known.is_empty() { said } else { known };
+        output::result(&format!("{}, {}\n", device.name, device.driver));
+        let head = ["technique", "stage", "solver", "path", "shader"]
+            .iter()
+            .chain(&shown);
+        let head: Vec<String> = head.map(|name| (*name).to_owned()).collect();
+        let rows = shaders.iter().map(|shader| {
+            let [technique, stage, solver, path, name, _] = words(shader);
+            let words = [technique, stage, solver, path, name].map(str::to_owned);
+            [words.to_vec(), values(shader, &shown)].concat()
+        });
+        table(&head, &rows.collect::<Vec<_>>());
+        Ok(())
+    }
+}
+
+fn words(shader: &CompiledShader) -> [&str; 6] {
+    let stage = STAGES.iter().find(|(_, stage)| *stage == shader.stage);
+    [
+        shader.technique,
+        stage.map_or("", |(name, _)| name),
+        shader.solver.name(),
+        shader.path,
+        &shader.shader,
+        &shader.module,
+    ]
+}
+
+/// The statistics of these names; empty where one is not said.
+fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
+    let value = |name: &&str| shader.statistics.iter().find(|(known, _)| known == name);
+    let text = |name| value(name).map_or(String::new(), |(_, value)| value.to_string());
+    names.iter().map(text).collect()
+}
+
+/// A field of comma-separated values.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A table as Markdown writes it, each column as wide as its widest cell.
+fn table(head: &[String], rows: &[Vec<String>]) {
+    let lines = || std::iter::once(head).chain(rows.iter().map(Vec::as_slice));
+    let widest = |column: usize| lines().map(|line| line[column].len()).max();
+    let widths: Vec<usize> = (0..head.len()).map(|c| widest(c).unwrap_or(0)).collect();
+    for (number, line) in lines().enumerate() {
+        let cells: Vec<_> = (line.iter().zip(&widths))
+            .map(|(cell, &width)| match cell.parse::<f64>() {
+                Ok(_) => format!("{cell:>width$}"),
+                Err(_) => format!("{cell:width$}"),
+            })
+            .collect();
+        output::result(&format!("| {} |", cells.join(" | ")));
+        if number == 0 {
+            let rules: Vec<_> = widths.iter().map(|&width| "-".repeat(width + 2)).collect();
+            output::result(&format!("|{}|", rules.join("|")));
+        }
+    }
+}
+
+fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {
+    let shader = |shader: &CompiledShader| {
+        let [technique, stage, solver, path, name, module] = words(shader);
+        let said = shader.statistics.iter();
+        let said = said.map(|(name, value)| (name.clone(), json!(value)));
+        json!({
+            "technique": technique,
+            "stage": stage,
+            "solver": solver,
+            "path": path,
+            "shader": name,
+            "module": module,
+            "subgroup_size": shader.subgroup_size,
+            "statistics": said.collect::<Map<_, _>>(),
+        })
+    };
+    json!({
+        "device": device.name,
+        "driver": device.driver,
+        "shaders": shaders.iter().map(shader).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,162 @@
+//! `revmap shaders` on Mesa's RADV, which compiles for RDNA2 without a GPU: what our shaders cost there, held to docs/shaders-navi21.csv.
+
+use crate::run::{Bench, lines};
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+const RENEW: &str = "if it must grow, renew docs/shaders-navi21.csv and docs/shaders.md by the command that stands there";
+
+/// Cells by column.
+type Row = HashMap<String, String>;
+
+/// The driver's manifest, where the loader looks for them. It belongs to the drivers that the tests run on.
+fn manifest() -> PathBuf {
+    let home = std::env::var_os("HOME")
+        .map(PathBuf::from)
+        .unwrap_or_default();
+    let folders = ["/etc", "/usr/local/etc", "/usr/local/share", "/usr/share"].map(PathBuf::from);
+    let own = [".config", ".local/share"].map(|folder| home.join(folder));
+    let entries = own
+        .iter()
+        .chain(&folders)
+        .filter_map(|folder| std::fs::read_dir(folder.join("vulkan/icd.d")).ok());
+    let found = entries
+        .flatten()
+        .map(|entry| entry.unwrap().path())
+        .find(|path| {
+            path.file_name()
+                .unwrap()
+                .to_string_lossy()
+                .starts_with("radeon_icd")
+        });
+    found.expect("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
+}
+
+fn rows(text: &str) -> Vec<Row> {
+    // Cells with commas are quoted.
+    let cells = |line: &str| -> Vec<String> {
+        let quoted = line.split('"').enumerate().map(|(i, part)| {
+            if i % 2 == 1 {
+                part.replace(',', ";")
+            } else {
+                part.to_owned()
+            }
+        });
+        quoted
+            .collect::<String>()
+            .split(',')
+            .map(str::to_owned)
+            .collect()
+    };
+    let mut all = text.lines().map(cells);
+    let head = all.next().unwrap();
+    all.map(|row| head.iter().cloned().zip(row).collect())
+        .collect()
+}
+
+fn compiled() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let output = Bench::new()
+            .command(["shaders", "--csv"])
+            .env("VK_DRIVER_FILES", manifest())
+            .env("VK_ICD_FILENAMES", manifest())
+            .env("RADV_FORCE_FAMILY", "navi21")
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{:?}", lines(&output));
+        rows(&String::from_utf8(output.stdout).unwrap())
+    })
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+fn name(row: &Row) -> String {
+    ["technique", "stage", "solver", "path", "module", "shader"]
+        .map(|c| row[c].as_str())
+        .join(", ")
+}
+
+/// Another version of the compiler allots registers otherwise: instructions alone are compared then, and loosely.
+#[test]
+fn shaders_grow_by_a_tenth_at_most() {
+    let kept = rows(include_str!("../../../../docs/shaders-navi21.csv"));
+    let now = compiled();
+    let all = [
+        "VGPRs",
+        "Spilled VGPRs",
+        "Spilled SGPRs",
+        "Scratch size",
+        "Code size",
+        "Instructions",
+    ];
+    let (columns, most) = if kept[0]["driver"] == now[0]["driver"] {
+        (&all[..], 1.1)
+    } else {
+        (&all[5..], 1.5)
+    };
+    let mut compared = 0;
+    for row in now {
+        let Some(before) = kept.iter().find(|kept| name(kept) == name(row)) else {
+            continue;
+        };
+        compared += 1;
+        for column in columns {
+            let (before, now) = (number(before, column), number(row, column));
+            assert!(
+                now <= most * before,
+                "{}: {column} was {before}, is {now}; {RENEW}",
+                name(row)
+            );
+        }
+    }
+    assert!(
+        2 * compared >= kept.len(),
+        "{compared} of {} rows are left; {RENEW}",
+        kept.len()
+    );
+}
+
+#[test]
+fn no_shader_spills_vectors_or_takes_scratch_memory() {
+    for row in compiled() {
+        let spilled = [number(row, "Spilled VGPRs"), number(row, "Scratch size")];
+        assert_eq!(spilled, [0.0; 2], "{}", name(row));
+    }
+}
+
+/// A bare solid is drawn by the least code: nothing of the other techniques is left in it.
+#[test]
+fn what_a_scene_does_not_use_costs_nothing() {
+    let pixels = |row: &&Row| {
+        row["shader"] != "vertex shader"
+            && !["depth alone", "every plane"].contains(&row["technique"].as_str())
+    };
+    let place = |row: &Row| ["stage", "solver", "path"].map(|c| row[c].clone());
+    let mut compared = 0;
+    for bare in compiled()
+        .iter()
+        .filter(pixels)
+        .filter(|row| row["technique"] == "revolution")
+    {
+        let others = compiled().iter().filter(pixels);
+        let others =
+            others.filter(|row| place(row) == place(bare) && row["technique"] != "8-bit map");
+        for other in others {
+            compared += 1;
+            for column in ["Instructions", "VGPRs"] {
+                let (bare_has, other_has) = (number(bare, column), number(other, column));
+                assert!(
+                    bare_has <= 1.02 * other_has + 8.0,
+                    "{column} of {} are {bare_has}, of {} {other_has}",
+                    name(bare),
+                    name(other)
+                );
+            }
+        }
+    }
+    assert!(compared > 50, "{compared}");
+}

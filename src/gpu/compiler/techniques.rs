@@ -1,0 +1,109 @@
+//! What scenes may use, and the pipelines that draw it.
+
+use crate::error::Result;
+use crate::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
+use crate::profile::Profile;
+use crate::scene::{Lighting, Object, Shadow};
+use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
+use crate::shader::{Kind, Met, Variant};
+use std::sync::Arc;
+
+/// What a scene uses besides a bare solid.
+pub(super) struct Technique {
+    pub name: &'static str,
+    object: Object,
+    lighting: Lighting,
+    format: MapFormat,
+    pub planes: Planes,
+}
+
+impl Technique {
+    /// The pipelines that draw it.
+    pub fn pipelines(&self, stage: DrawStage, solver: Solver) -> Vec<(Variant, Kind)> {
+        let depth_alone = matches!(self.planes, Planes::Depth { .. });
+        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        if (depth_alone && (stage == DrawStage::Compute || !exact))
+            || (self.format == MapFormat::Rgba8 && !solver.reads_map())
+        {
+            return Vec::new();
+        }
+        let settings = SearchSettings {
+            solver,
+            map_format: self.format,
+            ..SearchSettings::default()
+        };
+        let met = Met::default();
+        let own = Variant::new(
+            &settings,
+            self.planes,
+            solver,
+            &self.lighting,
+            &self.object,
+            met,
+        );
+        let in_compute = [[false; 2], [true; 2]].map(Some);
+        let ways = match stage {
+            DrawStage::Fragment => &[None][..],
+            DrawStage::Compute => &in_compute,
+        };
+        let all = ways
+            .iter()
+            .flat_map(|compute| own.reachable(solver, true, *compute, None))
+            // What other values of the parameters lead to is another technique's.
+            .filter(|(v, kind)| {
+                *kind == Kind::Beam || (v.search, v.more_lights) == (own.search, own.more_lights)
+            });
+        let large = |(v, kind): &(Variant, Kind)| {
+            (self.name == BARE && *kind != Kind::Hull).then(|| (v.with_tables(false), *kind))
+        };
+        all.flat_map(|one| std::iter::once(one).chain(large(&one)))
+            .collect()
+    }
+}
+
+/// The technique whose solid has nothing besides its shape. An extended one is drawn by the same
+/// pipelines.
+const BARE: &str = "revolution";
+
+pub(super) fn techniques() -> Result<Vec<Technique>> {
+    let triangle = [[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]];
+    let profile = Arc::new(Profile::polygon(&triangle, 0.5)?);
+    let white = Arc::new(ColorMap::from_texels(1, 1, vec![[255; 4]])?);
+    let level = DisplacementMap::from_heights(1, 1, &[0.5], SlopeFilter::Central)?;
+    let level = Arc::new(level);
+    let bare = |name| Technique {
+        name,
+        object: Object::new(name, profile.clone()),
+        lighting: Lighting::default(),
+        format: MapFormat::R32,
+        planes: Planes::Color,
+    };
+    let changed = |name, change: &dyn Fn(&mut Technique)| {
+        let mut technique = bare(name);
+        change(&mut technique);
+        technique
+    };
+    Ok(vec![
+        bare(BARE),
+        changed("beveled", &|t| t.object.offset.bevel = 0.25),
+        changed("8-bit map", &|t| t.format = MapFormat::Rgba8),
+        changed("many lights", &|t| {
+            let light = t.lighting.lights.first().copied();
+            t.lighting.lights.extend(light.iter().cycle().take(3));
+        }),
+        changed("textured", &|t| {
+            t.object.texturing.color_map = Some(white.clone());
+        }),
+        changed("textured, bumped", &|t| {
+            t.object.texturing.color_map = Some(white.clone());
+            t.object.texturing.displacement_map = Some(level.clone());
+        }),
+        changed("replicas", &|t| t.object.repeat = [2; 3]),
+        changed("hard shadows", &|t| t.lighting.shadow = Shadow::Hard),
+        changed("soft shadows", &|t| t.lighting.shadow = Shadow::Soft),
+        changed("every plane", &|t| t.planes = Planes::All),
+        changed("depth alone", &|t| {
+            t.planes = Planes::Depth { parallel: false };
+        }),
+    ])
+}
