@@ -10,6 +10,8 @@ mod agreement_textures;
 #[cfg(feature = "drawing")]
 mod bitmaps;
 mod bumps;
+#[allow(unsafe_code)]
+mod calls;
 mod clip;
 mod cones;
 mod embedding;
@@ -28,4 +30,5 @@ mod proxy_hulls;
 mod replicas;
 mod shadows;
 mod texturing;
+mod trouble;
 mod updates;

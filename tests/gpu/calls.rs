@@ -1,0 +1,355 @@
+//! A layer of our own between the renderer and Vulkan: calls of a borrowed device that can be made to fail, and answers about a
+//! physical device that can be poorer than the truth. The renderer knows nothing of it.
+
+use ash::vk;
+use std::ffi::{CStr, c_void};
+use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard};
+
+/// One machine word: a handle, a pointer or a number. Each wrapped function takes up to six, which every 64-bit calling convention
+/// hands over in the same places whatever they are (on Windows from the fifth on the stack, in order).
+type Word = usize;
+type Wrapped = unsafe extern "system" fn(Word, Word, Word, Word, Word, Word) -> vk::Result;
+
+/// The calls that may fail.
+const CALLS: [&CStr; 26] = [
+    c"vkAllocateMemory",
+    c"vkBindBufferMemory",
+    c"vkBindImageMemory",
+    c"vkMapMemory",
+    c"vkCreateBuffer",
+    c"vkCreateImage",
+    c"vkCreateImageView",
+    c"vkCreateSampler",
+    c"vkCreateDescriptorSetLayout",
+    c"vkCreateDescriptorPool",
+    c"vkAllocateDescriptorSets",
+    c"vkCreatePipelineLayout",
+    c"vkCreatePipelineCache",
+    c"vkCreateShaderModule",
+    c"vkCreateGraphicsPipelines",
+    c"vkCreateComputePipelines",
+    c"vkCreateRenderPass",
+    c"vkCreateFramebuffer",
+    c"vkCreateCommandPool",
+    c"vkAllocateCommandBuffers",
+    c"vkBeginCommandBuffer",
+    c"vkEndCommandBuffer",
+    c"vkCreateFence",
+    c"vkCreateQueryPool",
+    c"vkQueueSubmit",
+    c"vkWaitForFences",
+];
+/// From here on what fails is no allocation.
+const SUBMIT: usize = 24;
+const WAIT: usize = 25;
+
+/// What ends the life of something made by one of the calls, one each.
+const ENDS: [&CStr; 15] = [
+    c"vkFreeMemory",
+    c"vkDestroyBuffer",
+    c"vkDestroyImage",
+    c"vkDestroyImageView",
+    c"vkDestroySampler",
+    c"vkDestroyDescriptorSetLayout",
+    c"vkDestroyDescriptorPool",
+    c"vkDestroyPipelineLayout",
+    c"vkDestroyPipelineCache",
+    c"vkDestroyShaderModule",
+    c"vkDestroyPipeline",
+    c"vkDestroyRenderPass",
+    c"vkDestroyFramebuffer",
+    c"vkDestroyCommandPool",
+    c"vkDestroyFence",
+];
+
+static REAL: [AtomicUsize; CALLS.len()] = [const { AtomicUsize::new(0) }; CALLS.len()];
+static REAL_ENDS: [AtomicUsize; ENDS.len()] = [const { AtomicUsize::new(0) }; ENDS.len()];
+static MADE: AtomicUsize = AtomicUsize::new(0);
+static FAILS_AT: AtomicUsize = AtomicUsize::new(usize::MAX);
+static FAILED: AtomicUsize = AtomicUsize::new(usize::MAX);
+static LOST: AtomicUsize = AtomicUsize::new(usize::MAX);
+static ALIVE: AtomicI64 = AtomicI64::new(0);
+static ONE: Mutex<()> = Mutex::new(());
+
+/// Whether a success of call `n` makes something that one of [`ENDS`] ends.
+fn makes(n: usize) -> bool {
+    let name = CALLS[n].to_str().unwrap();
+    let alone = ["vkCreateQueryPool"].contains(&name);
+    name == "vkAllocateMemory" || (name.starts_with("vkCreate") && !alone)
+}
+
+unsafe extern "system" fn call<const N: usize>(
+    a: Word,
+    b: Word,
+    c: Word,
+    d: Word,
+    e: Word,
+    f: Word,
+) -> vk::Result {
+    if N < SUBMIT && MADE.fetch_add(1, Ordering::SeqCst) == FAILS_AT.load(Ordering::SeqCst) {
+        FAILED.store(N, Ordering::SeqCst);
+        return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    let lost = LOST.load(Ordering::SeqCst) == N;
+    if lost && N == SUBMIT {
+        return vk::Result::ERROR_DEVICE_LOST;
+    }
+    // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not looked at.
+    let result = unsafe {
+        let real: Wrapped = std::mem::transmute(REAL[N].load(Ordering::SeqCst));
+        real(a, b, c, d, e, f)
+    };
+    if result == vk::Result::SUCCESS && makes(N) {
+        ALIVE.fetch_add(1, Ordering::SeqCst);
+    }
+    if lost {
+        // The work is over, as after a true loss, and no later work is taken.
+        LOST.store(SUBMIT, Ordering::SeqCst);
+        return vk::Result::ERROR_DEVICE_LOST;
+    }
+    result
+}
+
+unsafe extern "system" fn end<const N: usize>(device: Word, handle: Word, callbacks: Word) {
+    if handle != 0 {
+        ALIVE.fetch_sub(1, Ordering::SeqCst);
+    }
+    type End = unsafe extern "system" fn(Word, Word, Word);
+    // SAFETY: the pointer is the driver's for this call.
+    unsafe {
+        let real: End = std::mem::transmute(REAL_ENDS[N].load(Ordering::SeqCst));
+        real(device, handle, callbacks);
+    }
+}
+
+macro_rules! each {
+    ($function:ident: $($n:literal)*) => { [$($function::<$n> as *const c_void),*] };
+}
+
+/// The one test at a time that uses this layer. When it is dropped, nothing fails any more.
+pub struct Layer {
+    _one: MutexGuard<'static, ()>,
+}
+
+impl Drop for Layer {
+    fn drop(&mut self) {
+        self.fail_at(usize::MAX);
+        self.lose(None);
+        *MASK.lock().unwrap() = Mask::default();
+    }
+}
+
+impl Layer {
+    pub fn take() -> Self {
+        let one = ONE
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        ALIVE.store(0, Ordering::SeqCst);
+        Self { _one: one }
+    }
+
+    /// The device with this layer above it.
+    pub fn device(&self, instance: &ash::Instance, device: &ash::Device) -> ash::Device {
+        let calls =
+            each!(call: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25);
+        let ends = each!(end: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
+        let get = instance.fp_v1_0().get_device_proc_addr;
+        let handle = device.handle();
+        // SAFETY: each wrapper takes and returns what the function that it stands for does.
+        unsafe {
+            ash::Device::load_with(
+                |name| {
+                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
+                    if let Some(n) = CALLS.iter().position(|known| *known == name) {
+                        REAL[n].store(real, Ordering::SeqCst);
+                        return calls[n];
+                    }
+                    if let Some(n) = ENDS.iter().position(|known| *known == name) {
+                        REAL_ENDS[n].store(real, Ordering::SeqCst);
+                        return ends[n];
+                    }
+                    real as *const c_void
+                },
+                handle,
+            )
+        }
+    }
+
+    /// Lets the `n`-th call from now on fail, of those that allocate or make something.
+    pub fn fail_at(&self, n: usize) {
+        MADE.store(0, Ordering::SeqCst);
+        FAILED.store(usize::MAX, Ordering::SeqCst);
+        FAILS_AT.store(n, Ordering::SeqCst);
+    }
+
+    /// How many such calls there were since.
+    pub fn made(&self) -> usize {
+        MADE.load(Ordering::SeqCst)
+    }
+
+    /// The call that was made to fail.
+    pub fn failed(&self) -> Option<&'static str> {
+        CALLS
+            .get(FAILED.load(Ordering::SeqCst))
+            .map(|name| name.to_str().unwrap())
+    }
+
+    /// From now on the device is lost, which `vkQueueSubmit` or `vkWaitForFences` tells.
+    pub fn lose(&self, told_by: Option<&str>) {
+        let n = match told_by {
+            Some("vkQueueSubmit") => SUBMIT,
+            Some("vkWaitForFences") => WAIT,
+            _ => usize::MAX,
+        };
+        LOST.store(n, Ordering::SeqCst);
+    }
+
+    /// What was made and not destroyed, query pools aside.
+    pub fn alive(&self) -> i64 {
+        ALIVE.load(Ordering::SeqCst)
+    }
+
+    /// The instance, whose answers are those of a poorer device.
+    pub fn instance(
+        &self,
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        mask: Mask,
+    ) -> ash::Instance {
+        *MASK.lock().unwrap() = mask;
+        let get = entry.static_fn().get_instance_proc_addr;
+        let handle = instance.handle();
+        // SAFETY: as for devices.
+        unsafe {
+            ash::Instance::load_with(
+                |name| {
+                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
+                    let Some(n) = QUERIES.iter().position(|known| *known == name) else {
+                        return real as *const c_void;
+                    };
+                    REAL_QUERIES[n].store(real, Ordering::SeqCst);
+                    [
+                        properties as *const c_void,
+                        features as *const c_void,
+                        families as *const c_void,
+                        formats as *const c_void,
+                    ][n]
+                },
+                handle,
+            )
+        }
+    }
+}
+
+/// What a physical device is made to lack.
+#[derive(Clone, Copy, Default)]
+pub struct Mask {
+    pub version: bool,
+    pub stores: bool,
+    pub anisotropy: bool,
+    pub timestamps: bool,
+    pub compute: bool,
+    /// Components between vertices and fragments: 64, as many as Vulkan promises.
+    pub varyings: bool,
+    pub format: Option<vk::Format>,
+}
+
+static MASK: Mutex<Mask> = Mutex::new(Mask {
+    version: false,
+    stores: false,
+    anisotropy: false,
+    timestamps: false,
+    compute: false,
+    varyings: false,
+    format: None,
+});
+
+const QUERIES: [&CStr; 4] = [
+    c"vkGetPhysicalDeviceProperties",
+    c"vkGetPhysicalDeviceFeatures",
+    c"vkGetPhysicalDeviceQueueFamilyProperties",
+    c"vkGetPhysicalDeviceFormatProperties",
+];
+static REAL_QUERIES: [AtomicUsize; QUERIES.len()] = [const { AtomicUsize::new(0) }; QUERIES.len()];
+
+/// # Safety
+/// `n` is the number of the query, whose type is `F`.
+unsafe fn real<F: Copy>(n: usize) -> F {
+    let pointer = REAL_QUERIES[n].load(Ordering::SeqCst);
+    // SAFETY: a pointer to a function.
+    unsafe { std::mem::transmute_copy(&pointer) }
+}
+
+unsafe extern "system" fn properties(
+    physical: vk::PhysicalDevice,
+    out: *mut vk::PhysicalDeviceProperties,
+) {
+    let mask = *MASK.lock().unwrap();
+    // SAFETY: the driver's own function, and the caller's pointer.
+    unsafe {
+        real::<vk::PFN_vkGetPhysicalDeviceProperties>(0)(physical, out);
+        if mask.version {
+            (*out).api_version = vk::API_VERSION_1_1;
+        }
+        if mask.varyings {
+            (*out).limits.max_fragment_input_components = 64;
+            (*out).limits.max_vertex_output_components = 64;
+        }
+    }
+}
+
+unsafe extern "system" fn features(
+    physical: vk::PhysicalDevice,
+    out: *mut vk::PhysicalDeviceFeatures,
+) {
+    let mask = *MASK.lock().unwrap();
+    // SAFETY: as above.
+    unsafe {
+        real::<vk::PFN_vkGetPhysicalDeviceFeatures>(1)(physical, out);
+        if mask.stores {
+            (*out).fragment_stores_and_atomics = vk::FALSE;
+        }
+        if mask.anisotropy {
+            (*out).sampler_anisotropy = vk::FALSE;
+        }
+    }
+}
+
+unsafe extern "system" fn families(
+    physical: vk::PhysicalDevice,
+    count: *mut u32,
+    out: *mut vk::QueueFamilyProperties,
+) {
+    let mask = *MASK.lock().unwrap();
+    // SAFETY: as above; `out` has room for `count`, or is null.
+    unsafe {
+        real::<vk::PFN_vkGetPhysicalDeviceQueueFamilyProperties>(2)(physical, count, out);
+        if out.is_null() {
+            return;
+        }
+        for family in std::slice::from_raw_parts_mut(out, *count as usize) {
+            if mask.timestamps {
+                family.timestamp_valid_bits = 0;
+            }
+            if mask.compute {
+                family.queue_flags &= !vk::QueueFlags::COMPUTE;
+            }
+        }
+    }
+}
+
+unsafe extern "system" fn formats(
+    physical: vk::PhysicalDevice,
+    format: vk::Format,
+    out: *mut vk::FormatProperties,
+) {
+    let mask = *MASK.lock().unwrap();
+    // SAFETY: as above.
+    unsafe {
+        real::<vk::PFN_vkGetPhysicalDeviceFormatProperties>(3)(physical, format, out);
+        if mask.format == Some(format) {
+            *out = vk::FormatProperties::default();
+        }
+    }
+}
