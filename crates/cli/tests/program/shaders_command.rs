@@ -30,7 +30,9 @@ fn manifest() -> PathBuf {
                 .to_string_lossy()
                 .starts_with("radeon_icd")
         });
-    found.expect("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
+    found.unwrap_or_else(|| {
+        panic!("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
+    })
 }
 
 fn rows(text: &str) -> Vec<Row> {
