@@ -5,7 +5,7 @@
 //! paths, dashes, caps and joins count. A gradient stands for the mean of its stops, as long as these look all dark or
 //! all light. Text, pictures, patterns, masks, filters and blend modes have no outline here and are refused by name.
 
-use super::image::{empty_fault, full_fault};
+use super::faults::{empty_fault, full_fault};
 use super::paint::{Layer, Rgba, over};
 use super::region::{Contour, Grid, Region, Rule};
 use super::svg::{

@@ -1,5 +1,6 @@
 //! Profiles from pictures: what is dark is solid.
 
+use super::faults::full_fault;
 use super::{Profile, ProfileAxis, ProfileOptions, Raster, reading, trace};
 use crate::error::{Error, Result, Stage};
 use crate::maps::header::Header;
@@ -43,28 +44,6 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
         radius: header.number("radius")?,
         ..Profile::traced(raster)?
     })
-}
-
-/// The failure of a picture without anything dark.
-pub(super) fn empty_fault(what: &str) -> Error {
-    Error::new(
-        Stage::Profile,
-        format!(
-            "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
-             white, or set profile_threshold, profile_invert or profile_axis"
-        ),
-    )
-}
-
-/// The failure of a picture that is dark all over.
-pub(super) fn full_fault(what: &str) -> Error {
-    Error::new(
-        Stage::Profile,
-        format!(
-            "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
-             or set profile_threshold or profile_invert (a plain cylinder: use a polygon)"
-        ),
-    )
 }
 
 /// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how light over black.

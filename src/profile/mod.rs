@@ -8,6 +8,7 @@
 mod area;
 #[cfg(feature = "drawing")]
 mod drawing;
+mod faults;
 pub(crate) mod image;
 mod outline;
 #[cfg(feature = "drawing")]

@@ -17,7 +17,7 @@
 //! What [`smooth`](super::smooth) makes of the chains is an [`Outline`]. Chains that cross
 //! afterwards are cut at their crossings.
 
-use super::image::empty_fault;
+use super::faults::empty_fault;
 use super::region::{Rule, enclosed};
 use super::smooth::{Trail, smooth};
 use super::{Outline, Profile, Raster};

@@ -8,10 +8,10 @@ use revmap::scene::file::{self, SceneFile};
 use revmap::settings::DrawStage;
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
-use revmap_lab::report::framing::Framing;
 use revmap_lab::report::measure::TimeBudget;
 use revmap_lab::report::plan::Axes;
 use revmap_lab::report::suite::{self, Extent};
+use revmap_lab::report::view::Framing;
 use revmap_lab::report::view::View;
 use std::path::{Path, PathBuf};
 

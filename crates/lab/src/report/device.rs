@@ -1,6 +1,7 @@
 //! The real thing: measuring on a Vulkan device, against the double-precision reference.
 
-use super::measure::{Bench, Sample, TimedRenderer};
+use super::measure::{Bench, TimedRenderer};
+use super::row::Sample;
 use super::view::View;
 use crate::method::MethodSettings;
 use crate::renderer::{MethodDevice, MethodRenderer};

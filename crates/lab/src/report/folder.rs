@@ -7,11 +7,11 @@ use super::chart::svg::svg;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
-use super::pictures::png;
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use super::table::Table;
 use revmap::error::{Error, Result, Stage};
+use revmap::frame::Picture;
 use revmap::frame::atomic_file::write_atomically;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -160,6 +160,19 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
         &charts.join(format!("{name}.png")),
         &png(&raster(figure, 2.0)?)?,
     )
+}
+
+/// A picture as a PNG file.
+///
+/// # Errors
+/// [`Stage::Report`] when it cannot be encoded.
+pub fn png(picture: &Picture) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    picture.encode_png(&mut bytes).map_err(|mut e| {
+        e.stage = Stage::Report;
+        e
+    })?;
+    Ok(bytes)
 }
 
 /// `results.csv`: one record a row, with the columns of [`COLUMNS`].

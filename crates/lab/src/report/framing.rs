@@ -3,32 +3,9 @@
 //! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing, storing, ending) weighs much in its time. Close
 //! up the search weighs more; that is how games show solids, and how prototypes were measured. Summaries give both.
 
-use super::view::View;
+use super::view::{Framing, View};
 use glam::{DQuat, DVec3};
 use revmap::scene::{Camera, Light};
-
-/// How much of the picture is solid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Framing {
-    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of its width in a picture of 4:3.
-    Whole,
-    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor [`OVERFILL`]; a wider one may show their sides.
-    Close,
-}
-
-impl Framing {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Whole, Self::Close];
-
-    /// Its name in options and results.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Whole => "whole",
-            Self::Close => "close",
-        }
-    }
-}
 
 /// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of 4:3, whichever is less.
 pub const OVERFILL: f64 = 1.25;

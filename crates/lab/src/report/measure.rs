@@ -5,7 +5,7 @@
 //! or one bout of work beside ours, does to a time shows as spread between passes (see [`stats`](super::stats)).
 
 use super::plan::{Case, Plan, together};
-use super::row::{Row, Steps};
+use super::row::{Row, Sample, Steps};
 pub use super::time_budget::TimeBudget;
 use super::view::View;
 use crate::compare::{self, CompareOptions, Comparison};
@@ -16,15 +16,6 @@ use revmap::settings::Planes;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
-
-/// What one frame took.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// Milliseconds between the device's own timestamps; `None` where it has none.
-    pub gpu_ms: Option<f64>,
-    /// Milliseconds by the wall clock, without reading back.
-    pub frame_ms: f64,
-}
 
 /// A way of drawing a view, ready to be timed.
 pub trait TimedRenderer {

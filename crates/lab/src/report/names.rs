@@ -68,6 +68,12 @@ pub(super) fn safe(name: &str) -> String {
         .collect()
 }
 
+/// A share of pixels in percent.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    format!("{} %", number(100.0 * share, 3))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

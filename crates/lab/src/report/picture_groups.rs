@@ -1,10 +1,10 @@
 //! Which pictures a run shows, and the share of each that is solid: where little is hit, what a frame costs anyhow weighs much in its time.
 
-use super::framing::Framing;
 use super::names::number;
+use super::names::percent;
 use super::row::Row;
 use super::table::Table;
-use super::text::percent;
+use super::view::Framing;
 
 /// Rows of one framing, or of all.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,12 @@
 //! Pictures beside the numbers: what was drawn, what each pixel cost, where it is wrong.
 
-use super::folder::{make, write_bytes};
+use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
 use super::plan::Labels;
 use crate::compare::{Heat, heat_map, ramp};
 use crate::method::MethodSettings;
-use revmap::error::{Result, Stage};
+use revmap::error::Result;
 use revmap::frame::{Frame, Picture};
 use revmap::settings::DrawStage;
 use std::path::{Path, PathBuf};
@@ -200,19 +200,6 @@ pub fn reduced(picture: &Picture, factor: u32) -> Picture {
         height,
         rgba,
     }
-}
-
-/// A picture as a PNG file.
-///
-/// # Errors
-/// [`Stage::Report`] when it cannot be encoded.
-pub fn png(picture: &Picture) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    picture.encode_png(&mut bytes).map_err(|mut e| {
-        e.stage = Stage::Report;
-        e
-    })?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! One measurement with all that was found out about it, as a line of `results.csv`.
 
-use super::framing::Framing;
-use super::measure::Sample;
 use super::names::{self, number};
 use super::plan::Case;
 use super::stats::{self, Interval};
+use super::view::Framing;
 use super::view::{Technique, View};
 use crate::compare::Comparison;
 use crate::method::MethodSettings;
@@ -62,6 +61,15 @@ pub(super) const CONTRACT: [&str; 31] = {
 
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
+
+/// What one frame took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Milliseconds between the device's own timestamps; `None` where it has none.
+    pub gpu_ms: Option<f64>,
+    /// Milliseconds by the wall clock, without reading back.
+    pub frame_ms: f64,
+}
 
 /// Look-ups over the pixels in which the search ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -131,9 +131,9 @@ pub fn mesh_tables(page: &mut Page, parts: &[Part]) {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::framing::Framing;
     use super::super::plan::rbm_baseline;
     use super::super::row::tests::row;
+    use super::super::view::Framing;
     use super::super::view::tests::spindle;
     use super::*;
     use crate::method::Method;

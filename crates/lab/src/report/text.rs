@@ -1,6 +1,6 @@
 //! The tables that sum a run up, and what their fields look like.
 
-use super::names::{number, stage};
+use super::names::{number, percent, stage};
 use super::picture_groups::{parts, pictures};
 use super::plan::{Labels, RBM_BASELINE};
 use super::ratios::{Duel, Ratio, over_meshes, over_rbm_baseline};
@@ -21,12 +21,6 @@ pub fn interval(i: &Interval, digits: usize) -> String {
     } else {
         number(i.value, digits)
     }
-}
-
-/// A share of pixels in percent.
-#[must_use]
-pub fn percent(share: f64) -> String {
-    format!("{} %", number(100.0 * share, 3))
 }
 
 /// Columns of the table of times over the RBM baseline's.

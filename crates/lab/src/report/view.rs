@@ -1,6 +1,5 @@
 //! What is looked at: a scene and its name, seen from one place.
 
-use super::framing::Framing;
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
 
@@ -13,6 +12,29 @@ pub struct View {
     pub scene: Scene,
     /// How much of the picture its solids take.
     pub framing: Framing,
+}
+
+/// How much of the picture is solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Framing {
+    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of its width in a picture of 4:3.
+    Whole,
+    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor [`OVERFILL`](super::framing::OVERFILL); a wider one may show their sides.
+    Close,
+}
+
+impl Framing {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Whole, Self::Close];
+
+    /// Its name in options and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Close => "close",
+        }
+    }
 }
 
 /// Which form of the offset a scene's objects have (articles of 2022 and 2025).

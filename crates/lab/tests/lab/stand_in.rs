@@ -7,10 +7,9 @@ use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::measure::{
-    Bench, Measured, Observer, Sample, TimeBudget, TimedRenderer, measure,
-};
+use revmap_lab::report::measure::{Bench, Measured, Observer, TimeBudget, TimedRenderer, measure};
 use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
+use revmap_lab::report::row::Sample;
 use revmap_lab::report::view::View;
 use revmap_reference as reference;
 use std::cell::RefCell;

@@ -8,7 +8,7 @@ use crate::report::folder::{keep_figure, write_text};
 use crate::report::machine::Machine;
 use crate::report::map_error::MapError;
 use crate::report::measure::Measured;
-use crate::report::names::{number, safe, stage};
+use crate::report::names::{number, percent, safe, stage};
 use crate::report::page::Page;
 use crate::report::picture_groups::{parts, pictures_of};
 use crate::report::pictures::Album;
@@ -17,7 +17,6 @@ use crate::report::ratios::over_rbm_baseline;
 use crate::report::row::Row;
 use crate::report::series_style::SeriesStyles;
 use crate::report::table::Table;
-use crate::report::text::percent;
 use revmap::error::Result;
 use std::path::Path;
 

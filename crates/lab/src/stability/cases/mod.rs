@@ -8,8 +8,8 @@ mod rays;
 mod shapes;
 
 use super::case::Case;
+use crate::report::folder::png;
 use crate::report::folder::{make, write_bytes};
-use crate::report::pictures::png;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Picture;
 use std::path::Path;
