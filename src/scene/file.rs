@@ -223,6 +223,20 @@ impl SceneFile {
             None => e,
         })
     }
+
+    /// The file's text with each of `sets` (`key=value`, as in [`load`]) in place of what it says. Its paths are relative to
+    /// the same folder; comments and order of keys are lost.
+    ///
+    /// # Errors
+    /// [`Stage::Usage`] for a malformed assignment.
+    pub fn text(&self, sets: &[String]) -> Result<String> {
+        let mut root = self.root.clone();
+        for assignment in sets {
+            overrides::apply(&mut root, assignment)?;
+        }
+        let fault = |e| Error::new(Stage::Scene, format!("cannot be written as TOML: {e}"));
+        toml::to_string(&root).map_err(fault)
+    }
 }
 
 /// A fault of TOML's grammar, on one line.

@@ -36,7 +36,7 @@ fn flat(text: &str) -> String {
         .collect()
 }
 
-/// SeriesStyles at the output files that `option` names before any work: their endings are among `endings`, none is named twice, none is one of
+/// Looks at the output files that `option` names before any work: their endings are among `endings`, none is named twice, none is one of
 /// the `inputs`, and each can be written.
 ///
 /// # Errors

@@ -1,13 +1,16 @@
 //! The window's events.
 
-use super::controls::{self, Asked, Shown};
+use super::controls::{self, Asked, Shown, Told};
+use super::inspect::Inspector;
+use super::saved;
 use super::stage::Stage;
 use super::times::Times;
 use super::{View, orbit};
 use crate::output;
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::scene::file::SceneFile;
-use std::path::Path;
+use revmap::settings::Planes;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -23,6 +26,7 @@ const SOON: Duration = Duration::from_secs(5);
 
 /// The window and what is in it. The stage goes before the window.
 struct Open {
+    inspector: Inspector,
     stage: Stage,
     gui: egui_winit::State,
     window: Arc<Window>,
@@ -30,14 +34,23 @@ struct Open {
 
 pub struct App {
     options: View,
+    /// Where what is shown was read from.
+    source: PathBuf,
+    file: SceneFile,
     first: Shown,
     shown: Shown,
+    /// Counts changes of what is shown.
+    version: u64,
     undo: Vec<Shown>,
     /// Whether a change is going on that is one for undoing, as a slider is dragged.
     changing: bool,
     open: Option<Open>,
     times: Times,
     problem: Option<String>,
+    /// What was written last.
+    written: String,
+    /// Whether the next frame is kept as a picture.
+    keep: bool,
     pointer: [f64; 2],
     held: Option<MouseButton>,
     drawn: u32,
@@ -45,16 +58,23 @@ pub struct App {
 }
 
 impl App {
-    pub fn new(options: View, shown: Shown) -> Self {
+    pub fn new(options: View, file: SceneFile, shown: Shown) -> Self {
+        let mut times = Times::default();
+        times.kept = options.times.is_some().then(Vec::new);
         Self {
+            source: options.scene.clone(),
             options,
+            file,
             first: shown.clone(),
             shown,
+            version: 0,
             undo: Vec::new(),
             changing: false,
             open: None,
-            times: Times::default(),
+            times,
             problem: None,
+            written: String::new(),
+            keep: false,
             pointer: [0.0; 2],
             held: None,
             drawn: 0,
@@ -69,6 +89,9 @@ impl App {
             drop(open);
             host.check()
         });
+        if let (Some(path), Some(kept)) = (&self.options.times, &self.times.kept) {
+            saved::write_times(path, kept)?;
+        }
         self.ended.and(checked)
     }
 
@@ -91,6 +114,7 @@ impl App {
             None,
         );
         Ok(Open {
+            inspector: Inspector::default(),
             stage,
             gui,
             window: Arc::new(window),
@@ -108,22 +132,49 @@ impl App {
         }
         let input = open.gui.take_egui_input(&open.window);
         let context = open.gui.egui_ctx().clone();
+        let inspects = Inspector::is_wanted(&self.shown);
+        let picture = if inspects {
+            let (version, size) = (self.version, (size.width, size.height));
+            let device = open.stage.host.shared()?.clone();
+            let inspector = &mut open.inspector;
+            let made =
+                inspector.picture(&self.shown, version, size, &device, &context, &open.window);
+            made.map(|texture| texture.map(egui::TextureHandle::id))
+        } else {
+            Ok(None)
+        };
+        let picture = picture.unwrap_or_else(|error| {
+            self.problem = Some(error.to_string());
+            None
+        });
         let before = self.shown.clone();
         let mut asked = Asked::default();
-        let (shown, times, problem, undos) = (
-            &mut self.shown,
-            &self.times,
-            self.problem.as_deref(),
-            self.undo.len(),
-        );
+        let draw_paths = match inspects {
+            true => open.inspector.draw_paths.clone(),
+            false => open.stage.draw_paths(),
+        };
+        let told = Told {
+            times: &self.times,
+            problem: self.problem.as_deref(),
+            notes: [
+                &self.written,
+                if inspects { &open.inspector.words } else { "" },
+            ],
+            undos: self.undo.len(),
+            draw_paths: &draw_paths,
+        };
+        let shown = &mut self.shown;
         let mut output = context.run_ui(input, |ui| {
+            if let Some(id) = picture {
+                let all = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                let painter = ui.ctx().layer_painter(egui::LayerId::background());
+                painter.image(id, ui.ctx().content_rect(), all, egui::Color32::WHITE);
+            }
             egui::Window::new("revmap")
                 .default_pos([8.0, 8.0])
                 .default_size([300.0, 640.0])
                 .vscroll(true)
-                .show(ui.ctx(), |ui| {
-                    asked = controls::show(ui, shown, times, problem, undos)
-                });
+                .show(ui.ctx(), |ui| asked = controls::show(ui, shown, &told));
         });
         self.take(asked, before);
         let open = match &mut self.open {
@@ -133,9 +184,6 @@ impl App {
         if self.changing && !context.input(|i| i.pointer.any_down()) {
             self.changing = false;
         }
-        if asked != Asked::default() {
-            self.problem = None;
-        }
         if let Err(error) = open.stage.set(&self.shown) {
             self.problem = Some(error.to_string());
         }
@@ -144,21 +192,32 @@ impl App {
         let root = output.viewport_output.get(&egui::ViewportId::ROOT);
         let pause = root.map_or(Duration::MAX, |v| v.repaint_delay);
         let last = self.options.frames == Some(self.drawn + 1);
-        let keep = last && self.options.screenshot.is_some();
+        let keep = self.keep || (last && self.options.screenshot.is_some());
+        let scene = (!inspects).then_some(&self.shown.scene);
         let drawn = open
             .stage
-            .draw(&self.shown, output, &context, keep, &mut self.problem)?;
+            .draw(scene, output, &context, keep, &mut self.problem)?;
         let stale = drawn.as_ref().is_none_or(|frame| frame.stale);
         if stale {
             open.stage.resize((size.width, size.height))?;
             open.window.request_redraw();
         }
-        if let Some(frame) = drawn {
+        if let Some(mut frame) = drawn {
+            if let Some(ms) = open.inspector.device_ms.filter(|_| inspects) {
+                frame.cost.device = ms;
+            }
             self.times.push(frame.cost);
             self.drawn += 1;
-            if let (Some(picture), Some(file)) = (frame.picture, &self.options.screenshot) {
-                picture.write_png(file)?;
-                output::result(&format!("{}: frame {}", file.display(), self.drawn));
+            if let Some(picture) = frame.picture {
+                if let (true, Some(file)) = (last, &self.options.screenshot) {
+                    picture.write_png(file)?;
+                    output::result(&format!("{}: frame {}", file.display(), self.drawn));
+                }
+                if std::mem::take(&mut self.keep) {
+                    let path = saved::beside(&self.source, ".png");
+                    let written = picture.write_png(&path);
+                    self.say(written.map(|()| path));
+                }
             }
         }
         Ok(Some(pause))
@@ -166,6 +225,10 @@ impl App {
 
     /// Does what the controls ask for.
     fn take(&mut self, asked: Asked, before: Shown) {
+        if asked != Asked::default() {
+            self.problem = None;
+            self.version += 1;
+        }
         if asked.undo {
             if let Some(shown) = self.undo.pop() {
                 self.shown = shown;
@@ -180,15 +243,62 @@ impl App {
         if self.undo.len() > UNDOS {
             self.undo.remove(0);
         }
+        self.keep |= asked.screenshot;
+        if asked.save {
+            let (first, shown) = (&self.first.scene, &self.shown.scene);
+            let written = saved::write_scene(&self.source, &self.file, first, shown);
+            self.say(written);
+        }
+        if asked.turntable {
+            let written = self.write_turntable();
+            self.say(written);
+        }
+    }
+
+    /// Says what was written, or why it was not.
+    fn say(&mut self, written: Result<PathBuf>) {
+        match written {
+            Ok(path) => {
+                self.written = format!("written: {}", path.display());
+                output::result(&self.written);
+            }
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+    }
+
+    /// Draws a whole turn about the target into a new folder of numbered pictures.
+    fn write_turntable(&mut self) -> Result<PathBuf> {
+        let folder = saved::beside(&self.source, "-turntable");
+        let Some(open) = &mut self.open else {
+            return Ok(folder);
+        };
+        std::fs::create_dir(&folder).map_err(|e| {
+            let message = format!("cannot be made ({e}); move the scene to another folder");
+            Error::new(Where::Frame, message).in_file(&folder)
+        })?;
+        let device = open.stage.host.shared()?.clone();
+        let size = open.window.inner_size();
+        let settings = self
+            .shown
+            .settings((size.width, size.height), Planes::Color);
+        for n in 0..saved::TURNTABLE {
+            let turned = saved::turned(&self.shown, n);
+            let frame = open.inspector.draw(&turned, settings, &device)?;
+            revmap::frame::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
+        }
+        Ok(folder)
     }
 
     /// Shows what was dropped on the window.
-    fn load(&mut self, file: &Path) {
-        match SceneFile::open(file).and_then(|mut file| file.scene(&[])) {
-            Ok(scene) => {
-                self.undo.push(self.shown.clone());
+    fn load(&mut self, path: &Path) {
+        let read = SceneFile::open(path).and_then(|mut file| Ok((file.scene(&[])?, file)));
+        match read {
+            Ok((scene, file)) => {
+                self.undo.clear(); // of another file
                 self.shown.scene = scene;
                 self.first = self.shown.clone();
+                (self.source, self.file) = (path.to_owned(), file);
+                (self.problem, self.version) = (None, self.version + 1);
             }
             Err(error) => self.problem = Some(error.to_string()),
         }
@@ -201,6 +311,7 @@ impl App {
             .open
             .as_ref()
             .map_or(1, |open| open.window.inner_size().height);
+        self.version += u64::from(self.held.is_some());
         let camera = &mut self.shown.scene.camera;
         match self.held {
             Some(MouseButton::Left) => orbit::turn(camera, by),
@@ -267,6 +378,7 @@ impl ApplicationHandler for App {
                     MouseScrollDelta::PixelDelta(pixels) => pixels.y / 50.0,
                 };
                 orbit::zoom(&mut self.shown.scene.camera, steps);
+                self.version += 1;
                 window.request_redraw();
             }
             WindowEvent::RedrawRequested => match self.frame() {

@@ -1,16 +1,67 @@
 //! Sliders and choices for all that a scene and its search hold.
 
+use super::inspect::Inspected;
 use super::times::Times;
 use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
+use revmap::gpu::DrawPath;
 use revmap::maps::{MapSource, Projection};
-use revmap::scene::{BumpForm, Object, Scene, Shadow};
-use revmap::settings::{SearchSettings, Solver};
+use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
+
+/// Names in the controls and of the option `--stage`.
+pub const STAGES: [(&str, DrawStage); 2] = [
+    ("fragment", DrawStage::Fragment),
+    ("compute", DrawStage::Compute),
+];
 
 /// What is shown, and how.
 #[derive(Clone)]
 pub struct Shown {
     pub scene: Scene,
     pub search: SearchSettings,
+    pub stage: DrawStage,
+    pub inspected: Inspected,
+}
+
+impl Shown {
+    /// The scene as it is lit, by the fragment stage.
+    pub fn new(scene: Scene, search: SearchSettings) -> Self {
+        Self {
+            scene,
+            search,
+            stage: DrawStage::Fragment,
+            inspected: Inspected::Color,
+        }
+    }
+
+    /// Settings of an off-screen frame of it.
+    pub fn settings(&self, (width, height): (u32, u32), planes: Planes) -> Settings {
+        let search = &self.search;
+        Settings {
+            width,
+            height,
+            stage: self.stage,
+            solver: search.solver,
+            max_steps: search.max_steps,
+            map_rows: search.map_rows,
+            map_source: search.map_source,
+            map_format: search.map_format,
+            planes,
+            proxy_min_pixels: search.proxy_min_pixels,
+        }
+    }
+}
+
+/// What the controls say besides values.
+pub struct Told<'a> {
+    pub times: &'a Times,
+    /// What the last values led to.
+    pub problem: Option<&'a str>,
+    /// What was written last, and what an inspected picture says.
+    pub notes: [&'a str; 2],
+    pub undos: usize,
+    /// How each object is drawn.
+    pub draw_paths: &'a [DrawPath],
 }
 
 /// What was asked for.
@@ -20,30 +71,42 @@ pub struct Asked {
     pub changed: bool,
     pub undo: bool,
     pub reset: bool,
+    /// The scene as TOML.
+    pub save: bool,
+    /// The window as a picture.
+    pub screenshot: bool,
+    pub turntable: bool,
 }
 
-/// All controls. `problem` is what the last values led to.
-pub fn show(
-    ui: &mut Ui,
-    shown: &mut Shown,
-    times: &Times,
-    problem: Option<&str>,
-    undos: usize,
-) -> Asked {
+/// All controls.
+pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
     let mut asked = Asked::default();
     ui.horizontal(|ui| {
-        asked.undo = ui
-            .add_enabled(undos > 0, egui::Button::new("Undo"))
-            .clicked();
+        let undo = egui::Button::new("Undo");
+        asked.undo = ui.add_enabled(told.undos > 0, undo).clicked();
         asked.reset = ui.button("Reset").clicked();
+        asked.save = ui.button("Save").clicked();
+        asked.screenshot = ui.button("Screenshot").clicked();
+        asked.turntable = ui.button("Turntable").clicked();
     });
-    if let Some(text) = problem {
+    if let Some(text) = told.problem {
         ui.colored_label(egui::Color32::LIGHT_RED, text);
     }
-    times.show(ui);
-    let Shown { scene, search } = shown;
+    told.times.show(ui);
+    for note in told.notes.iter().filter(|note| !note.is_empty()) {
+        ui.label(*note);
+    }
+    ui.horizontal(|ui| {
+        asked.changed |= choice(ui, "stage", &mut shown.stage, &STAGES);
+        asked.changed |= choice(ui, "show", &mut shown.inspected, &Inspected::NAMES);
+    });
+    let Shown { scene, search, .. } = shown;
     for (n, one) in scene.objects.iter_mut().enumerate() {
-        let title = format!("{n}: {}", one.name);
+        let path = told
+            .draw_paths
+            .get(n)
+            .map_or(String::new(), |p| format!(" ({p:?})"));
+        let title = format!("{n}: {}{path}", one.name);
         CollapsingHeader::new(title)
             .id_salt(("object", n))
             .default_open(n == 0)
@@ -112,6 +175,7 @@ fn object(ui: &mut Ui, object: &mut Object) -> bool {
                 .text("shininess"),
         )
         .changed();
+    changed |= choice(ui, "clip", &mut object.clip, &Clip::NAMES);
     let projections = Projection::ALL.map(|p| (p.name(), p));
     changed |= choice(ui, "projection", &mut texturing.projection, &projections);
     changed | choice(ui, "bump form", &mut texturing.bump_form, &BumpForm::NAMES)
@@ -132,6 +196,16 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
         });
     }
     changed
+        | row(ui, "lights", |ui| {
+            let more = ui.button("add").clicked();
+            let fewer = ui.button("remove").clicked();
+            if more {
+                scene.lights.push(Light::default());
+            } else if fewer {
+                scene.lights.pop();
+            }
+            more | fewer
+        })
 }
 
 fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {

@@ -2,7 +2,9 @@
 
 mod app;
 mod controls;
+mod inspect;
 mod orbit;
+mod saved;
 mod stage;
 mod swapchain;
 mod times;
@@ -12,7 +14,7 @@ use super::output;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::scene::file::SceneFile;
-use revmap::settings::{SearchSettings, Solver};
+use revmap::settings::{DrawStage, SearchSettings, Solver};
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
@@ -24,6 +26,9 @@ pub struct View {
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
+    /// Where rays are traced; the compute stage's frames go through the CPU into the window
+    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&controls::STAGES))]
+    stage: DrawStage,
     /// How the first hit along a ray is found
     #[arg(long, value_name = "NAME", default_value = "hull")]
     solver: Solver,
@@ -33,12 +38,18 @@ pub struct View {
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// What is shown: color, depth, normals, steps, or error against the reference
+    #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&inspect::Inspected::NAMES))]
+    show: inspect::Inspected,
     /// Show so many frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
     /// Write the last of these frames as a PNG, with the controls
     #[arg(long, value_name = "FILE", requires = "frames")]
     screenshot: Option<PathBuf>,
+    /// Write what each frame cost as CSV when the window closes
+    #[arg(long, value_name = "FILE")]
+    times: Option<PathBuf>,
 }
 
 impl View {
@@ -48,6 +59,8 @@ impl View {
         let mut file = SceneFile::open(&self.scene)?;
         let scene = file.scene(&self.set)?;
         output::spare(file.files(), &files, "--screenshot")?;
+        let times: Vec<_> = self.times.iter().cloned().collect();
+        output::check(&times, "--times", &["csv"], &[&self.scene])?;
         let search = SearchSettings {
             solver: self.solver,
             ..SearchSettings::default()
@@ -59,7 +72,9 @@ impl View {
             )
         };
         let events = EventLoop::new().map_err(screen)?;
-        let mut app = app::App::new(self, controls::Shown { scene, search });
+        let mut shown = controls::Shown::new(scene, search);
+        (shown.stage, shown.inspected) = (self.stage, self.show);
+        let mut app = app::App::new(self, file, shown);
         events.run_app(&mut app).map_err(screen)?;
         app.end()
     }

@@ -10,7 +10,8 @@ use egui_ash_renderer::allocator::GpuAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer as Gui};
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::frame::Picture;
-use revmap::gpu::{DepthOrder, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{DepthOrder, DrawPath, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::scene::Scene;
 use revmap::settings::{Planes, SearchSettings};
 use std::rc::Rc;
 use std::time::Instant;
@@ -107,10 +108,16 @@ impl Stage {
         self.swapchain.resize(size)
     }
 
-    /// Draws a frame. None: the window has another size. A scene that cannot be drawn is left out, and told to `problem`.
+    /// How each object was drawn in the last frame.
+    pub fn draw_paths(&self) -> Vec<DrawPath> {
+        self.renderer.draw_paths()
+    }
+
+    /// Draws a frame: the scene, unless the controls bring a picture of their own, then the controls. None: the window has
+    /// another size. A scene that cannot be drawn is left out, and told to `problem`.
     pub fn draw(
         &mut self,
-        shown: &Shown,
+        scene: Option<&Scene>,
         mut gui: FullOutput,
         context: &egui::Context,
         keep: bool,
@@ -123,18 +130,21 @@ impl Stage {
         let device = self.swapchain.device_ms(frame.slot).unwrap_or(0.0);
         let start = Instant::now();
         let extent = self.swapchain.extent;
-        let camera = &shown.scene.camera;
-        let distance = (camera.eye - camera.target).length();
-        let range = [0.01 * distance, 100.0 * distance];
-        let view = View::from_camera(camera, (extent.width, extent.height), range);
-        // SAFETY: the slot was waited for; the commands are recording outside of the pass.
-        let prepared = view
-            .and_then(|view| unsafe { self.renderer.prepare(frame.commands, frame.slot, &view) });
-        self.swapchain.begin_pass(frame, shown.scene.background);
+        let prepared = scene.map(|scene| {
+            let camera = &scene.camera;
+            let distance = (camera.eye - camera.target).length();
+            let range = [0.01 * distance, 100.0 * distance];
+            let view = View::from_camera(camera, (extent.width, extent.height), range)?;
+            // SAFETY: the slot was waited for; the commands are recording outside of the pass.
+            unsafe { self.renderer.prepare(frame.commands, frame.slot, &view) }
+        });
+        let background = scene.map_or([0.0; 4], |scene| scene.background);
+        self.swapchain.begin_pass(frame, background);
         match prepared {
             // SAFETY: the slot was prepared, the pass is of the output's formats.
-            Ok(()) => unsafe { self.renderer.record(frame.commands, frame.slot) },
-            Err(error) => *problem = Some(error.to_string()),
+            Some(Ok(())) => unsafe { self.renderer.record(frame.commands, frame.slot) },
+            Some(Err(error)) => *problem = Some(error.to_string()),
+            None => {}
         }
         let primitives = context.tessellate(gui.shapes, gui.pixels_per_point);
         let drawn = self

@@ -28,23 +28,27 @@ const PARTS: [Part; 3] = [
     ("present", Color32::from_rgb(130, 200, 120), |c| c.present),
 ];
 
-/// The last frames.
+/// The last frames, and all of them where they are to be written.
 #[derive(Default)]
 pub struct Times {
-    all: VecDeque<Cost>,
+    last: VecDeque<Cost>,
+    pub kept: Option<Vec<Cost>>,
 }
 
 impl Times {
     pub fn push(&mut self, cost: Cost) {
-        self.all.push_back(cost);
-        if self.all.len() > SHOWN {
-            self.all.pop_front();
+        self.last.push_back(cost);
+        if self.last.len() > SHOWN {
+            self.last.pop_front();
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.push(cost);
         }
     }
 
     pub fn show(&self, ui: &mut Ui) {
         let most = self
-            .all
+            .last
             .iter()
             .map(|c| PARTS.iter().map(|p| p.2(c)).sum())
             .fold(1.0, f64::max);
@@ -52,7 +56,7 @@ impl Times {
         let painter = ui.painter_at(area);
         painter.rect_filled(area, 2.0, Color32::from_black_alpha(120));
         let width = area.width() / SHOWN as f32;
-        for (n, cost) in self.all.iter().enumerate() {
+        for (n, cost) in self.last.iter().enumerate() {
             let (left, mut low) = (area.left() + width * n as f32, area.bottom());
             for (_, color, part) in &PARTS {
                 let high = low - area.height() * (part(cost) / most) as f32;
@@ -65,13 +69,13 @@ impl Times {
                 painter.vline(left, area.y_range(), line);
             }
         }
-        let last = self.all.back().copied().unwrap_or_default();
+        let last = self.last.back().copied().unwrap_or_default();
         ui.horizontal_wrapped(|ui| {
             for (name, color, part) in PARTS {
                 ui.colored_label(color, format!("{name} {:.1} ms", part(&last)));
             }
         });
-        let compiled: u64 = self.all.iter().map(|c| c.compiled).sum();
+        let compiled: u64 = self.last.iter().map(|c| c.compiled).sum();
         ui.label(format!(
             "graph up to {most:.1} ms; {compiled} pipelines compiled in it"
         ));

@@ -133,7 +133,7 @@ impl Vulkan {
                 physical,
                 device: &device,
                 queue_family: family,
-                queue: None,
+                queue: Some(queue), // of the one thread that draws
                 features: needs.features,
                 allocator: None,
                 pipeline_cache: None,

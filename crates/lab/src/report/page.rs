@@ -19,7 +19,7 @@ pub struct Page {
 }
 
 /// Style: one column as wide as a chart reads well; tables that scroll on their own, their first column staying, shadows telling that there is
-/// more; in print nothing cut apart that fits a page, headings with what follows them, two charts a page.
+/// more; in print nothing cut apart that fits a page, headings with what follows them, two charts side by side.
 const STYLE: &str = "
 :root{color-scheme:light}
 *{box-sizing:border-box}
@@ -55,7 +55,7 @@ dd{margin:0;overflow-wrap:anywhere}
 @media(max-width:44rem){.shots{grid-template-columns:repeat(2,1fr)}th,td{padding:.25rem .35rem}table{font-size:.82rem}th{min-width:3.6em}}
 @media(max-width:34rem){dl{grid-template-columns:1fr}dt{margin-top:.4rem}body{padding:.8rem}}
 @media print{@page{size:A4;margin:14mm}body{max-width:none;padding:0;font-size:10pt;line-height:1.35}h1{font-size:16pt}h2{font-size:13pt}h3{font-size:11pt}h2,h3{break-after:avoid}\
-p{orphans:3;widows:3}figure,.shots figure{break-inside:avoid}figure svg{width:auto;max-width:10.5cm;max-height:20cm}figcaption{max-width:none;font-size:9pt}.scroll{overflow:visible;background:none}\
+p{orphans:3;widows:3}figure,.shots figure{break-inside:avoid}figure{display:inline-block;width:48.5%;margin:.3rem .5%;vertical-align:top}.shots figure{display:block;width:auto}figure svg{width:auto;max-width:100%;max-height:20cm}figcaption{max-width:none;font-size:8pt}.scroll{overflow:visible;background:none}\
 thead{display:table-header-group}tr{break-inside:avoid}th,td{padding:.06rem .22rem;white-space:normal}td.n,td:first-child{white-space:nowrap}th{min-width:0}td.w{min-width:0}table{font-size:7.5pt;line-height:1.25}\
 th:first-child,td:first-child{position:static}.shots{gap:.4rem}.shots:has(:only-child){grid-template-columns:minmax(0,8cm)}nav{display:none}a{color:inherit;text-decoration:none}code{background:none;padding:0}}
 ";

@@ -62,7 +62,7 @@ pub struct SeriesStyles {
 }
 
 impl SeriesStyles {
-    /// SeriesStyles for these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
+    /// The styles of these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
     /// is free; meshes are alike.
     #[must_use]
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
@@ -91,7 +91,7 @@ impl SeriesStyles {
         Self { labels, ways }
     }
 
-    /// SeriesStyles for the ways in which rows were drawn.
+    /// The styles of the ways in which rows were drawn.
     pub(super) fn of(rows: &[Row]) -> Self {
         let ways: Vec<MethodSettings> = rows.iter().map(|r| variant(&r.settings)).collect();
         Self::new(&ways)

@@ -1,0 +1,257 @@
+//! Pictures that the window shows in place of the drawn scene: planes of an off-screen frame, the
+//! compute stage's frame, and errors against the reference.
+
+use super::controls::Shown;
+use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
+use revmap::error::{Error, Result, Stage as Where};
+use revmap::frame::{Frame, Picture};
+use revmap::gpu::{Device, DrawPath, Offscreen};
+use revmap::settings::{DrawStage, Planes, Settings};
+use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
+use revmap_lab::report::pictures::steps;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use winit::window::Window;
+
+/// What the window shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inspected {
+    /// The scene as it is lit.
+    Color,
+    /// Distances from the eye: white is near, dark is far.
+    Depth,
+    /// World normals: red, green and blue are x, y and z, from -1 to 1.
+    Normals,
+    /// Look-ups or patches that each pixel's search made.
+    Steps,
+    /// Errors of depth and silhouette against the double-precision reference.
+    Error,
+}
+
+impl Inspected {
+    /// Names in the controls and of the option `--show`.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("color", Self::Color),
+        ("depth", Self::Depth),
+        ("normals", Self::Normals),
+        ("steps", Self::Steps),
+        ("error", Self::Error),
+    ];
+}
+
+/// Side of a pixel of the error's picture, in pixels of the window: the reference takes seconds for
+/// a whole window.
+const COARSE: u32 = 2;
+
+/// A reference that is being drawn in the background.
+struct Check {
+    version: u64,
+    drawn: Receiver<Result<Frame>>,
+}
+
+/// The pictures and what makes them.
+#[derive(Default)]
+pub struct Inspector {
+    offscreen: Option<(Settings, Offscreen)>,
+    texture: Option<TextureHandle>,
+    /// The version of the scene that the texture shows, and how.
+    made: Option<(u64, Inspected, Settings)>,
+    check: Option<Check>,
+    /// What the picture says in numbers.
+    pub words: String,
+    /// Milliseconds of the device for the last off-screen frame.
+    pub device_ms: Option<f64>,
+    /// How each object was drawn in it.
+    pub draw_paths: Vec<DrawPath>,
+}
+
+impl Inspector {
+    /// Whether the window shows a picture made here, and not what is drawn in its own pass.
+    pub fn is_wanted(shown: &Shown) -> bool {
+        shown.inspected != Inspected::Color || shown.stage == DrawStage::Compute
+    }
+
+    /// The picture of version `version` of what is shown, for a window of `size` pixels. None until
+    /// the reference has been drawn.
+    pub fn picture(
+        &mut self,
+        shown: &Shown,
+        version: u64,
+        size: (u32, u32),
+        device: &Device,
+        context: &Context,
+        window: &Arc<Window>,
+    ) -> Result<Option<&TextureHandle>> {
+        let side = if shown.inspected == Inspected::Error {
+            COARSE
+        } else {
+            1
+        };
+        let planes = match shown.inspected {
+            Inspected::Color => Planes::Color,
+            _ => Planes::All,
+        };
+        let settings = shown.settings((size.0.div_ceil(side), size.1.div_ceil(side)), planes);
+        let wanted = (version, shown.inspected, settings);
+        if self.made == Some(wanted) {
+            return Ok(self.texture.as_ref());
+        }
+        let reference = match shown.inspected {
+            Inspected::Error => match self.reference(shown, version, &settings, window)? {
+                Some(frame) => Some(frame),
+                None => {
+                    self.words = "the reference is being drawn".into();
+                    return Ok(None);
+                }
+            },
+            _ => None,
+        };
+        let frame = self.draw(shown, settings, device)?;
+        let picture = match (shown.inspected, reference) {
+            (_, Some(reference)) => self.errors(&reference, &frame)?,
+            (Inspected::Depth, _) => depth(&frame),
+            (Inspected::Normals, _) => normals(&frame),
+            (Inspected::Steps, _) => steps(&frame),
+            _ => Picture::of(&frame),
+        };
+        if shown.inspected != Inspected::Error {
+            self.words.clear();
+        }
+        let image = ColorImage::new(
+            [picture.width as usize, picture.height as usize],
+            picture
+                .rgba
+                .iter()
+                .map(|&[r, g, b, a]| Color32::from_rgba_unmultiplied(r, g, b, a))
+                .collect(),
+        );
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            none => *none = Some(context.load_texture("picture", image, TextureOptions::NEAREST)),
+        }
+        self.made = Some(wanted);
+        Ok(self.texture.as_ref())
+    }
+
+    /// One frame by the device, with the picture's settings.
+    pub fn draw(&mut self, shown: &Shown, settings: Settings, device: &Device) -> Result<Frame> {
+        let offscreen = match &mut self.offscreen {
+            Some((made, offscreen)) if *made == settings => {
+                offscreen.update(&shown.scene)?;
+                offscreen
+            }
+            other => {
+                *other = None;
+                let made = Offscreen::new(device, &shown.scene, &settings)?;
+                &mut other.insert((settings, made)).1
+            }
+        };
+        self.device_ms = offscreen.draw()?.gpu_ms;
+        self.draw_paths = offscreen.draw_paths();
+        offscreen.read()
+    }
+
+    /// The reference's frame of this version, once it has been drawn; begins to draw it.
+    fn reference(
+        &mut self,
+        shown: &Shown,
+        version: u64,
+        settings: &Settings,
+        window: &Arc<Window>,
+    ) -> Result<Option<Frame>> {
+        if let Some(check) = &self.check {
+            let drawn = match check.drawn.try_recv() {
+                Err(TryRecvError::Empty) => return Ok(None),
+                Err(TryRecvError::Disconnected) => Err(Error::new(
+                    Where::Draw,
+                    "the reference's thread has died; change the view to try again",
+                )),
+                Ok(drawn) => drawn,
+            };
+            let current = check.version == version;
+            self.check = None;
+            if current {
+                return drawn.map(Some);
+            }
+        }
+        let (done, drawn) = channel();
+        let (scene, settings, window) = (shown.scene.clone(), *settings, window.clone());
+        std::thread::spawn(move || {
+            // A window that was closed meanwhile wants nothing any more.
+            let _ = done.send(revmap_reference::draw(&scene, &settings, &|_, _| {}));
+            window.request_redraw();
+        });
+        self.check = Some(Check { version, drawn });
+        Ok(None)
+    }
+
+    fn errors(&mut self, reference: &Frame, frame: &Frame) -> Result<Picture> {
+        let options = CompareOptions::default();
+        let found = compare(reference, frame, &options)?;
+        let depth = found
+            .depth
+            .map_or("none".into(), |d| format!("{:.4}", d.p99));
+        self.words = format!(
+            "{} missed, {} ghost pixels of {}; depth p99 {depth} of 1/512 unit; every {COARSE}nd pixel",
+            found.missed,
+            found.ghost,
+            frame.pixels()
+        );
+        heat_map(reference, frame, &options, Heat::Depth)
+    }
+}
+
+/// A grey level for each pixel's distance, between the nearest and the farthest hit.
+fn depth(frame: &Frame) -> Picture {
+    let hits = || frame.distance.iter().copied().filter(|d| d.is_finite());
+    let (near, far) = (
+        hits().fold(f32::INFINITY, f32::min),
+        hits().fold(0.0, f32::max),
+    );
+    let span = (far - near).max(f32::MIN_POSITIVE);
+    painted(frame, |k| {
+        let grey = 255.0 - 215.0 * (frame.distance[k] - near) / span;
+        [grey as u8; 3]
+    })
+}
+
+fn normals(frame: &Frame) -> Picture {
+    painted(frame, |k| {
+        frame.normal[k].map(|n| (127.5 + 127.5 * n) as u8)
+    })
+}
+
+/// What is hit in its colour, the rest black.
+fn painted(frame: &Frame, color: impl Fn(usize) -> [u8; 3]) -> Picture {
+    let pixel = |k: usize| {
+        let [r, g, b] = if frame.hits(k) { color(k) } else { [0; 3] };
+        [r, g, b, 255]
+    };
+    Picture {
+        width: frame.width,
+        height: frame.height,
+        rgba: (0..frame.pixels()).map(pixel).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn near_is_bright_and_normals_are_colours() {
+        let mut frame = Frame::new(3, 1, [0.0; 4]).unwrap();
+        frame.distance = vec![1.0, 3.0, f32::INFINITY];
+        frame.normal = vec![[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0; 3]];
+        assert_eq!(
+            depth(&frame).rgba,
+            [[255; 4], [40, 40, 40, 255], [0, 0, 0, 255]]
+        );
+        let colored = normals(&frame).rgba;
+        assert_eq!(
+            colored,
+            [[255, 127, 127, 255], [127, 127, 0, 255], [0, 0, 0, 255]]
+        );
+    }
+}

@@ -1,0 +1,175 @@
+//! What the window writes: the scene as TOML, a turntable, times of its frames.
+
+use super::controls::Shown;
+use super::times::Cost;
+use glam::{DQuat, DVec3};
+use revmap::error::{Error, Result, Stage as Where};
+use revmap::frame::atomic_file::write_atomically;
+use revmap::scene::file::SceneFile;
+use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
+use std::fmt::Debug;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Frames of a turntable.
+pub const TURNTABLE: u32 = 36;
+
+/// A path beside `file` that is not taken: its stem, `-`, a number from 1 on, `ending`.
+pub fn beside(file: &Path, ending: &str) -> PathBuf {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let numbered = |n: u32| file.with_file_name(format!("{stem}-{n}{ending}"));
+    (1..)
+        .map(numbered)
+        .find(|path| !path.exists())
+        .unwrap_or_else(|| numbered(0))
+}
+
+/// Writes what is shown as a scene beside `source`, where its paths lead to the same files.
+pub fn write_scene(
+    source: &Path,
+    file: &SceneFile,
+    first: &Scene,
+    shown: &Scene,
+) -> Result<PathBuf> {
+    let path = beside(source, ".toml");
+    let (before, after) = (assignments(first), assignments(shown));
+    // What was not touched stays as the scene has it, or has it not.
+    let changed = after.into_iter().filter(|one| !before.contains(one));
+    let text = file.text(&changed.collect::<Vec<_>>())?;
+    write(&path, &text)?;
+    Ok(path)
+}
+
+/// The camera of frame `n` of a turntable.
+pub fn turned(shown: &Shown, n: u32) -> Shown {
+    let mut turned = shown.clone();
+    let camera = &mut turned.scene.camera;
+    let angle = std::f64::consts::TAU * f64::from(n) / f64::from(TURNTABLE);
+    let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
+    camera.eye = camera.target + about * (camera.eye - camera.target);
+    turned
+}
+
+/// Writes the cost of each frame.
+pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
+    let mut text = String::from("frame,prepare_ms,gpu_ms,present_ms,pipelines_compiled\n");
+    for (n, cost) in all.iter().enumerate() {
+        let Cost {
+            prepare,
+            device,
+            present,
+            compiled,
+        } = cost;
+        text += &format!("{n},{prepare:.4},{device:.4},{present:.4},{compiled}\n");
+    }
+    write(path, &text)
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    write_atomically(Where::Frame, path, |out| {
+        out.write_all(text.as_bytes())
+            .map_err(|e| Error::new(Where::Frame, format!("cannot be written: {e}")))
+    })
+}
+
+/// Every value that the controls change, as `--set` takes it.
+fn assignments(scene: &Scene) -> Vec<String> {
+    let camera = &scene.camera;
+    let mut all = vec![
+        format!("camera.eye={:?}", camera.eye.to_array()),
+        format!("camera.target={:?}", camera.target.to_array()),
+        format!("camera.fov_y={:?}", camera.fov_y),
+        format!("ambient={:?}", scene.ambient),
+        format!("shadow={:?}", name(&Shadow::NAMES, &scene.shadow)),
+    ];
+    let lights: Vec<String> = scene
+        .lights
+        .iter()
+        .map(|light| {
+            let direction = light.direction.to_array();
+            format!("{{direction = {direction:?}, color = {:?}}}", light.color)
+        })
+        .collect();
+    all.push(format!("light=[{}]", lights.join(", ")));
+    for (n, object) in scene.objects.iter().enumerate() {
+        let mut set =
+            |key: &str, value: &dyn Debug| all.push(format!("object.{n}.{key}={value:?}"));
+        of_object(object, &mut set);
+    }
+    all
+}
+
+fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
+    let Object {
+        offset,
+        texturing,
+        specular,
+        placement,
+        ..
+    } = object;
+    set("extend", &offset.extend);
+    set("bevel", &offset.bevel);
+    set("chamfer", &offset.chamfer);
+    set("clip", &name(&Clip::NAMES, &object.clip));
+    set("bump", &texturing.bump);
+    set("bump_form", &name(&BumpForm::NAMES, &texturing.bump_form));
+    set("projection", &texturing.projection.name());
+    set("axis", &object.axis);
+    set("repeat", &object.repeat);
+    set("mirror", &object.mirror);
+    set("color", &object.color);
+    set("specular", &specular.strength);
+    set("shininess", &specular.shininess);
+    set("position", &placement.position.to_array());
+    set("scale", &placement.scale.to_array());
+}
+
+fn name<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> &'static str {
+    all.iter()
+        .find(|(_, one)| one == value)
+        .map_or("", |(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const TEXT: &str = "[camera]\neye = [2, 0, 1]\ntarget = [0, 0, 0.5]\n\
+                        [[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\n";
+
+    #[test]
+    fn a_saved_scene_is_the_one_that_is_shown() {
+        let folder = tempfile::tempdir().unwrap();
+        let source = folder.path().join("cone.toml");
+        std::fs::write(&source, TEXT).unwrap();
+        let mut file = SceneFile::open(&source).unwrap();
+        let first = file.scene(&[]).unwrap();
+        let mut shown = first.clone();
+        shown.objects[0].offset.bevel = 0.25;
+        shown.objects[0].repeat = [2, 1, 3];
+        shown.camera.eye = DVec3::new(-1.5, 0.25, 3.0);
+        shown.shadow = Shadow::Hard;
+        shown.lights.push(shown.lights[0]);
+        shown.lights[1].color = [1.0, 0.5, 0.0];
+        let path = write_scene(&source, &file, &first, &shown).unwrap();
+        assert_eq!(path, folder.path().join("cone-1.toml"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(!text.contains("extend"), "what was not touched: {text}");
+        let read = SceneFile::open(&path).unwrap().scene(&[]).unwrap();
+        assert_eq!(assignments(&read), assignments(&shown));
+        // The next one takes another name.
+        let next = write_scene(&source, &file, &first, &shown).unwrap();
+        assert_eq!(next, folder.path().join("cone-2.toml"));
+    }
+
+    #[test]
+    fn a_turntable_comes_round() {
+        let scene = revmap::scene::file::parse(TEXT, ".", &[]).unwrap();
+        let shown = Shown::new(scene, revmap::settings::SearchSettings::default());
+        let quarter = turned(&shown, TURNTABLE / 4).scene.camera.eye;
+        assert!((quarter - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12);
+        let round = turned(&shown, TURNTABLE).scene.camera.eye;
+        assert!((round - shown.scene.camera.eye).length() < 1e-12);
+    }
+}
