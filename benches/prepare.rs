@@ -50,7 +50,7 @@ impl Crowd {
             depth: DepthOrder::Normal,
             planes: Planes::Color,
         });
-        let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2).unwrap();
+        let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 2).unwrap();
         let profiles = [
             &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],
             &[

@@ -1,5 +1,9 @@
 //! *How* a scene is drawn; *what* is drawn is the [`Scene`](crate::scene::Scene).
 
+mod tolerance;
+
+pub use tolerance::Tolerance;
+
 use crate::error::{Error, Result, Stage};
 use crate::maps::{MapFormat, MapSource};
 use std::fmt;
@@ -86,6 +90,12 @@ impl Solver {
             self,
             Self::Cone | Self::Relaxed | Self::Quadric | Self::Hull
         )
+    }
+
+    /// Whether it searches patches, of which there are levels for every [`Tolerance`]. The others ignore it.
+    #[must_use]
+    pub const fn follows_tolerance(self) -> bool {
+        matches!(self, Self::Quadric | Self::Hull)
     }
 
     /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
@@ -175,6 +185,8 @@ pub struct Settings {
     /// Pixels that an object's box covers for each frustum of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
     /// [`Solver::Live`] the convex one: triangles cost the same however small they are. `u32::MAX`: boxes alone, and no beams either.
     pub proxy_min_pixels: u32,
+    /// Allowed error of silhouettes and depths.
+    pub tolerance: Tolerance,
 }
 
 /// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage and planes are its output's.
@@ -192,6 +204,8 @@ pub struct SearchSettings {
     pub map_format: MapFormat,
     /// As [`Settings::proxy_min_pixels`].
     pub proxy_min_pixels: u32,
+    /// As [`Settings::tolerance`].
+    pub tolerance: Tolerance,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -203,6 +217,26 @@ impl From<&Settings> for SearchSettings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             proxy_min_pixels: settings.proxy_min_pixels,
+            tolerance: settings.tolerance,
+        }
+    }
+}
+
+impl SearchSettings {
+    /// The default with no tolerance, as measurements want it.
+    #[must_use]
+    pub fn exact() -> Self {
+        Self::from(&Settings::exact())
+    }
+}
+
+impl Settings {
+    /// The default with no tolerance, as measurements want it.
+    #[must_use]
+    pub fn exact() -> Self {
+        Self {
+            tolerance: Tolerance::EXACT,
+            ..Self::default()
         }
     }
 }
@@ -226,6 +260,7 @@ impl Default for Settings {
             map_format: MapFormat::R32,
             planes: Planes::All,
             proxy_min_pixels: 150,
+            tolerance: Tolerance::DEFAULT,
         }
     }
 }

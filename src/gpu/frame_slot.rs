@@ -104,6 +104,20 @@ impl FrameSlot {
         Ok(())
     }
 
+    /// Bytes of its buffers.
+    pub fn bytes(&self) -> u64 {
+        [
+            &self.frame,
+            &self.blocks,
+            &self.instances,
+            &self.shadows,
+            &self.lists,
+        ]
+        .iter()
+        .map(|buffer| buffer.bytes)
+        .sum()
+    }
+
     fn outgrown(&mut self) {
         self.empty = true;
         self.named = None;

@@ -84,7 +84,8 @@ fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     let radius = object.profile.radius;
     let [x, y] = axis_offset(object);
     let side_face = radius - x.abs().max(y.abs());
-    object.repeat == [1; 3] && surface.extent()[0] <= side_face
+    // What of a coarse level bulges beyond the box may be seen.
+    object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
 }
 
 /// Whether rays of all of an object's copies can be taken between the ends that beams give: they begin outside the solid and no face

@@ -2,6 +2,7 @@
 
 use super::clock::Clock;
 use super::commands::Commands;
+use super::costs::ObjectCost;
 use super::device::{Device, Shared};
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
 use super::plan::DrawPath;
@@ -141,7 +142,7 @@ impl Offscreen {
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         scene.check()?;
         let view = view_of(scene, (self.settings.width, self.settings.height))?;
-        self.take_over(scene)?;
+        self.take_over(scene, &view)?;
         self.view = view;
         self.background = scene.background;
         self.stale = true;
@@ -151,7 +152,7 @@ impl Offscreen {
     }
 
     /// All or nothing: what fails is taken back.
-    fn take_over(&mut self, scene: &Scene) -> Result<()> {
+    fn take_over(&mut self, scene: &Scene, view: &View) -> Result<()> {
         let lighting = scene.lighting();
         super::block::check_lights(&lighting)?;
         let before = self.renderer.lighting.clone();
@@ -174,7 +175,7 @@ impl Offscreen {
             for object in &objects[kept..] {
                 self.ids.push(self.renderer.add(object.clone())?);
             }
-            self.renderer.refresh()
+            self.renderer.refresh(Some(view))
         };
         let result = change();
         if result.is_err() {
@@ -187,7 +188,7 @@ impl Offscreen {
             self.renderer.set_lighting(&before)?;
             // What never was drawn has nothing to go back to.
             if there > 0 {
-                self.renderer.refresh()?;
+                self.renderer.refresh(Some(view))?;
             }
         }
         result
@@ -323,6 +324,18 @@ impl Offscreen {
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
         self.renderer.draw_paths()
+    }
+
+    /// As [`Renderer::object_costs`], since the last update that succeeded.
+    #[must_use]
+    pub fn object_costs(&self) -> Vec<ObjectCost> {
+        self.renderer.object_costs()
+    }
+
+    /// As [`Renderer::device_bytes`]; the target is not among them.
+    #[must_use]
+    pub fn device_bytes(&self) -> u64 {
+        self.renderer.device_bytes()
     }
 
     /// As [`Renderer::rebuild_count`].

@@ -21,8 +21,8 @@ pub(crate) struct OffsetSurface {
 
 /// What a surface is made from.
 pub(crate) enum Recipe {
-    /// Quadrics that follow the outline under an offset, in a box of this height in units of the profile's.
-    Patches(Arc<Outlined>, Offset, f64),
+    /// Quadrics that follow the outline under an offset, of this level, within this distance in object units.
+    Patches(Arc<Outlined>, Offset, u8, f64),
     /// A row of so many empty cones around it, relaxed or not.
     Cones(Arc<Outlined>, Offset, u32, bool),
     /// Where a map's solid may be.
@@ -108,6 +108,22 @@ impl OffsetSurface {
         }
     }
 
+    /// By how much it may bulge beyond the contour: as much of a coarse level, nothing of the exact one.
+    pub fn slack(&self) -> f64 {
+        match self.recipe {
+            Recipe::Patches(_, _, level, tolerance) if level > 0 => tolerance,
+            _ => 0.0,
+        }
+    }
+
+    /// How many patches it has.
+    pub fn patches(&self) -> usize {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => patches.len(),
+            _ => 0,
+        }
+    }
+
     pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
         match part {
             Part::Tables => &self.tables().vectors,
@@ -128,10 +144,10 @@ impl OffsetSurface {
 impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
-            Self::Patches(outlined, offset, height) => {
+            Self::Patches(outlined, offset, _, tolerance) => {
                 let contour = outlined.contour(offset)?;
                 let options = FitOptions {
-                    tolerance: FitOptions::default().tolerance / height,
+                    tolerance: *tolerance,
                 };
                 let patches = fit_patches(&contour, &options);
                 let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];

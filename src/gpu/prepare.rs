@@ -49,7 +49,7 @@ impl Renderer {
         let done = |r: &(u64, _)| r.0 < self.frame;
         let count = self.retired.iter().take_while(|r| done(r)).count();
         self.retired.drain(..count);
-        self.refresh()?;
+        self.refresh(Some(view))?;
         self.plan(view)?;
         let staging = self.uploads.record(&self.device, cmd);
         if !staging.is_empty() {
@@ -96,10 +96,15 @@ impl Renderer {
         if self.unplanned.is_empty() {
             return Ok(());
         }
+        let asked = self.unplanned.clone();
+        self.choose_levels(view, &asked)?;
         let mut numbers = std::mem::take(&mut self.unplanned);
-        if !moved && self.draws_hulls() {
+        if self.draws_hulls() {
             numbers.sort_unstable();
             numbers.dedup();
+        } else {
+            // All of them, in order.
+            numbers.clone_from(&self.order);
         }
         self.view = Some(*view);
         self.version += 1;
@@ -348,6 +353,10 @@ impl Entry {
         );
         if let Some(grown) = &self.grown {
             note_growth(&mut block, &grown.growth, grown.object.profile.radius);
+        }
+        #[allow(clippy::cast_possible_truncation)]
+        if let Some(surface) = p.fitted() {
+            block.bounds[1] += surface.slack() as f32;
         }
         block.hull[0] = self.draw.frusta;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());

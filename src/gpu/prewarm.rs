@@ -53,7 +53,8 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::prepare`], of what was added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
-        self.refresh()?;
+        let view = self.view;
+        self.refresh(view.as_ref())?;
         let mut wanted = Vec::new();
         for entry in self.ordered() {
             self.reachable(entry, &mut wanted);

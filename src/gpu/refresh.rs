@@ -1,10 +1,12 @@
 //! From an object's values to what the device needs of it. All that can fail comes first; then everything is taken over at once.
 
 use super::block::{check_format, largest_width};
-use super::offset_surface::{OffsetSurface, Part};
+use super::levels;
+use super::offset_surface::OffsetSurface;
 use super::renderer::{Entry, Prepared, Renderer};
 use super::solid::{MapKey, ShapeTexture, Solid};
 use super::textures::{Bound, ShadowMaps};
+use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::maps::envelope::SLACK;
 use crate::maps::{MapFormat, Projection};
@@ -12,7 +14,6 @@ use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
 use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
 use crate::shader::{Met, Variant};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The search of what has no surface of its own: it reads the map alone.
@@ -24,6 +25,7 @@ struct Resolved {
     /// In a box that has grown.
     grown: Option<GrownObject>,
     solid: Arc<Solid>,
+    level: u8,
     surface: Option<Arc<OffsetSurface>>,
 }
 
@@ -37,15 +39,15 @@ impl Resolved {
 
 impl Renderer {
     /// Takes over what was added and set since the last call. Where something fails, what was added since is left out until it is
-    /// set again, and everything else stays as it was.
-    pub(super) fn refresh(&mut self) -> Result<()> {
+    /// set again, and everything else stays as it was. `view`: the one that is drawn next, where it is known.
+    pub(super) fn refresh(&mut self, view: Option<&View>) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
         }
         let mut changed = std::mem::take(&mut self.changed);
         changed.sort_unstable();
         changed.dedup();
-        let result = self.take_over(&changed);
+        let result = self.take_over(&changed, view);
         if result.is_err() {
             for number in changed {
                 self.forget(number)?;
@@ -71,15 +73,15 @@ impl Renderer {
         Ok(())
     }
 
-    fn take_over(&mut self, changed: &[u32]) -> Result<()> {
-        let resolved = self.resolve(changed)?;
+    fn take_over(&mut self, changed: &[u32], view: Option<&View>) -> Result<()> {
+        let resolved = self.resolve(changed, view)?;
         let (falls_back, met) = (self.falls_back(&resolved), self.shadows_meet());
         if falls_back != self.all_fall_back || met != self.met {
             (self.all_fall_back, self.met) = (falls_back, met);
             // Each is drawn by another code from now on.
             if changed.len() < self.order.len() {
                 let all = self.order.clone();
-                return self.take_over(&all);
+                return self.take_over(&all, view);
             }
         }
         let casts = self.lighting.shadow != Shadow::Off;
@@ -103,7 +105,7 @@ impl Renderer {
         let before = std::mem::replace(&mut self.shadow_maps, shadow_maps);
         if all_anew && mapped.len() < self.order.len() {
             let all = self.order.clone();
-            return self.take_over(&all);
+            return self.take_over(&all, view);
         }
         self.retire(before);
         let mut ready = Vec::with_capacity(mapped.len());
@@ -130,7 +132,7 @@ impl Renderer {
     }
 
     /// Finds or makes the surfaces of changed objects, on all cores.
-    fn resolve(&mut self, changed: &[u32]) -> Result<Vec<Resolved>> {
+    fn resolve(&mut self, changed: &[u32], view: Option<&View>) -> Result<Vec<Resolved>> {
         let solver = self.settings.solver;
         let mut resolved = Vec::with_capacity(changed.len());
         for &number in changed {
@@ -141,38 +143,31 @@ impl Renderer {
             let object = grown.as_ref().map_or(entry.latest(), |g| &g.object);
             let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
             let solid = self.solids.get(&object.profile);
+            // Shadows' common level is known when all are planned.
+            let level = match view {
+                Some(view) if self.has_levels() && self.lighting.shadow == Shadow::Off => {
+                    let pixels = levels::pixels_per_unit(object, growth.height(), view);
+                    levels::coarsest(self.settings.tolerance, pixels)
+                }
+                _ => 0,
+            };
             let surface = if solver.reads_map() {
                 None
             } else if solver.is_of_cones() {
                 let rows = MapKey::new(object, &growth, &self.settings).rows;
                 Some(solid.cones(&object.offset, rows, solver == Solver::Relaxed)?)
             } else {
-                Some(solid.patches(&object.offset, &growth)?)
+                Some(solid.patches(&object.offset, &growth, level)?)
             };
             resolved.push(Resolved {
                 number,
                 grown,
                 solid,
+                level,
                 surface,
             });
         }
-        let mut new: Vec<_> = resolved
-            .iter()
-            .filter_map(|r| r.surface.as_ref())
-            .filter(|s| !s.is_made())
-            .collect();
-        new.sort_unstable_by_key(|s| Arc::as_ptr(s));
-        new.dedup_by_key(|s| Arc::as_ptr(s));
-        let part = if solver == Solver::Hull && self.draws_hulls() {
-            Part::Frusta
-        } else {
-            Part::Tables
-        };
-        new.par_iter().for_each(|surface| {
-            surface.make();
-            surface.vectors(part);
-        });
-        self.rebuilds += new.len() as u64;
+        self.make_surfaces(resolved.iter().filter_map(|r| r.surface.as_ref()));
         for one in &resolved {
             let Some(error) = one.surface.as_ref().and_then(|s| s.failure()) else {
                 continue;
@@ -338,7 +333,9 @@ impl Renderer {
         };
         Ok(Prepared {
             textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
-            _solid: solid.clone(),
+            solid: solid.clone(),
+            level: one.level,
+            levels: Vec::new(),
             solver,
             surface: surface.filter(|_| !solver.reads_map()),
             wrapped,

@@ -127,7 +127,11 @@ pub(super) struct Entry {
 /// What follows from an object's values, whatever the view.
 pub(super) struct Prepared {
     /// Kept, as the cache keeps nothing.
-    pub _solid: Arc<Solid>,
+    pub solid: Arc<Solid>,
+    /// Which level of the surface it is drawn by.
+    pub level: u8,
+    /// Surfaces of other levels that the view asked for before.
+    pub levels: Vec<Arc<OffsetSurface>>,
     /// What it is drawn by, which is not always what was asked for.
     pub solver: Solver,
     /// What the search walks.
@@ -416,7 +420,8 @@ impl Renderer {
     }
 
     /// How many surfaces were made: one for each profile under each offset that no object had in the frame before. A camera that
-    /// moves makes none. Searches on the map never do.
+    /// moves makes those of levels that it asks for the first time; with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT)
+    /// none. Searches on the map never do.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.rebuilds

@@ -3,6 +3,7 @@
 //! The cache holds nothing alive. Objects do, and frames in flight; what the last of them lets go is gone.
 
 use super::device::Shared;
+use super::levels;
 use super::memory::Image;
 use super::offset_surface::{OffsetSurface, Recipe};
 use super::uploads::Uploads;
@@ -73,8 +74,8 @@ impl<K: Hash + Eq, V> Kept<K, V> {
 
 #[derive(PartialEq, Eq, Hash)]
 enum SurfaceKey {
-    /// Bits of the offset.
-    Patches([u64; 3]),
+    /// Bits of the offset, level.
+    Patches([u64; 3], u8),
     /// Likewise, rows, whether relaxed.
     Cones([u64; 3], u32, bool),
     /// The map, and bits of what its envelope is grown by.
@@ -142,9 +143,16 @@ impl Solid {
     }
 
     /// The boundary as quadrics; not made yet where it is new.
-    pub fn patches(&self, offset: &Offset, growth: &Growth) -> Result<Arc<OffsetSurface>> {
-        self.surfaces.get(SurfaceKey::Patches(bits(offset)), || {
-            let recipe = Recipe::Patches(self.outlined.clone(), *offset, growth.height());
+    pub fn patches(
+        &self,
+        offset: &Offset,
+        growth: &Growth,
+        level: u8,
+    ) -> Result<Arc<OffsetSurface>> {
+        let key = SurfaceKey::Patches(bits(offset), level);
+        self.surfaces.get(key, || {
+            let tolerance = levels::bound(level) / growth.height();
+            let recipe = Recipe::Patches(self.outlined.clone(), *offset, level, tolerance);
             Ok(OffsetSurface::new(recipe))
         })
     }

@@ -158,7 +158,7 @@ fn any(solver: Solver, planes: Planes) -> Variant {
     let object = Object::new("any", Arc::new(profile));
     let settings = SearchSettings {
         solver,
-        ..SearchSettings::default()
+        ..SearchSettings::exact()
     };
     let lighting = Lighting::default();
     Variant::new(

@@ -14,7 +14,7 @@ fn precise() -> Settings {
         map_rows: Some(1024),
         map_source: Some(MapSource::Exact),
         map_format: MapFormat::R32,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

@@ -91,7 +91,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             max_steps: Some(48),
             // Convex hulls and beams start rays at different places, and have tests of their own.
             proxy_min_pixels: u32::MAX,
-            ..Settings::default()
+            ..Settings::exact()
         };
         let fragment = draw(scene, &settings);
         let compute = draw(
@@ -117,7 +117,7 @@ fn one_changed_bit_is_noticed() {
         width: 64,
         height: 48,
         solver: Solver::Quadric,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let fragment = draw(&scene, &settings);
     let mut other = fragment.clone();

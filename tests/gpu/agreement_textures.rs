@@ -113,7 +113,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
                 formats[(n + n / 3) % 3]
             },
             proxy_min_pixels: u32::MAX, // or rays would begin elsewhere in each stage
-            ..Settings::default()
+            ..Settings::exact()
         };
         let compute = Settings {
             stage: DrawStage::Compute,

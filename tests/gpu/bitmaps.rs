@@ -57,7 +57,7 @@ fn pictures_are_better_than_by_the_rbm_baseline() {
     let ours = Settings {
         width: 800, // in smaller pictures too few pixels are wrong to say who has twice as many
         height: 600,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let papers = Settings {
         solver: Solver::Circle,

@@ -115,7 +115,7 @@ fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
                 width: 160,
                 height: 120,
                 map_format: MapFormat::R32,
-                ..Settings::default()
+                ..Settings::exact()
             };
             let depths = [0.08, 0.04, 0.02];
             let errors = depths.map(|a| {

@@ -16,7 +16,7 @@ fn settings(stage: DrawStage, solver: Solver) -> Settings {
         height: 150,
         stage,
         solver,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

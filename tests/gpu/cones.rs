@@ -17,7 +17,7 @@ fn settings() -> Settings {
         height: 180,
         solver: Solver::Cone,
         map_rows: Some(ROWS),
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

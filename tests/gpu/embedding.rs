@@ -77,7 +77,7 @@ fn renderer(device: &Device, stage: &Stage) -> Renderer {
         depth: order(&stage.options),
         planes: Planes::Color,
     });
-    Renderer::new(device, output, &SearchSettings::default(), host::FRAMES).unwrap()
+    Renderer::new(device, output, &SearchSettings::exact(), host::FRAMES).unwrap()
 }
 
 fn order(options: &Options) -> DepthOrder {
@@ -161,7 +161,7 @@ fn alone_it_draws_the_off_screen_frame() {
         width: options().width,
         height: options().height,
         planes: Planes::Color,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     offscreen.draw().unwrap();

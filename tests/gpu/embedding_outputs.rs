@@ -87,7 +87,7 @@ fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bo
         depth: DepthOrder::Normal,
         planes: Planes::Depth { parallel },
     });
-    let mut renderer = Renderer::new(device, output, &SearchSettings::default(), 1).unwrap();
+    let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
@@ -231,7 +231,7 @@ fn compute_writes_to_a_hosts_buffer() {
         height,
         stage: DrawStage::Compute,
         planes: Planes::Color,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     offscreen.draw().unwrap();
@@ -262,7 +262,7 @@ fn compute_writes_to_a_hosts_buffer() {
     let buffer = HostBuffer::of(&host, &words, usage).unwrap();
     let search = SearchSettings {
         solver: Solver::DEFAULT,
-        ..SearchSettings::default()
+        ..SearchSettings::exact()
     };
     let output = Output::Compute(Planes::Color);
     let mut renderer = Renderer::new(&device, output, &search, 1).unwrap();
@@ -321,12 +321,12 @@ fn depth_alone_takes_exact_searches() {
     let planes = Planes::Depth { parallel: false };
     let circle = SearchSettings {
         solver: Solver::Circle,
-        ..SearchSettings::default()
+        ..SearchSettings::exact()
     };
     let refused = |output, settings: &SearchSettings| {
         let error = Renderer::new(device, output, settings, 1).err().unwrap();
         assert!(error.to_string().contains("depth alone"), "{error}");
     };
     refused(pass(planes), &circle);
-    refused(Output::Compute(planes), &SearchSettings::default());
+    refused(Output::Compute(planes), &SearchSettings::exact());
 }

@@ -32,7 +32,7 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
                 max_steps: Some(max_steps),
                 planes,
                 proxy_min_pixels: u32::MAX, // or rays would begin elsewhere in each stage
-                ..Settings::default()
+                ..Settings::exact()
             };
             let frame = draw(&scene, &settings);
             // The bit that tells is no step.

@@ -18,7 +18,7 @@ fn settings(stage: DrawStage, solver: Solver) -> Settings {
         height: 121,
         stage,
         solver,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 
@@ -133,7 +133,7 @@ fn path(scene: &Scene) -> DrawPath {
     let settings = Settings {
         width: 800,
         height: 600,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let offscreen = Offscreen::new(device(), scene, &settings).unwrap();
     offscreen.draw_paths()[0]

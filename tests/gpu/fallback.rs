@@ -35,7 +35,7 @@ fn what_has_no_contour_is_drawn_from_the_map() {
             width: 200,
             height: 150,
             stage,
-            ..Settings::default()
+            ..Settings::exact()
         };
         let live = Settings {
             solver: Solver::Live,
@@ -60,7 +60,7 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         assert!(far <= 10, "{far} of {hits}");
     }
     // Once, however often it is drawn.
-    let settings = Settings::default();
+    let settings = Settings::exact();
     let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
     scene.camera.eye.x += 0.1;
     renderer.update(&scene).unwrap();
@@ -94,7 +94,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
             height: 150,
             stage,
             proxy_min_pixels: 0,
-            ..Settings::default()
+            ..Settings::exact()
         };
         scene.objects.truncate(1);
         let wanted = draw(&scene, &settings);

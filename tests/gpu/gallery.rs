@@ -51,7 +51,7 @@ fn maps_are_as_small_as_the_papers_claim() {
         height: 24,
         solver: Solver::Live, // which reads maps
         planes: Planes::Color,
-        ..Settings::default()
+        ..Settings::exact()
     };
     for (name, file) in scenes() {
         let scene: Scene = file::load(&file, &[]).unwrap_or_else(|e| panic!("{e}"));

@@ -17,7 +17,7 @@ fn real_profiles_look_as_they_did() {
     let settings = Settings {
         width: 320,
         height: 240,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let mut failures = Vec::new();
     for name in ["pawn", "bishop", "king", "rook", "bottle"] {

@@ -52,7 +52,7 @@ pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
         proxy_min_pixels: 0,
         solver,
         stage,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 
@@ -245,7 +245,7 @@ fn where_there_is_none() {
     let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();
     let small = scene_of(profile, eye(25.0, 40.0));
     let small_enough = Settings {
-        proxy_min_pixels: Settings::default().proxy_min_pixels,
+        proxy_min_pixels: Settings::exact().proxy_min_pixels,
         ..settings(Solver::Live, DrawStage::Fragment)
     };
     draw_by("small", &small, &small_enough, BOXED);

@@ -14,7 +14,7 @@ fn settings() -> Settings {
         height: 120,
         map_rows: Some(256),
         map_format: MapFormat::R32,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

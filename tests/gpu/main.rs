@@ -30,5 +30,6 @@ mod proxy_hulls;
 mod replicas;
 mod shadows;
 mod texturing;
+mod tolerance;
 mod trouble;
 mod updates;

@@ -55,7 +55,7 @@ fn searched(solver: Solver, width: u32, height: u32) -> Settings {
         height,
         solver,
         map_rows: Some(ROWS),
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

@@ -20,7 +20,7 @@ fn settings(solver: Solver) -> Settings {
         map_rows: Some(ROWS),
         map_format: MapFormat::R32,
         solver,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

@@ -85,7 +85,7 @@ fn shadows_are_the_references() {
         let settings = Settings {
             width: 240,
             height: 180,
-            ..Settings::default()
+            ..Settings::exact()
         };
         let truth = reference(&scene, &settings);
         for solver in [Solver::Live, Solver::Quadric] {

@@ -18,7 +18,7 @@ fn settings() -> Settings {
         width: 120,
         height: 90,
         map_format: MapFormat::R32,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

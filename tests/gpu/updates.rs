@@ -17,7 +17,7 @@ fn settings(stage: DrawStage) -> Settings {
         height: 120,
         proxy_min_pixels: 0, // however small
         stage,
-        ..Settings::default()
+        ..Settings::exact()
     }
 }
 

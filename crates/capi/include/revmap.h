@@ -799,6 +799,11 @@ typedef struct RevmapSearch {
      * is drawn; below it the box is. UINT32_MAX: boxes alone.
      */
     uint32_t proxy_min_pixels;
+    /**
+     * Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches on
+     * patches follow it.
+     */
+    double tolerance;
 } RevmapSearch;
 
 /**

@@ -93,6 +93,7 @@ impl RevmapPicture {
             map_format: search.map_format,
             planes: enums::planes(self.planes)?,
             proxy_min_pixels: search.proxy_min_pixels,
+            tolerance: search.tolerance,
         })
     }
 }

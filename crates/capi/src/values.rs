@@ -6,7 +6,7 @@ use crate::pointers::{described, fill, list};
 use glam::{DMat4, DQuat, DVec3};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
-use revmap::settings::SearchSettings;
+use revmap::settings::{SearchSettings, Tolerance};
 use std::sync::LazyLock;
 
 /// Where the box of a solid is. Its scale of (1, 1, 1) makes it one world unit high.
@@ -112,6 +112,9 @@ pub struct RevmapSearch {
     /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
     /// is drawn; below it the box is. UINT32_MAX: boxes alone.
     pub proxy_min_pixels: u32,
+    /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches on
+    /// patches follow it.
+    pub tolerance: f64,
 }
 
 described!(RevmapLighting, RevmapCamera, RevmapView, RevmapSearch);
@@ -238,6 +241,7 @@ impl RevmapSearch {
             map_source: enums::map_source(self.map_source)?,
             map_format: enums::map_format(self.map_format)?,
             proxy_min_pixels: self.proxy_min_pixels,
+            tolerance: Tolerance::new(self.tolerance)?,
         })
     }
 
@@ -250,6 +254,7 @@ impl RevmapSearch {
             map_source: 0,
             map_format: 0,
             proxy_min_pixels: SearchSettings::default().proxy_min_pixels,
+            tolerance: Tolerance::DEFAULT.pixels(),
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Options that take several values, of which every combination is measured.
 
-use super::options::{FORMATS, MethodParser, SOURCES, STAGES, Tracing, name_of, named, size};
+use super::options::{
+    FORMATS, MethodParser, SOURCES, STAGES, Tracing, name_of, named, size, tolerance,
+};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::file::{self, SceneFile};
-use revmap::settings::DrawStage;
+use revmap::settings::{DrawStage, Tolerance};
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::measure::TimeBudget;
@@ -52,6 +54,9 @@ pub struct Lists {
     /// How distances are stored on the device [default: r32]
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&FORMATS))]
     pub map_format: Vec<MapFormat>,
+    /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact [default: 0]
+    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', value_parser = tolerance)]
+    pub tolerance: Vec<Tolerance>,
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
@@ -109,6 +114,7 @@ impl Lists {
             map_rows: or(&some(&self.map_rows), &base.map_rows),
             sources: or(&some(&self.map_source), &base.sources),
             formats: or(&self.map_format, &base.formats),
+            tolerances: or(&self.tolerance, &base.tolerances),
         }
     }
 

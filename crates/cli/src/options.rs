@@ -4,7 +4,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Solver};
+use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_lab::method::{Method, MethodSettings};
 
 /// The largest width and height of a picture.
@@ -75,6 +75,9 @@ pub struct Drawing {
     /// How distances are stored on the device
     #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&FORMATS))]
     pub map_format: MapFormat,
+    /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an .exr is written]
+    #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
+    pub tolerance: Option<Tolerance>,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     pub device: Option<String>,
@@ -105,6 +108,7 @@ impl Drawing {
             map_source: self.map_source,
             map_format: self.map_format,
             planes,
+            tolerance: self.tolerance.unwrap_or_default(),
         }
     }
 
@@ -117,6 +121,7 @@ impl Drawing {
             ("--map-source", self.map_source.is_some()),
             ("--map-format", self.map_format != MapFormat::R32),
             ("--solver", self.solver != Method::DEFAULT),
+            ("--tolerance", self.tolerance.is_some()),
             ("--device", self.device.is_some()),
         ];
         let (who, reads): (String, &[&str]) = match self.stage {
@@ -144,7 +149,8 @@ fn read_by(method: Method) -> &'static [&'static str] {
         ],
         Method::Search(Solver::Relaxed) => &["--solver", "--device", "--max-steps", "--map-rows"],
         Method::Search(Solver::Cone) => &["--solver", "--device", "--map-rows"],
-        _ => &["--solver", "--device"],
+        Method::Search(_) => &["--solver", "--device", "--tolerance"],
+        Method::Mesh { .. } => &["--solver", "--device"],
     }
 }
 
@@ -192,6 +198,11 @@ pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static
         .rev()
         .find(|(_, known)| known == value)
         .map_or("unknown", |(name, _)| name)
+}
+
+/// A tolerance in pixels.
+pub fn tolerance(text: &str) -> Result<Tolerance, String> {
+    text.parse().map_err(|e: revmap::Error| e.message)
 }
 
 /// `WIDTHxHEIGHT`, each from 1 to [`MAX_SIDE`].

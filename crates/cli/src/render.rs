@@ -7,10 +7,10 @@ use super::{output, pipelines};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
-use revmap::gpu::{Device, DeviceReport, Times};
+use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
 use revmap::scene::file::SceneFile;
 use revmap::scene::{Object, Scene};
-use revmap::settings::Planes;
+use revmap::settings::{Planes, Tolerance};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodDrawn};
 use revmap_reference as reference;
@@ -47,6 +47,8 @@ struct Picture {
     times: Times,
     map_bytes: [u64; 2],
     notes: Vec<String>,
+    costs: Vec<ObjectCost>,
+    device_bytes: u64,
     warnings: Vec<String>,
 }
 
@@ -69,7 +71,11 @@ impl Render {
         } else {
             Planes::Color
         };
-        let settings = self.drawing.settings(planes);
+        let mut settings = self.drawing.settings(planes);
+        // What is compared with others is exact unless told.
+        if floats && self.drawing.tolerance.is_none() {
+            settings.tolerance = Tolerance::EXACT;
+        }
         let mut picture = match self.drawing.stage {
             Tracing::Reference => self.on_cpu(&scene, &settings)?,
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
@@ -104,6 +110,8 @@ impl Render {
             times: drawn.times,
             map_bytes: drawn.map_bytes,
             notes: drawn.notes,
+            costs: drawn.costs,
+            device_bytes: drawn.device_bytes,
             warnings: Vec::new(),
         })
     }
@@ -135,6 +143,8 @@ impl Render {
             },
             map_bytes: renderer.map_bytes(),
             notes: renderer.notes().to_vec(),
+            costs: renderer.object_costs(),
+            device_bytes: renderer.device_bytes(),
         })
     }
 
@@ -157,6 +167,8 @@ impl Render {
             },
             map_bytes: [0; 2],
             notes: Vec::new(),
+            costs: Vec::new(),
+            device_bytes: 0,
             warnings: Vec::new(),
         })
     }
@@ -223,6 +235,13 @@ impl Render {
             output::note(&format!(
                 "on the device: shape maps (or meshes) {shapes:.2} MB, colour and displacement maps {textures:.2} MB"
             ));
+            for (object, cost) in scene.objects.iter().zip(&picture.costs) {
+                output::note(&format!("{}: {}", object.name, cost_line(cost)));
+            }
+            output::note(&format!(
+                "on the device in all, without the target: {:.2} MB; {INSTANCE_BYTES} bytes a copy",
+                picture.device_bytes as f64 / 1e6
+            ));
             picture.notes.iter().for_each(|line| output::note(line));
             if settings.method.may_run_out() && picture.frame.exhausted == 0 {
                 output::note("no pixel ran out of steps");
@@ -252,9 +271,19 @@ impl Render {
     ) {
         let device = picture.device.as_ref();
         let steps = Steps::of(&picture.frame);
-        let objects = scene.objects.iter().map(|object| {
+        let objects = scene.objects.iter().enumerate().map(|(number, object)| {
             let [columns, rows] = map_size(object, settings);
-            json!({ "name": object.name, "columns": columns, "rows": rows })
+            let mut all = json!({ "name": object.name, "columns": columns, "rows": rows });
+            if let Some(cost) = picture.costs.get(number) {
+                all["path"] = json!(format!("{:?}", cost.path).to_lowercase());
+                all["level"] = json!(cost.level);
+                all["error_pixels"] = json!(cost.error_pixels);
+                all["patches"] = json!(cost.patches);
+                all["table_bytes"] = json!(cost.table_bytes);
+                all["map_bytes"] = json!(cost.map_bytes);
+                all["instance_bytes"] = json!(cost.instance_bytes);
+            }
+            all
         });
         output::json(&json!({
             "files": self.output,
@@ -271,6 +300,8 @@ impl Render {
             "total_ms": all,
             "map_bytes": picture.map_bytes[0],
             "texture_bytes": picture.map_bytes[1],
+            "device_bytes": picture.device_bytes,
+            "tolerance": settings.tolerance.pixels(),
             "objects": objects.collect::<Vec<_>>(),
             "pixels": picture.frame.pixels(),
             "hits": steps.as_ref().map_or(0, |s| s.hits),
@@ -297,6 +328,25 @@ fn on(device: &str, mut error: Error) -> Error {
         error.message = format!("{} (on {device})", error.message);
     }
     error
+}
+
+/// How an object was drawn, and what it takes on the device.
+fn cost_line(cost: &ObjectCost) -> String {
+    let path = format!("{:?}", cost.path).to_lowercase();
+    let level = cost.level.map(|level| {
+        let error = cost
+            .error_pixels
+            .map_or("any number of".into(), |e| format!("{e:.4}"));
+        let patches = cost.patches;
+        format!(", level {level} of {patches} patches, silhouettes within {error} pixels")
+    });
+    format!(
+        "{path}{}; {} bytes of tables, {} of maps, {} of copies",
+        level.unwrap_or_default(),
+        cost.table_bytes,
+        cost.map_bytes,
+        cost.instance_bytes
+    )
 }
 
 /// Columns and rows of an object's shape box.

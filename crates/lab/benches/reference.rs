@@ -52,7 +52,7 @@ const CHAMFERED: Offset = Offset {
 };
 
 fn frame(scene: &Scene) -> Frame {
-    draw(scene, &Settings::default(), &|_, _| {}).unwrap()
+    draw(scene, &Settings::exact(), &|_, _| {}).unwrap()
 }
 
 /// A whole picture of 800 x 600.

@@ -2,7 +2,7 @@
 
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
 use std::fmt;
 use std::str::FromStr;
 
@@ -104,6 +104,12 @@ impl Method {
         matches!(self, Self::Search(solver) if solver.reads_map())
     }
 
+    /// As [`Solver::follows_tolerance`]; a mesh does not.
+    #[must_use]
+    pub const fn follows_tolerance(self) -> bool {
+        matches!(self, Self::Search(solver) if solver.follows_tolerance())
+    }
+
     /// As [`Solver::may_run_out`]; a mesh makes no steps.
     #[must_use]
     pub const fn may_run_out(self) -> bool {
@@ -196,12 +202,14 @@ pub struct MethodSettings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
+    /// Allowed error of searches on patches.
+    pub tolerance: Tolerance,
 }
 
 impl Default for MethodSettings {
-    /// As [`Settings::default`].
+    /// As [`Settings::exact`].
     fn default() -> Self {
-        let settings = Settings::default();
+        let settings = Settings::exact();
         Self {
             width: settings.width,
             height: settings.height,
@@ -212,6 +220,7 @@ impl Default for MethodSettings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             planes: settings.planes,
+            tolerance: settings.tolerance,
         }
     }
 }
@@ -229,6 +238,7 @@ impl From<&MethodSettings> for Settings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             planes: settings.planes,
+            tolerance: settings.tolerance,
             ..Self::default()
         }
     }
@@ -277,7 +287,7 @@ mod tests {
         let wanted = Settings {
             width: 7,
             solver: Solver::Live,
-            ..Settings::default()
+            ..Settings::exact()
         };
         assert_eq!(Settings::from(&settings), wanted);
         assert_eq!(Method::ALL.map(|m| m.solver().unwrap()), Solver::ALL);

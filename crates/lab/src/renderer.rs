@@ -4,7 +4,7 @@ use crate::mesh::{MeshOffscreen, MeshPipelines};
 use crate::method::MethodSettings;
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Offscreen, Times};
+use revmap::gpu::{Device, ObjectCost, Offscreen, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::Arc;
@@ -26,6 +26,10 @@ pub struct MethodDrawn {
     pub map_bytes: [u64; 2],
     /// As [`Offscreen::notes`]; none of a mesh.
     pub notes: Vec<String>,
+    /// As [`Offscreen::object_costs`]; none of a mesh.
+    pub costs: Vec<ObjectCost>,
+    /// As [`MethodRenderer::device_bytes`].
+    pub device_bytes: u64,
 }
 
 impl MethodDevice {
@@ -65,6 +69,8 @@ impl MethodDevice {
             times,
             map_bytes: renderer.map_bytes(),
             notes: renderer.notes().to_vec(),
+            costs: renderer.object_costs(),
+            device_bytes: renderer.device_bytes(),
         };
         drop(renderer);
         self.device.check()?;
@@ -141,6 +147,24 @@ impl MethodRenderer {
         match self {
             Self::Search(offscreen) => offscreen.map_bytes(),
             Self::Mesh(mesh) => [mesh.mesh_bytes(), 0],
+        }
+    }
+
+    /// As [`Offscreen::object_costs`]; none of a mesh.
+    #[must_use]
+    pub fn object_costs(&self) -> Vec<ObjectCost> {
+        match self {
+            Self::Search(offscreen) => offscreen.object_costs(),
+            Self::Mesh(_) => Vec::new(),
+        }
+    }
+
+    /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
+    #[must_use]
+    pub fn device_bytes(&self) -> u64 {
+        match self {
+            Self::Search(offscreen) => offscreen.device_bytes(),
+            Self::Mesh(mesh) => mesh.mesh_bytes(),
         }
     }
 

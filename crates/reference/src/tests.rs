@@ -332,7 +332,7 @@ fn a_picture_is_the_same_on_any_number_of_threads() {
     let settings = Settings {
         width: 64,
         height: 48,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let draw = |threads| {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -361,7 +361,7 @@ fn progress_counts_rows_to_the_end() {
     let settings = Settings {
         width: 8,
         height: 20,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let seen = std::sync::Mutex::new(Vec::new());
     super::draw(&scene, &settings, &|done, total| {
@@ -378,7 +378,7 @@ fn impossible_scenes_are_refused() {
     let settings = Settings {
         width: 8,
         height: 8,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let draw = |o: Object| super::draw(&scene(vec![o]), &settings, &|_, _| {}).unwrap_err();
     let mut flat = object(samples::torus(), 0.5);
@@ -391,7 +391,7 @@ fn impossible_scenes_are_refused() {
     let huge = Settings {
         width: 100_000,
         height: 100_000,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let error = super::draw(
         &scene(vec![object(samples::torus(), 0.5)]),

@@ -37,7 +37,7 @@ fn structures_are_the_same_in_c() {
         RevmapLighting { ambient, light_count, lights }
         RevmapCamera { eye, target, up, fov_y }
         RevmapView { view, projection, viewport }
-        RevmapSearch { proxy_min_pixels }
+        RevmapSearch { proxy_min_pixels, tolerance }
         RevmapRequirements { features }
         RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
         RevmapDeviceInfo { pipelines_compiled, name, driver }

@@ -14,7 +14,7 @@ use super::output;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::scene::file::SceneFile;
-use revmap::settings::{DrawStage, SearchSettings, Solver};
+use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
@@ -32,6 +32,9 @@ pub struct View {
     /// How the first hit along a ray is found
     #[arg(long, value_name = "NAME", default_value = "hull")]
     solver: Solver,
+    /// Allowed error of silhouettes and depths in pixels; 0 is exact
+    #[arg(long, value_name = "PIXELS", default_value = "0.25", value_parser = super::options::tolerance)]
+    tolerance: Tolerance,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     device: Option<String>,
@@ -63,6 +66,7 @@ impl View {
         output::check(&times, "--times", &["csv"], &[&self.scene])?;
         let search = SearchSettings {
             solver: self.solver,
+            tolerance: self.tolerance,
             ..SearchSettings::default()
         };
         let screen = |e| {

@@ -2,12 +2,14 @@
 
 mod flip;
 mod heat;
+mod pixels;
 mod silhouette;
 
 pub use flip::flip_map;
 #[cfg(feature = "report")]
 pub(crate) use heat::ramp;
 pub use heat::{Heat, heat_map, heat_sheet};
+pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
 use rayon::prelude::*;

@@ -203,7 +203,7 @@ fn meshes_and_searches_hide_each_other() {
     let settings = Settings {
         width: 240,
         height: 180,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let frame = CameraFrame::new(&camera, settings.width, settings.height).unwrap();
     let mut offscreen = Offscreen::new(&device, &ours, &settings).unwrap();

@@ -49,7 +49,7 @@ const SOURCES: [&str; 4] = [
 ];
 
 /// What the columns of tables and of results.csv mean.
-const COLUMNS: [(&str, &str); 39] = [
+const COLUMNS: [(&str, &str); 40] = [
     (
         "scene, picture",
         "name of the view: the scene, with @ the elevation of the camera in degrees, with : a framing",
@@ -81,6 +81,10 @@ const COLUMNS: [(&str, &str); 39] = [
     (
         "map_rows, map_source, map_format",
         "rows of the shape map; where its distances come from; how they are stored",
+    ),
+    (
+        "tolerance_px",
+        "allowed error of silhouettes and depths in pixels, of searches on patches; 0 is exact",
     ),
     (
         "time (ms), gpu_ms_median",

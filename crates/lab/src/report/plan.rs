@@ -4,7 +4,7 @@ use super::names;
 use super::view::View;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Solver};
+use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 
 /// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Axes {
     pub sources: Vec<Option<MapSource>>,
     /// Formats of the maps.
     pub formats: Vec<MapFormat>,
+    /// Tolerances of searches on patches; all else is measured once.
+    pub tolerances: Vec<Tolerance>,
 }
 
 impl Default for Axes {
@@ -37,6 +39,7 @@ impl Default for Axes {
             map_rows: vec![settings.map_rows],
             sources: vec![settings.map_source],
             formats: vec![settings.map_format],
+            tolerances: vec![settings.tolerance],
         }
     }
 }
@@ -53,7 +56,7 @@ impl Axes {
                         for &map_rows in &self.map_rows {
                             for &map_source in &self.sources {
                                 for &map_format in &self.formats {
-                                    all.push(MethodSettings {
+                                    let settings = MethodSettings {
                                         width,
                                         height,
                                         stage,
@@ -63,7 +66,18 @@ impl Axes {
                                         map_source,
                                         map_format,
                                         planes: Planes::Color,
-                                    });
+                                        tolerance: Tolerance::EXACT,
+                                    };
+                                    let follows = method.follows_tolerance();
+                                    let given = if follows {
+                                        &self.tolerances[..]
+                                    } else {
+                                        &[Tolerance::EXACT]
+                                    };
+                                    all.extend(given.iter().map(|&tolerance| MethodSettings {
+                                        tolerance,
+                                        ..settings
+                                    }));
                                 }
                             }
                         }
@@ -228,6 +242,7 @@ pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
         map_source: Some(MapSource::Binary),
         map_format: MapFormat::Rgba8,
         map_rows: None,
+        tolerance: Tolerance::EXACT,
         ..*settings
     }
 }
@@ -250,6 +265,7 @@ pub struct Labels {
     rows: bool,
     source: bool,
     format: bool,
+    tolerance: bool,
 }
 
 impl Labels {
@@ -269,6 +285,7 @@ impl Labels {
             rows: differs(&ways, |s| s.map_rows),
             source: differs(&ways, |s| s.map_source),
             format: differs(&ways, |s| s.map_format),
+            tolerance: differs(&ways, |s| s.tolerance),
         }
     }
 
@@ -295,6 +312,9 @@ impl Labels {
         }
         if self.format {
             name += &format!(" {}", names::format(s.map_format));
+        }
+        if self.tolerance && s.method.follows_tolerance() {
+            name += &format!(" {} px", s.tolerance);
         }
         name
     }

@@ -12,7 +12,7 @@ use revmap::maps::MapSource;
 use revmap::scene::Offset;
 
 /// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of the passes' medians.
-pub const COLUMNS: [&str; 33] = [
+pub const COLUMNS: [&str; 34] = [
     "scene",
     "technique",
     "extend",
@@ -46,6 +46,7 @@ pub const COLUMNS: [&str; 33] = [
     "driver",
     "gpu_ms_low",
     "gpu_ms_high",
+    "tolerance_px",
 ];
 
 /// Those that every version writes, in this order before all others.
@@ -270,6 +271,7 @@ impl Row {
         let e = &self.errors;
         let whole = |n: usize| n.to_string();
         let s = &self.settings;
+        let follows = s.method.follows_tolerance();
         // A mesh has no search, whose columns these are.
         let search = |text: String| {
             Some(text)
@@ -310,6 +312,7 @@ impl Row {
             driver.into(),
             num(time.and_then(|t| t.ends()).map(|(low, _)| low)),
             num(time.and_then(|t| t.ends()).map(|(_, high)| high)),
+            num(follows.then(|| s.tolerance.pixels())),
         ]
     }
 }

@@ -206,7 +206,7 @@ pub fn draw(
         map_rows: step.map_rows,
         map_source: step.map_source,
         map_format: step.map_format,
-        ..Settings::default()
+        ..Settings::exact()
     };
     let mut offscreen = Offscreen::new(device, scene, &settings)?;
     offscreen.draw()?;

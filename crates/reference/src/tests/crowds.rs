@@ -232,7 +232,7 @@ fn cameras_within_see_boundaries_everywhere() {
             let settings = Settings {
                 width: 41,
                 height: 31,
-                ..Settings::default()
+                ..Settings::exact()
             };
             let frame = super::super::draw(&s, &settings, &|_, _| {}).unwrap();
             for k in 0..frame.pixels() {

@@ -82,6 +82,7 @@ fn a_record_has_the_columns_of_the_contract() {
         ("driver", "drv"),
         ("gpu_ms_low", ""),
         ("gpu_ms_high", ""),
+        ("tolerance_px", ""),
     ] {
         assert_eq!(at(column), wanted, "{column}");
     }

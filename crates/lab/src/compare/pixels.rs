@@ -1,0 +1,150 @@
+//! Errors of silhouettes and depths in pixels of a view: what a tolerance bounds.
+
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::frame::Frame;
+use revmap::scene::{CameraFrame, Scene};
+use revmap_reference::{Ray, Reference};
+
+/// Depths that differ by more pixels than this, where a neighbour of the reference has a nearer one, are a contour that has
+/// moved.
+const JUMP: f64 = 4.0;
+
+/// To how much of a pixel a moved contour is measured.
+const FINE: f64 = 1e-3;
+
+/// What moved by how much, pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelErrors {
+    /// Pixels that hit in either frame.
+    pub pixels: usize,
+    /// Of these, pixels on the wrong side of a contour: of a silhouette, or of one solid before another.
+    pub moved: usize,
+    /// The smallest error that 99.9 % of the pixels do not exceed: of pixels on the right side the error of the depth along the
+    /// ray, over the size of a pixel there; of the others how far the contour has moved.
+    pub p999: f64,
+    /// The largest of the others.
+    pub contour_max: f64,
+}
+
+/// Errors of a drawn frame of `scene`.
+///
+/// # Errors
+/// As [`CameraFrame::new`] and [`Reference::new`].
+pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<PixelErrors> {
+    let camera = CameraFrame::new(&scene.camera, truth.width, truth.height)?;
+    let reference = Reference::new(scene)?;
+    // Of a unit at unit depth, which rays' directions are scaled to.
+    let pixel = camera.right.length();
+    let scale = (scene.objects.iter())
+        .flat_map(|object| object.placements())
+        .map(|copy| copy.scale.max_element())
+        .fold(0.0, f64::max);
+    let errors: Vec<(f64, bool)> = (0..truth.pixels())
+        .into_par_iter()
+        .filter(|&k| truth.hits(k) || frame.hits(k))
+        .map(|k| {
+            let (x, y) = (k as u32 % truth.width, k as u32 / truth.width);
+            let direction = camera.pixel(x, y);
+            let [there, drawn] = [truth, frame].map(|f| f64::from(f.distance[k]));
+            let size = |distance: f64| pixel * distance / direction.length();
+            let off = (there - drawn).abs() / size(there);
+            if truth.hits(k) && frame.hits(k) && !(off > JUMP && is_near(truth, k, drawn)) {
+                return (off, false);
+            }
+            let end = match (truth.hits(k), frame.hits(k)) {
+                (true, true) => 0.5 * (there + drawn) / direction.length(),
+                _ => f64::INFINITY,
+            };
+            let size = size(there.min(drawn));
+            let ray = Ray {
+                origin: camera.eye,
+                direction,
+            };
+            let clear = reference.clearance_within(ray, [0.0, end], FINE * size / scale);
+            (clear.abs() * scale / size, true)
+        })
+        .collect();
+    let mut all: Vec<f64> = errors.iter().map(|e| e.0).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    let moved = || errors.iter().filter(|e| e.1);
+    Ok(PixelErrors {
+        pixels: all.len(),
+        moved: moved().count(),
+        p999: (all.len() * 999)
+            .div_ceil(1000)
+            .checked_sub(1)
+            .map_or(0.0, |rank| all[rank]),
+        contour_max: moved().map(|e| e.0).fold(0.0, f64::max),
+    })
+}
+
+/// Whether what is drawn in pixel `k` is nearer to what the reference has beside it.
+fn is_near(truth: &Frame, k: usize, drawn: f64) -> bool {
+    let (w, h) = (i64::from(truth.width), i64::from(truth.height));
+    let (x, y) = (k as i64 % w, k as i64 / w);
+    let there = f64::from(truth.distance[k]);
+    (-1..=1)
+        .flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)))
+        .filter(|(x, y)| (0..w).contains(x) && (0..h).contains(y))
+        .map(|(x, y)| f64::from(truth.distance[(y * w + x) as usize]))
+        .any(|beside| (beside - drawn).abs() <= 0.5 * (there - drawn).abs())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use glam::DVec3;
+    use revmap::profile::Profile;
+    use revmap::scene::{Camera, Object};
+    use revmap::settings::Settings;
+    use std::sync::Arc;
+
+    /// A cylinder before another that is wider, farther away.
+    fn cylinders(radius: f64) -> Scene {
+        let eye = DVec3::new(4.0, 0.0, 0.5);
+        let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
+        for (r, x) in [(radius, 0.0), (0.45, -3.0)] {
+            let points = [[0.0, 0.0], [r, 0.0], [r, 1.0], [0.0, 1.0]];
+            let profile = Profile::polygon(&points, 0.5).unwrap();
+            let mut object = Object::new("cylinder", Arc::new(profile));
+            object.placement.position.x = x;
+            scene.objects.push(object);
+        }
+        scene
+    }
+
+    fn drawn(scene: &Scene) -> Frame {
+        let settings = Settings {
+            width: 200,
+            height: 150,
+            ..Settings::exact()
+        };
+        revmap_reference::draw(scene, &settings, &|_, _| {}).unwrap()
+    }
+
+    #[test]
+    fn planted_errors_are_measured_in_pixels() {
+        let scene = cylinders(0.25);
+        let truth = drawn(&scene);
+        let none = pixel_errors(&scene, &truth, &truth).unwrap();
+        assert_eq!((none.moved, none.p999, none.contour_max), (0, 0.0, 0.0));
+        assert!(none.pixels > 1000);
+        // A pixel of this view at depth 4: 8 tan(20 degrees) / 150.
+        let pixel = 8.0 * 20f64.to_radians().tan() / 150.0;
+        let mut deeper = truth.clone();
+        deeper
+            .distance
+            .iter_mut()
+            .for_each(|d| *d *= 1.0 + 0.01 * pixel as f32);
+        let found = pixel_errors(&scene, &truth, &deeper).unwrap();
+        assert_eq!(found.moved, 0);
+        assert!((found.p999 - 0.04).abs() < 0.004, "{found:?}");
+        // A pixel thicker: contours before the sky and before the other cylinder move by that.
+        let thick = drawn(&cylinders(0.25 + pixel));
+        let found = pixel_errors(&scene, &truth, &thick).unwrap();
+        assert!(found.moved > 60, "{found:?}");
+        assert!((0.5..1.1).contains(&found.contour_max), "{found:?}");
+    }
+}

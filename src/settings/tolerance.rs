@@ -1,0 +1,73 @@
+use crate::error::{Error, Result, Stage};
+use std::fmt;
+use std::str::FromStr;
+
+/// Allowed error of silhouettes and depths, in pixels of the view that is drawn.
+///
+/// Surfaces are fitted at several **levels**, each with a proven bound on how far it lies from the exact surface. An object takes
+/// the coarsest level whose bound, seen at the object's nearest point, is at most a sixteenth of the tolerance. So a silhouette
+/// moves by at most a sixteenth of it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
+/// 99.9 % of the pixels stay within the tolerance (measured: `revmap bench --budget`).
+///
+/// Searches on patches ([`Solver::Hull`](super::Solver::Hull), [`Solver::Quadric`](super::Solver::Quadric)) follow it; all
+/// others ignore it.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Tolerance(f64);
+
+impl Tolerance {
+    /// No error beyond that of the finest level.
+    pub const EXACT: Self = Self(0.0);
+    /// A quarter of a pixel.
+    pub const DEFAULT: Self = Self(0.25);
+    /// The largest, pixels.
+    pub const MOST: f64 = 64.0;
+
+    /// A tolerance of so many pixels, 0 to [`Tolerance::MOST`]; 0 is [`Tolerance::EXACT`].
+    ///
+    /// # Errors
+    /// [`Stage::Usage`] for any other number.
+    pub fn new(pixels: f64) -> Result<Self> {
+        if (0.0..=Self::MOST).contains(&pixels) {
+            // Of both zeros one.
+            return Ok(Self(pixels + 0.0));
+        }
+        let message = format!(
+            "{pixels} is no tolerance in pixels; give 0 to {}, 0 for exact",
+            Self::MOST
+        );
+        Err(Error::new(Stage::Usage, message).at_key("tolerance"))
+    }
+
+    /// In pixels.
+    #[must_use]
+    pub const fn pixels(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl fmt::Display for Tolerance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// The inverse of [`Display`](fmt::Display).
+///
+/// ```
+/// use revmap::settings::Tolerance;
+/// assert_eq!("0.25".parse(), Ok(Tolerance::DEFAULT));
+/// assert!("-1".parse::<Tolerance>().is_err() && "nan".parse::<Tolerance>().is_err());
+/// ```
+impl FromStr for Tolerance {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::new(text.parse().unwrap_or(f64::NAN))
+    }
+}
