@@ -49,13 +49,19 @@ pub struct Error {
 }
 
 impl Error {
-    /// A failure of `stage`; `message` says what is wrong and what would be right.
+    /// A failure of `stage`; `message` says what is wrong and what would be right. What other libraries say in several lines is
+    /// told in one.
     pub fn new(stage: Stage, message: impl Into<String>) -> Self {
+        let mut message: String = message.into();
+        if message.contains('\n') {
+            let lines: Vec<_> = message.lines().map(str::trim).collect();
+            message = lines.join(" ");
+        }
         Self {
             stage,
             file: None,
             key: None,
-            message: message.into(),
+            message,
         }
     }
 

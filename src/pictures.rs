@@ -115,6 +115,35 @@ pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<Pixels> 
     )))
 }
 
+/// More than this times a file's length no compressor of EXR brings out of it.
+#[cfg(feature = "exr")]
+const EXR_MOST: u64 = 1 << 14;
+
+/// Refuses EXR layers that are larger than any picture, or than a file of `length` bytes can hold: by the header, before the reader
+/// allocates them.
+#[cfg(feature = "exr")]
+pub(crate) fn check_exr(
+    meta: &exr::meta::MetaData,
+    length: u64,
+) -> std::result::Result<(), String> {
+    for header in &meta.headers {
+        let size = header.layer_size;
+        let (width, height) = (size.width() as u64, size.height() as u64);
+        if width.max(height) > u64::from(MAX_SIDE) {
+            return Err(format!(
+                "it has {width} x {height} pixels; {MAX_SIDE} x {MAX_SIDE} is the most"
+            ));
+        }
+        let promised = 4 * width * height * header.channels.list.len() as u64;
+        if promised > EXR_MOST.saturating_mul(length) {
+            return Err(format!(
+                "its {length} bytes cannot hold the {width} x {height} pixels that it names"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// A PNG whose header was read.
 pub(crate) struct Png<'a>(png::Reader<Cursor<&'a [u8]>>);
 

@@ -3,6 +3,7 @@
 use super::atomic_file::write_atomically;
 use super::{CHANNELS, Frame, pixel_count};
 use crate::error::{Error, Result, Stage};
+use crate::pictures::check_exr;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, MetaData,
     ReadChannels, ReadLayers, SmallVec, Text, WritableImage, read,
@@ -63,6 +64,9 @@ fn read_checked(path: &Path) -> Result<Frame> {
     };
     // The header first: its size decides what the reader would allocate.
     let meta = MetaData::read_from_file(path, false).map_err(unreadable)?;
+    let length = std::fs::metadata(path).map_or(0, |file| file.len());
+    check_exr(&meta, length)
+        .map_err(|e| Error::new(Stage::Frame, format!("cannot be read as EXR: {e}")))?;
     let mut widest = (0, 0);
     for header in &meta.headers {
         let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);

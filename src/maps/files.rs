@@ -5,6 +5,8 @@ use super::header::{Header, KEYWORD, shape_header};
 use super::store::unpack_distance;
 use super::{Bounds, MapFormat, MapSource, ShapeMap};
 use crate::error::{Error, Result, Stage};
+#[cfg(feature = "exr")]
+use crate::pictures::check_exr;
 use crate::pictures::{MAX_SIDE, Pixels, Png, Samples};
 use crate::profile::Raster;
 #[cfg(feature = "exr")]
@@ -199,6 +201,10 @@ fn from_exr(_: &[u8]) -> Result<ShapeMap> {
 #[cfg(feature = "exr")]
 fn from_exr(bytes: &[u8]) -> Result<ShapeMap> {
     use exr::prelude::*;
+    let damaged = |e: String| fault(format!("the map is damaged ({e}); bake it again"));
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false);
+    let meta = meta.map_err(|e| damaged(e.to_string()))?;
+    check_exr(&meta, bytes.len() as u64).map_err(damaged)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -207,7 +213,7 @@ fn from_exr(bytes: &[u8]) -> Result<ShapeMap> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(|e| fault(format!("the map is damaged ({e}); bake it again")))?;
+        .map_err(|e| damaged(e.to_string()))?;
     let layer = image.layer_data;
     let header = match layer.attributes.other.get(&Text::from(KEYWORD)) {
         Some(exr::meta::attribute::AttributeValue::Text(text)) => Header::parse(&text.to_string()),

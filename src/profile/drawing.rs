@@ -7,6 +7,7 @@
 
 use super::faults::{empty_fault, full_fault};
 use super::paint::{Layer, Rgba, over};
+use super::polygon::EXTENT;
 use super::region::{Contour, Grid, Region, Rule};
 use super::svg::{
     affine, curve, fault, gradient, has_translucency, magnification, parse, rule, stroke_style,
@@ -16,7 +17,7 @@ use super::{Outline, Profile, ProfileAxis};
 use crate::error::Result;
 use crate::pictures::luminance;
 use glam::DVec2;
-use kurbo::{Affine, BezPath, PathEl, StrokeOpts};
+use kurbo::{Affine, BezPath, PathEl, Shape, StrokeOpts};
 
 /// Largest distance between a curve and its chords, object units.
 const FLATNESS: f64 = 1e-5;
@@ -158,6 +159,7 @@ impl Canvas {
 
     fn draw_path(&self, path: &usvg::Path, to_profile: Affine, layer: &mut Layer) -> Result<usize> {
         let curve = curve(path.data());
+        check_reach(&curve, to_profile)?;
         let mut count = 0;
         let mut fill = |layer: &mut Layer| -> Result<()> {
             if let Some(fill) = path.fill() {
@@ -175,6 +177,7 @@ impl Canvas {
             let color = self.color(stroke.paint(), stroke.opacity().get())?;
             // Half of the tolerance for the stroke's outline, half for its flattening.
             let tolerance = 0.5 * FLATNESS / magnification(to_profile);
+            check_dashes(&curve, stroke)?;
             let band = kurbo::stroke(
                 curve.iter(),
                 &stroke_style(stroke),
@@ -216,8 +219,9 @@ impl Canvas {
                 }
                 usvg::Node::Path(path) => {
                     if let Some(fill) = path.fill() {
-                        let rule = rule(fill.rule());
-                        let region = self.enclosed(&curve(path.data()), to_profile, FLATNESS, rule);
+                        let (curve, rule) = (curve(path.data()), rule(fill.rule()));
+                        check_reach(&curve, to_profile)?;
+                        let region = self.enclosed(&curve, to_profile, FLATNESS, rule);
                         contours.extend(region.contours);
                     }
                 }
@@ -289,6 +293,34 @@ impl Canvas {
         }
         Ok(color)
     }
+}
+
+/// Refuses curves so large that flattening them would take all memory; what is seen of them is next to nothing.
+fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
+    let b = (to_profile * curve.clone()).control_box();
+    let reach = b.x0.abs().max(b.x1.abs()).max(b.y0.abs()).max(b.y1.abs());
+    if reach <= EXTENT {
+        return Ok(());
+    }
+    Err(fault(format!(
+        "the drawing has a shape that reaches {reach:.0} times its height; {EXTENT} is the most, crop it"
+    )))
+}
+
+/// Refuses strokes of more dashes than anybody sees.
+fn check_dashes(curve: &BezPath, stroke: &usvg::Stroke) -> Result<()> {
+    const MOST: f64 = 1e5;
+    let Some(dashes) = stroke.dasharray() else {
+        return Ok(());
+    };
+    let period: f64 = dashes.iter().map(|&d| f64::from(d)).sum();
+    let count = curve.perimeter(1.0) / period * dashes.len() as f64;
+    if count <= MOST {
+        return Ok(());
+    }
+    Err(fault(format!(
+        "the drawing has a stroke of {count:.0} dashes; {MOST} are the most, make them longer"
+    )))
 }
 
 /// A closed contour cut by the box `0 <= r <= radius`, `0 <= z <= 1` (Sutherland & Hodgman 1974). Pieces of it may run

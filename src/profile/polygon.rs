@@ -10,7 +10,7 @@ use glam::DVec2;
 const AXIS_SLACK: f64 = 1e-9;
 
 /// Largest coordinate: far beyond any box, and small enough to keep nine digits.
-const EXTENT: f64 = 1e4;
+pub(super) const EXTENT: f64 = 1e4;
 
 /// A profile from a closed polygon of `(r, z)` points in object units; the last point joins the first, either way round.
 ///

@@ -5,6 +5,13 @@
 mod common;
 
 mod contours;
+#[cfg(all(
+    feature = "drawing",
+    feature = "exr",
+    feature = "jpeg",
+    feature = "scene-file"
+))]
+mod damaged_files;
 #[cfg(feature = "drawing")]
 mod hull_rays;
 mod map_accuracy;
