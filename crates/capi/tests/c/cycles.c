@@ -10,7 +10,7 @@
 
 #include "host.h"
 
-enum { WARM = 300, CYCLES = 1000 };
+enum { WARM = 300, CYCLES = 2000 };
 
 static void check_revmap(RevmapResult result, const char *call)
 {
@@ -107,8 +107,11 @@ int main(int count, char **arguments)
     const size_t after = heap();
     host_close(&host);
     printf("heap after %d cycles: %zu bytes, after %d more: %zu\n", WARM, before, CYCLES, after);
-    /* The smallest block of the heap takes 32 bytes: not one of them can have been left in every cycle. */
-    if (after > before && after - before > (size_t)16 * CYCLES) {
+    /*
+     * The smallest block of the heap takes 32 bytes: one left in every cycle would be 64,000. What threads keep for
+     * themselves moves by up to 28,000 however many cycles there are.
+     */
+    if (after > before && after - before > (size_t)24 * CYCLES) {
         fail("cycles", "the heap grows");
     }
     return EXIT_SUCCESS;

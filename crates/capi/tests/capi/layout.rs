@@ -53,5 +53,5 @@ fn structures_are_the_same_in_c() {
     let folder = folder();
     let file = folder.path().join("layout.c");
     std::fs::write(&file, text).unwrap();
-    compile("c11", &[file], &folder.path().join("layout"));
+    compile("c11", &[], &[file], &folder.path().join("layout"));
 }

@@ -1,7 +1,7 @@
 //! The programs' pictures are those of the Rust renderer, bit for bit.
 
 use crate::host::{self, Host, Options, Stage};
-use crate::programs::{STRICT, compile, folder, prefix, root, run, validated};
+use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
 use glam::{DMat4, DVec3, Vec3};
 use revmap::frame::Picture;
 use revmap::gpu::{
@@ -144,7 +144,7 @@ fn the_engine_in_c_draws_what_rust_draws() {
     let folder = folder();
     let program = folder.path().join("engine");
     let sources = ["engine.c", "host.c"].map(|name| root().join("examples/c").join(name));
-    compile("c99", &sources, &program);
+    compile("c99", &SANITIZED, &sources, &program);
     let [alone, both] = ["alone", "both"].map(|what| {
         let path = folder.path().join(what);
         println!("{}", run(validated(&program).arg(&path).arg(what)));
