@@ -11,10 +11,12 @@ void main()
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     Hit hit;
     bool found = trace_box(pixel, hit);
-    count_steps(pixel, hit);
+    count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;
     }
-    store(pixel, hit);
+#if OUTPUT != OUTPUT_DEPTH
+    store(shade(varying_look(), varying_rays(), pixel, hit));
+#endif
     gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
 }

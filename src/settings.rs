@@ -187,6 +187,8 @@ pub struct Settings {
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,
+    /// Whether copies are left out that others are proven to hide. No pixel differs; false is there to show it.
+    pub occlusion_culling: bool,
 }
 
 /// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage and planes are its output's.
@@ -206,6 +208,8 @@ pub struct SearchSettings {
     pub proxy_min_pixels: u32,
     /// As [`Settings::tolerance`].
     pub tolerance: Tolerance,
+    /// As [`Settings::occlusion_culling`].
+    pub occlusion_culling: bool,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -217,6 +221,7 @@ impl From<&Settings> for SearchSettings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             proxy_min_pixels: settings.proxy_min_pixels,
+            occlusion_culling: settings.occlusion_culling,
             tolerance: settings.tolerance,
         }
     }
@@ -261,6 +266,7 @@ impl Default for Settings {
             planes: Planes::All,
             proxy_min_pixels: 150,
             tolerance: Tolerance::DEFAULT,
+            occlusion_culling: true,
         }
     }
 }

@@ -190,6 +190,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
     let [red, green, blue] = lighting.ambient;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pixels
     let size = [view.viewport.width, view.viewport.height.abs()].map(|v| v as u32);
+    let v = &view.viewport;
     FrameBlock {
         clip_x: vector(clip_x, f64::from(u8::from(view.parallel))),
         clip_y: vector(clip_y, view.near),
@@ -203,6 +204,13 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
             size[1],
             u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS),
             0,
+        ],
+        #[allow(clippy::cast_possible_truncation)]
+        pixels: [
+            (2.0 / v.width) as f32,
+            (-2.0 * v.x / v.width - 1.0) as f32,
+            (2.0 / v.height) as f32,
+            (-2.0 * v.y / v.height - 1.0) as f32,
         ],
         lights,
     }

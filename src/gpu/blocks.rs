@@ -33,6 +33,8 @@ pub struct FrameBlock {
     pub ambient: [f32; 4],
     /// Width, height, number of lights, unused.
     pub size: [u32; 4],
+    /// Clip x is x of a pixel's corner times the first, plus the second; clip y likewise by the others.
+    pub pixels: [f32; 4],
     /// The first `size[2]` count.
     pub lights: [LightBlock; MAX_LIGHTS as usize],
 }

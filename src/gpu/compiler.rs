@@ -175,6 +175,7 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
         (Kind::Box, _) => "box",
         (Kind::Hull, _) => "hull",
         (Kind::ConvexHull, _) => "convex hull",
+        (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",
         (Kind::Compute, Dispatch::Rectangle) if several => "rectangle of several",
         (Kind::Compute, Dispatch::Rectangle) => "rectangle",

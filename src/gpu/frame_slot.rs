@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(crate) struct FrameSlot {
     /// Set 0: buffers of the frame.
     pub set: vk::DescriptorSet,
-    /// Set 2: the target of a compute pass.
+    /// Set 2: the words of bins; the target of a compute pass.
     pub target_set: vk::DescriptorSet,
     frame: Buffer,
     blocks: Buffer,
@@ -131,11 +131,9 @@ impl FrameSlot {
         write(&mut self.blocks, (number * self.stride) as usize, block)
     }
 
-    pub fn write_instances(&mut self, first: u32, instances: &[InstanceBlock]) -> Result<()> {
-        let bytes: &[u8] = bytemuck::cast_slice(instances);
-        let from = first as usize * size_of::<InstanceBlock>();
-        self.instances.mapped()?[from..from + bytes.len()].copy_from_slice(bytes);
-        Ok(())
+    pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
+        let at = number as usize * size_of::<InstanceBlock>();
+        write(&mut self.instances, at, instance)
     }
 
     pub fn write_shadows(&mut self, blocks: &[SolidBlock]) -> Result<()> {
@@ -176,10 +174,10 @@ impl FrameSlot {
         ]) {
             self.buffer(self.set, binding, kind, buffer, range);
         }
+        let whole = vk::WHOLE_SIZE;
+        self.buffer(self.target_set, 1, T::STORAGE_BUFFER, self.lists.raw, whole);
         if let Some((target, _)) = target {
-            let whole = vk::WHOLE_SIZE;
             self.buffer(self.target_set, 0, T::STORAGE_BUFFER, target.words, whole);
-            self.buffer(self.target_set, 1, T::STORAGE_BUFFER, self.lists.raw, whole);
             for (binding, view) in (2u32..).zip(&target.images) {
                 let info = [vk::DescriptorImageInfo::default()
                     .image_view(*view)

@@ -77,7 +77,7 @@ fn touches(patches: &[QuadricPatch]) -> bool {
 
 /// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and holds no replicas. Rays that are searched
 /// as in the box may be cut by it.
-fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
+pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     if !surface.is_boundary() {
         return object.repeat == [1; 3];
     }

@@ -1,6 +1,7 @@
 //! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what is made of them for the GPU.
 
 use super::arena::Slot;
+use super::bins::Inner;
 use super::hulls::GpuProxyHull;
 use super::solid::Outlined;
 use super::tables::GpuTables;
@@ -16,6 +17,7 @@ pub(crate) struct OffsetSurface {
     made: OnceLock<Result<Made>>,
     tables: OnceLock<GpuTables>,
     hull: OnceLock<GpuProxyHull>,
+    inner: OnceLock<Inner>,
     slots: [OnceLock<Slot>; 2],
 }
 
@@ -52,6 +54,7 @@ impl OffsetSurface {
             made: OnceLock::new(),
             tables: OnceLock::new(),
             hull: OnceLock::new(),
+            inner: OnceLock::new(),
             slots: [OnceLock::new(), OnceLock::new()],
         }
     }
@@ -93,6 +96,14 @@ impl OffsetSurface {
             (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuProxyHull::convex(envelope),
             _ => GpuProxyHull::new(&[]),
         })
+    }
+
+    /// What its solid is sure to hide; of patches alone.
+    pub fn inner(&self) -> Option<&Inner> {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => Some(self.inner.get_or_init(|| Inner::new(patches))),
+            _ => None,
+        }
     }
 
     /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays are searched as in the box.

@@ -70,7 +70,7 @@ impl Pipelines {
             &[(T::COMBINED_IMAGE_SAMPLER, pixel); 5],
             &[
                 (T::STORAGE_BUFFER, pixel),
-                (T::STORAGE_BUFFER, S::COMPUTE),
+                (T::STORAGE_BUFFER, every),
                 (T::STORAGE_IMAGE, S::COMPUTE),
                 (T::STORAGE_IMAGE, S::COMPUTE),
                 (T::STORAGE_IMAGE, S::COMPUTE),
@@ -319,7 +319,11 @@ impl Pipelines {
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(vk::CullModeFlags::BACK)
+            .cull_mode(if kind == Kind::Bins {
+                vk::CullModeFlags::NONE
+            } else {
+                vk::CullModeFlags::BACK
+            })
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()

@@ -1,6 +1,6 @@
 //! How each object is drawn: plain data, chosen from the view, the placements and the surface.
 
-use super::bins::{Bins, Rectangle, rectangle};
+use super::bins::{Rectangle, Shown, rectangle};
 use super::hulls;
 use super::offset_surface::OffsetSurface;
 use super::view::View;
@@ -16,8 +16,8 @@ use std::ops::Range;
 /// they can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawPath {
-    /// Compute stage: not at all, as it is beside the picture or behind the eye. In the fragment stage the rasteriser finds that
-    /// out, and no object is `Nothing`.
+    /// Not at all, as it is beside the picture, behind the eye or hidden. In the fragment stage the rasteriser finds that out for
+    /// boxes and hulls, and of objects with several copies alone is it known here.
     Nothing,
     /// Fragment stage: the fragments of its boxes are searched.
     Box,
@@ -25,7 +25,7 @@ pub enum DrawPath {
     Hull,
     /// Compute stage, a single copy: the pixels of its rectangle on the screen are searched.
     Rectangle,
-    /// Compute stage, several copies: the squares of the screen that they cover are searched.
+    /// Several copies: the squares of the screen in which some may show are searched, each with a list of these copies, nearest first.
     Bins,
     /// Compute stage, one copy or a few large ones: the tiles of each rectangle that beams have found to be near the copy are
     /// searched.
@@ -41,8 +41,8 @@ pub(crate) enum Work {
     Hull(Vec<Range<u32>>),
     /// In work groups.
     Rectangle(Rectangle),
-    /// Among all bins.
-    Bins(Range<u32>),
+    /// What is shown is known once all objects are planned.
+    Bins(Shown),
     /// One an instance that shows.
     Beams(Vec<Tiles>),
 }
@@ -67,6 +67,7 @@ impl Work {
             Self::Box => DrawPath::Box,
             Self::Hull(_) => DrawPath::Hull,
             Self::Rectangle(_) => DrawPath::Rectangle,
+            Self::Bins(shown) if shown.range.is_empty() => DrawPath::Nothing,
             Self::Bins(_) => DrawPath::Bins,
             Self::Beams(_) => DrawPath::Beams,
         }
@@ -82,31 +83,41 @@ pub(crate) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn.
-    pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>) -> Work {
+    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn; `binned`: there is a pipeline for bins.
+    pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>, binned: bool) -> Work {
         let fits = |surface: &&OffsetSurface| {
             !surface.is_boundary()
                 || (self.limits.max_fragment_input_components >= hulls::COMPONENTS
                     && self.limits.max_vertex_output_components >= hulls::COMPONENTS + 4)
         };
+        let copies = object.placements().len();
         wrapped
+            .filter(|_| copies <= MOST_WRAPPED)
             .filter(fits)
             .and_then(|surface| hulls::frusta(object, surface, self.view, self.least_pixels))
-            .map_or(Work::Box, Work::Hull)
+            .map_or_else(
+                || {
+                    if binned && copies > 1 && !self.view.parallel {
+                        Work::Bins(Shown::default())
+                    } else {
+                        Work::Box
+                    }
+                },
+                Work::Hull,
+            )
     }
 
-    /// In compute; `first` is the object's first instance.
+    /// In compute.
     pub fn compute(
         &self,
         object: &Object,
         wrapped: Option<&OffsetSurface>,
-        first: u32,
         lists: &mut Lists,
     ) -> Work {
         let radius = object.profile.radius;
         let placements = object.placements();
         if let Some(surface) = wrapped
-            && placements.len() <= MOST_BEAMED
+            && placements.len() <= MOST_WRAPPED
             && hulls::takes_beams(object, surface, self.view)
         {
             let shown: Vec<(usize, Rectangle)> = placements
@@ -126,14 +137,7 @@ impl Planner<'_> {
         match placements {
             [one] => rectangle(self.view, GROUP_PIXELS, radius, one)
                 .map_or(Work::Nothing, Work::Rectangle),
-            _ => {
-                let bins = lists.bins.add(self.view, radius, first, placements);
-                if bins.is_empty() {
-                    Work::Nothing
-                } else {
-                    Work::Bins(bins)
-                }
-            }
+            _ => Work::Bins(Shown::default()),
         }
     }
 
@@ -150,8 +154,9 @@ impl Planner<'_> {
     }
 }
 
-/// Most copies of an object to which beams are sent one by one: each costs two dispatches.
-const MOST_BEAMED: usize = 64;
+/// Most copies of an object that are drawn by hulls, or to which beams are sent one by one. Of more, many are small or hidden, and bins
+/// leave out those.
+const MOST_WRAPPED: usize = 64;
 
 /// Tiles that each of several copies should cover for a list of its own to pay.
 const LEAST_TILES: u64 = 64;
@@ -164,7 +169,6 @@ fn words_of(rectangle: Rectangle) -> usize {
 /// What the objects of a frame put into buffers that they share, in compute.
 #[derive(Default)]
 pub(crate) struct Lists {
-    pub bins: Bins,
     /// Words of the lists that beams fill, behind those of the bins.
     pub tiles: usize,
     /// Blocks of single copies, behind those of the objects.

@@ -1,7 +1,8 @@
 //! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows what has changed.
 
+use super::bins::{Batch, Bins, Cylinder};
 use super::block::{frame_block, instance_block, note_growth, solid_block};
-use super::blocks::{InstanceBlock, SolidBlock};
+use super::blocks::SolidBlock;
 use super::buffers::{indices, write_slice};
 use super::hulls;
 use super::offset_surface::{OffsetSurface, Part};
@@ -15,7 +16,9 @@ use crate::settings::{Planes, SearchSettings};
 use crate::shader::generated::PATCH_VECTORS;
 use crate::shader::{Dispatch, Kind, Variant};
 use ash::vk;
+use glam::DVec2;
 use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
 /// From so many objects on they are planned on all cores.
@@ -111,12 +114,58 @@ impl Renderer {
         let planned = if self.draws_hulls() {
             self.plan_fragment(view, &numbers)
         } else {
-            self.plan_compute(view, &numbers)?
+            self.plan_compute(view, &numbers)
         };
+        let mut binned = false;
         for (number, work) in numbers.into_iter().zip(planned) {
+            binned |= self.has_bins(number);
             self.apply(number, work)?;
+            binned |= self.has_bins(number);
+        }
+        if binned || !self.draws_hulls() {
+            self.place_bins(view);
         }
         Ok(())
+    }
+
+    fn has_bins(&self, number: u32) -> bool {
+        let entry = self.entries[number as usize].as_ref();
+        entry.is_some_and(|e| matches!(e.draw.work, Some(Work::Bins(_))))
+    }
+
+    /// Finds the bins of all objects that are drawn from them; lists of tiles stand behind these.
+    fn place_bins(&mut self, view: &View) {
+        let numbers: Vec<u32> = self
+            .order
+            .iter()
+            .copied()
+            .filter(|&n| self.has_bins(n))
+            .collect();
+        let batches: Vec<Batch> = numbers
+            .iter()
+            .filter_map(|&number| {
+                self.entries[number as usize]
+                    .as_ref()?
+                    .batch(&self.settings)
+            })
+            .collect();
+        let bins = Bins::new(view, &batches, self.draws_hulls());
+        drop(batches);
+        for (number, shown) in numbers.into_iter().zip(bins.shown) {
+            if let Some(entry) = &mut self.entries[number as usize] {
+                entry.draw.work = Some(Work::Bins(shown));
+            }
+            self.mark(number);
+        }
+        let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
+        self.lists.0 = bins.words;
+        for entry in self.entries.iter_mut().flatten() {
+            if let Some(Work::Beams(copies)) = &mut entry.draw.work {
+                for tiles in copies {
+                    tiles.at += begin;
+                }
+            }
+        }
     }
 
     fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
@@ -130,7 +179,11 @@ impl Renderer {
             let entry = entries[*number as usize].as_ref();
             entry.map_or(Work::Nothing, |entry| {
                 let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
-                planner.fragment(entry.drawn(), wrapped)
+                let binned = entry
+                    .prepared
+                    .as_ref()
+                    .is_some_and(|p| p.variant.takes_bins());
+                planner.fragment(entry.drawn(), wrapped, binned)
             })
         };
         if numbers.len() < MANY {
@@ -141,7 +194,7 @@ impl Renderer {
     }
 
     /// Plans all objects; the lists that they share are kept for [`Renderer::write`].
-    fn plan_compute(&mut self, view: &View, numbers: &[u32]) -> Result<Vec<Work>> {
+    fn plan_compute(&mut self, view: &View, numbers: &[u32]) -> Vec<Work> {
         let planner = Planner {
             view,
             limits: &self.device.limits,
@@ -154,28 +207,27 @@ impl Renderer {
                 let entry = self.entries[*number as usize].as_ref();
                 entry.map_or(Work::Nothing, |entry| {
                     let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
-                    planner.compute(entry.drawn(), wrapped, entry.instances.start, &mut lists)
+                    planner.compute(entry.drawn(), wrapped, &mut lists)
                 })
             })
             .collect();
-        // Lists of tiles stand behind all bins, whose number is known only now; blocks of copies behind those of all objects.
-        let words = lists.bins.words();
+        // Blocks of copies stand behind those of all objects.
         let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX);
         for work in &mut planned {
             if let Work::Beams(copies) = work {
                 for tiles in copies {
-                    tiles.at += u32::try_from(words.len()).unwrap_or(u32::MAX);
                     tiles.block = tiles.block.map(|n| blocks + n);
                 }
             }
         }
-        self.lists = (words, lists.tiles, lists.copies);
-        Ok(planned)
+        self.lists = (Vec::new(), lists.tiles, lists.copies);
+        planned
     }
 
     /// Gives an entry the pipeline and the tables that its work asks for.
     fn apply(&mut self, number: u32, work: Work) -> Result<()> {
         let several = self.order.len() > 1;
+        let in_pass = self.draws_hulls();
         let casts = self.lighting.shadow != Shadow::Off;
         let Some(entry) = &mut self.entries[number as usize] else {
             return Ok(());
@@ -208,6 +260,7 @@ impl Renderer {
                 let several = several || copies.len() > 1;
                 (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
             }
+            Work::Bins(_) if in_pass => (Kind::Bins, variant.with_tables(!large(tables))),
             Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
                 let variant = variant.with_tables(!large(tables));
                 (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
@@ -275,6 +328,7 @@ impl Renderer {
         to.fit(blocks, instances)?;
         to.write_frame(&frame)?;
         let bit = 1u32 << slot;
+        let casts = self.lighting.shadow != Shadow::Off;
         let mut stale = std::mem::take(&mut to.stale);
         if std::mem::take(&mut to.empty) {
             stale.clone_from(&self.order);
@@ -291,16 +345,20 @@ impl Renderer {
                 block.single = instance_block(entry.drawn(), copy, view);
             }
             to.write_block(number, &block)?;
-            let placed: Vec<InstanceBlock> = entry
-                .drawn()
-                .placements()
-                .iter()
-                .map(|copy| instance_block(entry.drawn(), copy, view))
-                .collect();
-            to.write_instances(entry.instances.start, &placed)?;
+            let placements = entry.drawn().placements();
+            let mut write = |copy: u32| {
+                let block = instance_block(entry.drawn(), &placements[copy as usize], view);
+                to.write_instance(entry.instances.start + copy, &block)
+            };
+            match &entry.draw.work {
+                // Nothing reads the others, unless they may throw a shadow.
+                Some(Work::Bins(shown)) if !casts => {
+                    shown.copies.iter().try_for_each(|&copy| write(copy))?
+                }
+                _ => (0..entry.instances.end - entry.instances.start).try_for_each(write)?,
+            }
         }
         if self.listed[slot] != self.version {
-            let casts = self.lighting.shadow != Shadow::Off;
             if casts {
                 let all: Vec<SolidBlock> = self
                     .order
@@ -309,9 +367,9 @@ impl Renderer {
                     .collect();
                 to.write_shadows(&all)?;
             }
+            let (words, tiles, _) = &self.lists;
+            to.write_lists(words, words.len() + tiles)?;
             if matches!(self.output, Output::Compute(_)) {
-                let (words, tiles, _) = &self.lists;
-                to.write_lists(words, words.len() + tiles)?;
                 for &number in &self.order {
                     let Some(entry) = &self.entries[number as usize] else {
                         continue;
@@ -337,6 +395,36 @@ impl Renderer {
 }
 
 impl Entry {
+    /// Its copies, as bins are found for them.
+    fn batch(&self, settings: &SearchSettings) -> Option<Batch<'_>> {
+        let (prepared, object) = (self.prepared.as_ref()?, self.drawn());
+        let block = self.block(settings)?;
+        let [side, radius, low, high] = block.bounds.map(f64::from);
+        let replicas = object.repeat != [1; 3];
+        let shape = Cylinder {
+            axis: if replicas {
+                DVec2::ZERO
+            } else {
+                DVec2::new(block.axis[0].into(), block.axis[1].into())
+            },
+            radius: if replicas { side * SQRT_2 } else { radius },
+            low: if replicas { 0.0 } else { low },
+            high: if replicas { 1.0 } else { high },
+        };
+        let surface = prepared
+            .surface
+            .as_ref()
+            .filter(|_| settings.occlusion_culling);
+        Some(Batch {
+            placements: object.placements(),
+            first: self.instances.start,
+            shape,
+            inner: surface
+                .filter(|s| hulls::is_whole(object, s))
+                .and_then(|s| s.inner()),
+        })
+    }
+
     /// What shaders read of it; none before it is prepared.
     fn block(&self, settings: &SearchSettings) -> Option<SolidBlock> {
         let p = self.prepared.as_ref()?;

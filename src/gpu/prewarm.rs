@@ -116,12 +116,12 @@ impl Renderer {
         let fallback = matches!(solver, Solver::Quadric | Solver::Hull).then(|| of(FALLBACK));
         let wraps = settings.proxy_min_pixels != u32::MAX && object.repeat == [1; 3];
         let (several, copies) = (self.order.len() > 1, object.placements().len() > 1);
-        let compute = (!self.draws_hulls()).then_some([several, copies]);
+        let compute = (!self.draws_hulls()).then_some(several);
         // An offset may move the size of tables across the limit.
         let own = surface.map_or(0, |s| s.tables().own);
         let limit = PATCH_VECTORS as usize;
         let fits = [own <= limit + limit / 2, own > limit - limit / 4];
-        for (variant, kind) in of(solver).reachable(solver, wraps, compute, fallback) {
+        for (variant, kind) in of(solver).reachable(solver, wraps, copies, compute, fallback) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
                 let variant = match kind {
                     Kind::Hull => variant.in_shell(),

@@ -1,13 +1,13 @@
 //! The commands of a frame. Recording neither fails nor changes anything.
 
-use super::bins::Rectangle;
+use super::bins::{Rectangle, Shown};
 use super::frame_slot::FrameSlot;
 use super::hulls;
 use super::output::Output;
 use super::plan::{Tiles, Work};
 use super::renderer::{Draw, Entry, Renderer};
 use super::usage::{Usage, buffer_barrier};
-use crate::shader::generated::{BIN_PIXELS, GROUP_PIXELS};
+use crate::shader::generated::GROUP_PIXELS;
 use ash::vk;
 
 impl Renderer {
@@ -47,6 +47,10 @@ impl Renderer {
                         }
                     }
                     Work::Box => raw.cmd_draw(cmd, 14, count, 0, first),
+                    Work::Bins(shown) if !shown.range.is_empty() => {
+                        let runs = &shown.range;
+                        raw.cmd_draw(cmd, 6 * (runs.end - runs.start), 1, 6 * runs.start, 0);
+                    }
                     _ => {}
                 }
             }
@@ -67,7 +71,6 @@ impl Renderer {
         let Some(slot) = self.frames.get(slot) else {
             return;
         };
-        let groups = BIN_PIXELS / GROUP_PIXELS;
         let most = self.device.limits.max_compute_work_group_count[1];
         let mut first = true;
         // What is next reads the depths that were written before.
@@ -97,12 +100,12 @@ impl Renderer {
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
                     self.dispatch(cmd, [0, low.0 | low.1 << 16], groups);
                 }
-                Some(Work::Bins(bins)) => {
+                Some(Work::Bins(Shown { range, .. })) => {
                     after_the_last();
                     self.bind(cmd, slot, entry, entry.draw.pipeline, number);
-                    for start in bins.clone().step_by(most.max(1) as usize) {
-                        let count = (bins.end - start).min(most);
-                        self.dispatch(cmd, [start, 0], [groups * groups, count]);
+                    for start in range.clone().step_by(most.max(1) as usize) {
+                        let count = (range.end - start).min(most);
+                        self.dispatch(cmd, [start, 0], [1, count]);
                     }
                 }
                 Some(Work::Nothing | Work::Box | Work::Hull(_)) | None => {}
@@ -202,14 +205,12 @@ impl Renderer {
         };
         let textures = entry.prepared.as_ref().map(|p| p.textures.set);
         let sets = [slot.set, textures.unwrap_or_default(), slot.target_set];
-        // Planes go to a target's words; nothing else of a pass names one.
-        let count = if self.target.is_some() { 3 } else { 2 };
         let offsets = [block * slot.stride, entry.draw.tables_offset];
         let raw = &self.device.raw;
         // SAFETY: the sets fit the layout, and all they name lives as long as the caller of `record` promised.
         unsafe {
             raw.cmd_bind_pipeline(cmd, point, pipeline);
-            raw.cmd_bind_descriptor_sets(cmd, point, self.layout(), 0, &sets[..count], &offsets);
+            raw.cmd_bind_descriptor_sets(cmd, point, self.layout(), 0, &sets, &offsets);
         }
     }
 

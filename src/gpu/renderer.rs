@@ -67,7 +67,7 @@ pub struct Renderer {
     pub(super) version: u64,
     /// The version that each slot's lists are of.
     pub(super) listed: Vec<u64>,
-    /// In compute: words of all bins, words of the lists behind them, blocks of single copies.
+    /// Words of all bins; in compute: words of the lists behind them, blocks of single copies.
     pub(super) lists: (Vec<u32>, usize, u32),
     /// In compute, and where every plane is drawn: what shaders write to, and how often it was set.
     pub(super) target: Option<(ComputeTarget, u64)>,

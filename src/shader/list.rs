@@ -10,12 +10,16 @@ pub enum Entry {
     ConvexHullVertex,
     /// Corners of the proxy hulls of a solid's patches.
     HullVertex,
+    /// Rectangles of runs of bins.
+    BinsVertex,
     /// Lists of tiles.
     Beam,
     /// Fragments of shape boxes and convex hulls.
     Box,
     /// Fragments of shells.
     Hull,
+    /// Fragments of bins, which search several copies.
+    Bins,
     /// Pixels of the compute stage.
     Trace,
 }
@@ -28,9 +32,11 @@ impl Entry {
             Self::BoxVertex => "box.vert",
             Self::ConvexHullVertex => "convex_hull.vert",
             Self::HullVertex => "hull.vert",
+            Self::BinsVertex => "bins.vert",
             Self::Beam => "beam.comp",
             Self::Box => "box.frag",
             Self::Hull => "hull.frag",
+            Self::Bins => "bins.frag",
             Self::Trace => "trace.comp",
         }
     }
@@ -106,7 +112,7 @@ impl Search {
         matches!(self, Self::Live | Self::LiveBeveled)
     }
 
-    /// Whether [`Dispatch::Beams`] is for it.
+    /// Whether [`Dispatch::Beams`] is for it, and fragments of bins.
     #[must_use]
     pub const fn takes_beams(self) -> bool {
         self.is_live() || matches!(self, Self::Quadric | Self::QuadricLarge)
@@ -347,6 +353,12 @@ pub fn modules() -> Vec<Module> {
         all.push(vertex(Entry::ConvexHullVertex, Search::Live));
         all.push(vertex(Entry::HullVertex, Search::None));
     }
+    for search in [Search::Live, Search::Quadric] {
+        all.push(Module {
+            search,
+            ..Module::plain(Entry::BinsVertex)
+        });
+    }
     all.push(Module {
         search: Search::Relaxed,
         ..Module::plain(Entry::BoxVertex)
@@ -364,6 +376,12 @@ pub fn modules() -> Vec<Module> {
             for search in SEARCHES {
                 if has(search, features, output, Dispatch::Rectangle) {
                     all.push(fragment(Entry::Box, search));
+                }
+                if shaded
+                    && search.takes_beams()
+                    && has(search, features, output, Dispatch::Rectangle)
+                {
+                    all.push(fragment(Entry::Bins, search));
                 }
                 for dispatch in [Dispatch::Rectangle, Dispatch::Bins, Dispatch::Beams] {
                     if shaded && has(search, features, output, dispatch) {

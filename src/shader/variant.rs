@@ -20,6 +20,8 @@ pub enum Kind {
     ConvexHull,
     /// Pixels of the compute stage.
     Compute,
+    /// Bins, rasterised: several copies, of which fragments search those listed.
+    Bins,
     /// The list of tiles that beams choose.
     Beam,
 }
@@ -204,15 +206,22 @@ impl Variant {
         }
     }
 
+    /// Whether fragments of bins have this search, and what is stored.
+    #[must_use]
+    pub const fn takes_bins(&self) -> bool {
+        self.search.takes_beams() && matches!(self.output, Output::Color | Output::Planes)
+    }
+
     /// Every pipeline that an object drawn by this variant may come to be drawn by when parameters, lights, camera or placements
-    /// move; the one that it most likely is drawn by comes first. `compute`: none in a pass; else whether there are several
-    /// dispatches, and whether the object has several copies. `fallback`: what stands in where a contour does not close.
+    /// move; the one that it most likely is drawn by comes first. `copies`: whether it has several. `compute`: none in a pass; else
+    /// whether there are several dispatches. `fallback`: what stands in where a contour does not close.
     #[must_use]
     pub fn reachable(
         self,
         solver: Solver,
         wraps: bool,
-        compute: Option<[bool; 2]>,
+        copies: bool,
+        compute: Option<bool>,
         fallback: Option<Self>,
     ) -> Vec<(Self, Kind)> {
         // The other form of searches that have two.
@@ -229,7 +238,7 @@ impl Variant {
         let searched: Vec<Self> = std::iter::once(self).chain(twin).chain(fallback).collect();
         let on_map = |v: &Self| matches!(v.search, Search::Live | Search::LiveBeveled);
         let mut all = Vec::new();
-        if let Some([several, copies]) = compute {
+        if let Some(several) = compute {
             for variant in searched {
                 let held =
                     on_map(&variant) || (solver == Solver::Hull && variant.search.takes_beams());
@@ -252,6 +261,9 @@ impl Variant {
                 if wraps && on_map(&variant) {
                     all.push((variant, Kind::ConvexHull));
                 }
+                if copies && variant.takes_bins() {
+                    all.push((variant, Kind::Bins));
+                }
                 all.push((variant, Kind::Box));
             }
         }
@@ -272,6 +284,7 @@ impl Variant {
         let entry = match kind {
             Kind::Box => Entry::BoxVertex,
             Kind::Hull => Entry::HullVertex,
+            Kind::Bins => Entry::BinsVertex,
             Kind::ConvexHull => Entry::ConvexHullVertex,
             Kind::Compute | Kind::Beam => return None,
         };
@@ -285,6 +298,7 @@ impl Variant {
             Kind::Beam => return Module::plain(Entry::Beam),
             Kind::Box | Kind::ConvexHull => Entry::Box,
             Kind::Hull => Entry::Hull,
+            Kind::Bins => Entry::Bins,
             Kind::Compute => Entry::Trace,
         };
         Module {

@@ -14,6 +14,7 @@ mod bumps;
 mod calls;
 mod clip;
 mod cones;
+mod crowds;
 mod embedding;
 mod embedding_outputs;
 mod exhausted;

@@ -84,7 +84,7 @@ fn copies_of_a_lone_object() {
     EXACT.assert_same(
         "65",
         &copies(65, 0.7),
-        [&[DrawPath::Hull], &[DrawPath::Bins]],
+        [&[DrawPath::Bins], &[DrawPath::Bins]],
     );
     let mut beside = few.clone();
     beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);

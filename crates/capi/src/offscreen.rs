@@ -94,6 +94,7 @@ impl RevmapPicture {
             planes: enums::planes(self.planes)?,
             proxy_min_pixels: search.proxy_min_pixels,
             tolerance: search.tolerance,
+            occlusion_culling: search.occlusion_culling,
         })
     }
 }

@@ -242,6 +242,7 @@ impl RevmapSearch {
             map_format: enums::map_format(self.map_format)?,
             proxy_min_pixels: self.proxy_min_pixels,
             tolerance: Tolerance::new(self.tolerance)?,
+            ..SearchSettings::default()
         })
     }
 

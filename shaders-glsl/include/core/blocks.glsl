@@ -17,7 +17,8 @@ struct Frame {
     vec4 dir_y;   // its change from row to row
     vec4 forward; // unit; w: sense of depth, 1 where it grows away from the eye, -1 where it falls
     vec4 ambient; // linear RGB; w: depth value of the near plane
-    uvec4 size;   // width, height, number of lights, bins across
+    uvec4 size;   // width, height, number of lights, unused
+    vec4 pixels;  // clip x = x of a pixel's corner * x + y; clip y = y of it * z + w
     Light lights[MAX_LIGHTS];
 };
 
@@ -76,6 +77,7 @@ void take_frame()
     frame.forward = frame_block.forward;
     frame.ambient = frame_block.ambient;
     frame.size = frame_block.size;
+    frame.pixels = frame_block.pixels;
 }
 
 void take_solid()

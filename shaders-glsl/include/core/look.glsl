@@ -16,11 +16,25 @@ struct Look {
 #endif
 };
 
-Light light_seen(vec4 rotation, uint n)
+// The first two lights, to be taken over like the blocks.
+Light first_light;
+Light second_light;
+
+void take_lights()
 {
-    Light light = frame_block.lights[n];
+    first_light = frame_block.lights[0];
+    second_light = frame_block.lights[1];
+}
+
+Light turned_to(vec4 rotation, Light light)
+{
     light.towards.xyz = rotate(conjugate(rotation), light.towards.xyz);
     return light;
+}
+
+Light light_seen(vec4 rotation, uint n)
+{
+    return turned_to(rotation, frame_block.lights[n]);
 }
 
 Look look_of(Instance i)
@@ -30,8 +44,8 @@ Look look_of(Instance i)
     look.scale_shininess = vec4(scale_of(i), solid.specular.y);
     look.albedo_strength = vec4(solid.albedo.rgb, solid.specular.x);
     look.ambient = frame.ambient.rgb;
-    look.light_0 = light_seen(i.rotation, 0u);
-    look.light_1 = light_seen(i.rotation, 1u);
+    look.light_0 = turned_to(i.rotation, first_light);
+    look.light_1 = turned_to(i.rotation, second_light);
 #if SHADOWED
     look.position = i.position_sx.xyz;
 #endif

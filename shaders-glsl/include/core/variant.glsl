@@ -108,7 +108,7 @@ const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
-const uint BIN_PIXELS = 32u; // side of a compute bin
-const uint GROUP_PIXELS = 8u; // side of a compute workgroup
+const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a bin
+const uint BIN_SPLIT = 2147483648u; // in place of a bin's count: each of its pixels has a list of its own
 
 #endif

@@ -1,11 +1,11 @@
-// Compute visits bins: squares of the screen that at least one of a batch's boxes covers, with the list of those boxes.
-// Work groups count along x within a bin, along y from bin to bin.
+// Compute visits bins: squares of the screen in which at least one of a batch's copies may show, with a list of these copies.
+// Work groups count along y from bin to bin.
 #ifndef BINS_GLSL
 #define BINS_GLSL
 #define SPANS (SEARCH == SEARCH_LIVE && DISPATCH == DISPATCH_BEAMS)
 #include "stage/beams.glsl"
 #include "stage/pixel_words.glsl"
-#include "core/cells.glsl"
+#include "stage/listed.glsl"
 #include "core/shade.glsl"
 
 const bool SINGLE = DISPATCH != DISPATCH_BINS;
@@ -14,8 +14,7 @@ const bool SINGLE = DISPATCH != DISPATCH_BINS;
 Look single_look;
 PixelRays single_rays;
 
-// A bin: its corner in bins (x | y << 16), where its list begins, how long it is. Of beams: a tile's corner in tiles, bits of its first and
-// last t.
+// A bin (bin_words.glsl). Of beams: a tile's corner in tiles, bits of its first and last t.
 struct Bin {
     uint corner;
     uint first;
@@ -28,6 +27,7 @@ void begin()
 {
     take_frame();
     take_solid();
+    take_lights();
     if (SINGLE) {
         single_look = look_of(solid.single);
         single_rays = pixel_rays(solid.single);
@@ -50,67 +50,41 @@ Bin this_bin()
 
 uvec2 this_pixel(Bin bin)
 {
-    if (DISPATCH == DISPATCH_BEAMS) {
-        return uvec2(bin.corner & 0xffffu, bin.corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
-    }
-    if (SINGLE) {
+    if (DISPATCH == DISPATCH_RECTANGLE) {
         uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16);
         return (corner + gl_WorkGroupID.xy) * GROUP_PIXELS + gl_LocalInvocationID.xy;
     }
-    uint group = gl_WorkGroupID.x;
-    uint across = BIN_PIXELS / GROUP_PIXELS;
-    uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16) * BIN_PIXELS;
-    return corner + uvec2(group % across, group / across) * GROUP_PIXELS + gl_LocalInvocationID.xy;
+    return uvec2(bin.corner & 0xffffu, bin.corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
 }
 
-struct Nearest {
-    Hit hit;
-    PixelRays rays;
-    uint instance;
-    float depth;
-    uint steps; // of all searches
-    bool exhausted; // one of them ran out of steps
-};
-
-// The bin's instances in order; of equal depths the first stays, as under the depth test "less".
 bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)
 {
-    bool found = false;
     nearest.depth = DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
     nearest.steps = 0u;
     nearest.exhausted = false;
 #if DISPATCH == DISPATCH_BINS
-    for (uint n = 0u; n < bin.count; ++n)
+    return nearest_listed(bin.first, bin.count, pixel, nearest);
 #else
-    const uint n = 0u;
-#endif
-    {
-        uint index = SINGLE ? 0u : bin_words[bin.first + n];
-        PixelRays rays = SINGLE ? single_rays : pixel_rays(instances[index]);
-        Hit hit;
-        bool met;
+    nearest.instance = 0u;
+    vec3 origin = ray_origin(single_rays, pixel);
+    vec3 v = ray_direction(single_rays, pixel);
 #if DISPATCH == DISPATCH_BEAMS
-        vec2 span = uintBitsToFloat(uvec2(bin.first, bin.count));
+    vec2 span = uintBitsToFloat(uvec2(bin.first, bin.count));
 #else
-        vec2 span = EVERYWHERE;
+    vec2 span = EVERYWHERE;
 #endif
 #if DISPATCH == DISPATCH_BEAMS && SEARCH == SEARCH_QUADRIC
-        met = trace_between(ray_origin(rays, pixel), ray_direction(rays, pixel), span, hit);
+    bool met = trace_between(origin, v, span, nearest.hit);
 #else
-        met = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
+    bool met = trace(origin, v, single_rays.base, span, nearest.hit);
 #endif
-        nearest.steps += hit.steps;
-        nearest.exhausted = nearest.exhausted || hit.exhausted;
-        float depth = depth_of(rays.base + hit.t);
-        if (met && depth < nearest.depth) {
-            found = true;
-            nearest.depth = depth;
-            nearest.hit = hit;
-            nearest.rays = rays;
-            nearest.instance = index;
-        }
-    }
-    return found;
+    nearest.steps = nearest.hit.steps;
+    nearest.exhausted = nearest.hit.exhausted;
+    float depth = depth_of(single_rays.base + nearest.hit.t);
+    met = met && depth < nearest.depth;
+    nearest.depth = met ? depth : nearest.depth;
+    return met;
+#endif
 }
 
 void keep_depth(uvec2 pixel, Nearest nearest)
@@ -123,10 +97,10 @@ void keep_depth(uvec2 pixel, Nearest nearest)
 Shaded shade_nearest(uvec2 pixel, Nearest nearest)
 {
     if (SINGLE) {
-        return shade(single_look, nearest.rays, pixel, nearest.hit);
+        return shade(single_look, single_rays, pixel, nearest.hit);
     }
     Instance i = instances[nearest.instance];
-    return shade(look_of(i), nearest.rays, pixel, nearest.hit);
+    return shade(look_of(i), pixel_rays(i), pixel, nearest.hit);
 }
 
 #endif

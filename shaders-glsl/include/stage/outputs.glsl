@@ -1,7 +1,6 @@
 // What a fragment stores of a hit: nothing but depth, its colour, or every plane.
 #ifndef OUTPUTS_GLSL
 #define OUTPUTS_GLSL
-#include "stage/fragment.glsl"
 #include "core/hit.glsl"
 #if OUTPUT != OUTPUT_DEPTH
 #include "core/shade.glsl"
@@ -15,27 +14,26 @@ layout(location = 3) out vec4 albedo_v;
 #endif
 
 // Look-ups are counted whether anything was hit or not.
-void count_steps(uvec2 pixel, Hit hit)
+void count_steps(uvec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES
-    atomicAdd(pixel_words[second_word(pixel)], hit.steps);
-    if (hit.exhausted) {
+    atomicAdd(pixel_words[second_word(pixel)], steps);
+    if (exhausted) {
         atomicOr(pixel_words[second_word(pixel)], EXHAUSTED_BIT);
     }
 #endif
 }
 
-void store(uvec2 pixel, Hit hit)
-{
 #if OUTPUT != OUTPUT_DEPTH
-    Shaded s = shade(varying_look(), varying_rays(), pixel, hit);
+void store(Shaded s)
+{
     color = s.color;
-#endif
 #if OUTPUT == OUTPUT_PLANES
     normal_distance = vec4(s.normal, s.distance);
     shading_normal_u = vec4(s.shading_normal, s.uv.x);
     albedo_v = vec4(s.albedo, s.uv.y);
 #endif
 }
+#endif
 
 #endif

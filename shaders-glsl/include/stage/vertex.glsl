@@ -9,6 +9,7 @@ Instance begin()
 {
     take_frame();
     take_solid();
+    take_lights();
     return instances[gl_InstanceIndex];
 }
 

@@ -41,14 +41,12 @@ impl Technique {
             &self.object,
             met,
         );
-        let in_compute = [[false; 2], [true; 2]].map(Some);
-        let ways = match stage {
-            DrawStage::Fragment => &[None][..],
-            DrawStage::Compute => &in_compute,
-        };
-        let all = ways
-            .iter()
-            .flat_map(|compute| own.reachable(solver, true, *compute, None))
+        let in_compute = stage == DrawStage::Compute;
+        let all = [false, true]
+            .into_iter()
+            .flat_map(|several| {
+                own.reachable(solver, true, several, in_compute.then_some(several), None)
+            })
             // What other values of the parameters lead to is another technique's.
             .filter(|(v, kind)| {
                 *kind == Kind::Beam || (v.search, v.more_lights) == (own.search, own.more_lights)

@@ -1,0 +1,117 @@
+//! What a solid is sure to hide: cylinders about its axis that it holds.
+
+use crate::surface::{QuadricPatch, Tables};
+
+/// A cylinder, object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Piece {
+    pub radius: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Cylinders within a solid, from the lowest to the highest.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Inner {
+    /// What large copies hide.
+    pub pieces: Vec<Piece>,
+    /// What small ones do.
+    pub few: Vec<Piece>,
+}
+
+const ROWS: usize = 64;
+
+impl Inner {
+    /// Of the solid that the patches enclose.
+    pub fn new(patches: &[QuadricPatch]) -> Self {
+        let tables = Tables::new(patches, ROWS as u32);
+        let radius = |row: usize| {
+            let z = (row as f64 + 0.5) / ROWS as f64;
+            let around = |p: &&QuadricPatch| !p.is_plane() && p.z[0] <= z && z < p.z[1];
+            let solid = patches.iter().filter(around).count() % 2 == 1;
+            let least = f64::from(tables.nodes[row][0]).max(0.0).sqrt();
+            let inset = least * (1.0 - 1e-3) - 1e-4;
+            if solid && least.is_finite() {
+                inset.max(0.0)
+            } else {
+                0.0
+            }
+        };
+        let radii: Vec<f64> = (0..ROWS).map(radius).collect();
+        Self {
+            pieces: pieces(&radii, 8),
+            few: pieces(&radii, 3),
+        }
+    }
+}
+
+/// At most `count` runs of rows, each with its least radius, that together cover most.
+fn pieces(radii: &[f64], count: usize) -> Vec<Piece> {
+    let n = radii.len();
+    // Of the first j rows: what is covered at best, and where the last run begins.
+    let mut best = vec![(0.0f64, 0usize); n + 1];
+    let mut steps = Vec::with_capacity(count);
+    for _ in 0..count {
+        let mut next = vec![(0.0f64, 0usize); n + 1];
+        for j in 1..=n {
+            let mut least = f64::INFINITY;
+            next[j] = (best[j].0, j);
+            for i in (0..j).rev() {
+                least = least.min(radii[i]);
+                let covered = best[i].0 + (j - i) as f64 * least;
+                if covered > next[j].0 {
+                    next[j] = (covered, i);
+                }
+            }
+        }
+        steps.push(next.clone());
+        best = next;
+    }
+    let mut found = Vec::new();
+    let mut end = n;
+    for step in steps.iter().rev() {
+        let begin = step[end].1;
+        let least = radii[begin..end]
+            .iter()
+            .fold(f64::INFINITY, |m, r| m.min(*r));
+        if begin < end && least > 0.0 {
+            found.push(Piece {
+                radius: least,
+                low: begin as f64 / n as f64,
+                high: end as f64 / n as f64,
+            });
+        }
+        end = begin;
+    }
+    found.reverse();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_stay_below_the_radii_and_cover_most() {
+        let radii: Vec<f64> = (0..64)
+            .map(|k| {
+                if k < 16 {
+                    0.4
+                } else {
+                    0.1 + 0.001 * f64::from(k)
+                }
+            })
+            .collect();
+        let found = pieces(&radii, 8);
+        assert!(found.len() > 1 && found.len() <= 8);
+        let mut covered = 0.0;
+        for piece in &found {
+            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
+            assert!(rows.iter().all(|r| *r >= piece.radius));
+            covered += piece.radius * rows.len() as f64;
+        }
+        assert!(covered > 0.9 * radii.iter().sum::<f64>());
+        assert!(found.windows(2).all(|w| w[0].high <= w[1].low));
+        assert!(pieces(&[0.0; 64], 8).is_empty());
+    }
+}

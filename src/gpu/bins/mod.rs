@@ -1,0 +1,366 @@
+//! Which copies each square of the screen shows, nearest first: what objects of several copies are drawn from, in both stages.
+//!
+//! 1. Every copy's rectangle of pixels and nearest depth are found ([`seen`]); copies that no pixel's ray can meet are left out.
+//! 2. Copies of all objects are sorted, the nearest first.
+//! 3. In this order they are listed in the squares in which they may show. What a copy is sure to hide is marked there
+//!    ([`cover`]), and later copies are not listed for pixels in which all of them lies behind it.
+//!
+//! A copy is hidden only where solids that it lies behind are proven to be: pictures are those of unculled copies to the last bit.
+//! Nothing is taken from an earlier frame. Bands of the screen are worked on in parallel.
+
+mod cover;
+mod inner;
+mod seen;
+
+pub(crate) use inner::Inner;
+pub(crate) use seen::Cylinder;
+
+use super::view::View;
+use crate::scene::Placement;
+use crate::shader::generated::{BIN_SPLIT, GROUP_PIXELS};
+use cover::{Cover, SIDE};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use seen::{Forms, Seen};
+use std::ops::Range;
+
+/// Copies of one object.
+pub(crate) struct Batch<'a> {
+    pub placements: &'a [Placement],
+    /// The number of the first among all instances.
+    pub first: u32,
+    pub shape: Cylinder,
+    /// What each is sure to hide; none where that is not known.
+    pub inner: Option<&'a Inner>,
+}
+
+/// What a batch draws.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Shown {
+    /// Its bins, or runs of bins: numbers of four words each.
+    pub range: Range<u32>,
+    /// Its copies that may show, by their place in the batch.
+    pub copies: Vec<u32>,
+}
+
+/// Bins of all batches and their lists, as the shader's one buffer of words holds them (`bins.glsl`).
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bins {
+    pub words: Vec<u32>,
+    /// Of each batch.
+    pub shown: Vec<Shown>,
+}
+
+/// A copy that some pixel may show. They are sorted by these values, in this order.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Item {
+    /// Bits of the nearest depth: not negative, so they order as it does.
+    near: u32,
+    batch: u32,
+    copy: u32,
+    pixels: [u16; 4],
+}
+
+/// A copy in a square.
+#[derive(Clone, Copy)]
+struct Listed {
+    square: u32,
+    copy: u32,
+    near: u32,
+    pixels: u64,
+}
+
+/// Four words and lists of one batch in one band. Lists count from the band's first.
+#[derive(Default)]
+struct Part {
+    bins: Vec<[u32; 4]>,
+    lists: Vec<u32>,
+    copies: Vec<u32>,
+}
+
+/// From so many pixels on each of a square's copies covers it well enough for one list for all.
+const LEAST_PIXELS: u32 = 24;
+/// Fewer copies share one list in any case.
+const LEAST_SPLIT: usize = 3;
+
+impl Bins {
+    /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as one, by a rectangle.
+    pub fn new(view: &View, batches: &[Batch], in_runs: bool) -> Self {
+        let forms = Forms::new(view);
+        let mut items: Vec<Item> = Vec::new();
+        for (number, batch) in (0u32..).zip(batches) {
+            const CHUNK: usize = 1024;
+            items.par_extend(
+                batch
+                    .placements
+                    .par_chunks(CHUNK)
+                    .enumerate()
+                    .flat_map_iter(|(chunk, copies)| {
+                        let first = chunk * CHUNK;
+                        let forms = &forms;
+                        copies.iter().enumerate().filter_map(move |(n, copy)| {
+                            let Seen { pixels, near } =
+                                forms.see(&forms.spread(copy, batch.shape.axis), &batch.shape)?;
+                            Some(Item {
+                                near: near.to_bits(),
+                                batch: number,
+                                copy: (first + n) as u32,
+                                pixels,
+                            })
+                        })
+                    }),
+            );
+        }
+        items.par_sort_unstable();
+        let [_, full] = view.corners();
+        let squares = |pixels: f64| (pixels / f64::from(SIDE)).ceil() as u32;
+        let (across, down) = (squares(full.x), squares(full.y));
+        let band = down
+            .div_ceil(4 * rayon::current_num_threads() as u32)
+            .max(2);
+        let starts: Vec<u32> = (0..down).step_by(band as usize).collect();
+        let parts: Vec<Vec<Part>> = starts
+            .into_par_iter()
+            .map(|first| {
+                let cover = Cover::new(across, first, (first + band).min(down));
+                fill(cover, across, &forms, batches, &items)
+            })
+            .collect();
+        Self::joined(&parts, batches, in_runs)
+    }
+
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], in_runs: bool) -> Self {
+        let mut bins: Vec<[u32; 4]> = Vec::new();
+        let mut lists = 0;
+        let mut shown = Vec::with_capacity(batches.len());
+        for (number, batch) in batches.iter().enumerate() {
+            let first = bins.len() as u32;
+            let mut shows = vec![false; batch.placements.len()];
+            for part in parts.iter().map(|band| &band[number]) {
+                bins.extend(part.bins.iter().map(|[corner, list, count, near]| {
+                    [*corner, list + lists as u32, *count, *near]
+                }));
+                lists += part.lists.len();
+                for &copy in &part.copies {
+                    shows[copy as usize] = true;
+                }
+            }
+            let copies = (0u32..).zip(&shows).filter(|(_, shows)| **shows);
+            shown.push(Shown {
+                range: first..bins.len() as u32,
+                copies: copies.map(|(copy, _)| copy).collect(),
+            });
+        }
+        let mut runs: Vec<[u32; 4]> = Vec::new();
+        if in_runs {
+            let begin = bins.len();
+            for one in &mut shown {
+                let first = runs.len();
+                for number in one.range.clone() {
+                    let [corner, _, _, near] = bins[number as usize];
+                    match runs[first..].last_mut() {
+                        Some([at, _, length, nearest]) if *at + *length == corner => {
+                            *length += 1;
+                            *nearest = near.min(*nearest);
+                        }
+                        _ => runs.push([corner, number, 1, near]),
+                    }
+                }
+                one.range = (begin + first) as u32..(begin + runs.len()) as u32;
+            }
+        }
+        let behind = 4 * (bins.len() + runs.len()) as u32;
+        for bin in &mut bins {
+            bin[1] += behind;
+        }
+        let mut words = Vec::with_capacity(behind as usize + lists);
+        words.extend(bins.as_flattened());
+        words.extend(runs.as_flattened());
+        for number in 0..batches.len() {
+            for band in parts {
+                words.extend(&band[number].lists);
+            }
+        }
+        Self { words, shown }
+    }
+}
+
+/// The bins of every batch in a band.
+fn fill(
+    mut cover: Cover,
+    across: u32,
+    forms: &Forms,
+    batches: &[Batch],
+    items: &[Item],
+) -> Vec<Part> {
+    let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
+    let mut parts: Vec<Part> = batches.iter().map(|_| Part::default()).collect();
+    let (top, bottom) = (cover.top, cover.bottom);
+    for item in items {
+        if u32::from(item.pixels[1]) >= bottom || u32::from(item.pixels[3]) < top {
+            continue;
+        }
+        let number = item.batch as usize;
+        let (batch, list) = (&batches[number], &mut listed[number]);
+        let before = list.len();
+        cover.open(item.pixels, f32::from_bits(item.near), |square, pixels| {
+            list.push(Listed {
+                square,
+                copy: batch.first + item.copy,
+                near: item.near,
+                pixels,
+            });
+        });
+        if list.len() == before {
+            continue;
+        }
+        parts[number].copies.push(item.copy);
+        if let Some(inner) = batch.inner.filter(|_| item.near > 0) {
+            let spread = forms.spread(&batch.placements[item.copy as usize], batch.shape.axis);
+            cover.add(&spread, inner, item.pixels);
+        }
+    }
+    let squares = across * (bottom - top) / SIDE;
+    for (part, listed) in parts.iter_mut().zip(&listed) {
+        part.list(listed, squares, |square| {
+            (square % across) | ((square / across + top / SIDE) << 16)
+        });
+    }
+    parts
+}
+
+impl Part {
+    /// Deals copies out to their squares.
+    fn list(&mut self, listed: &[Listed], squares: u32, corner: impl Fn(u32) -> u32) {
+        let mut ends = vec![0u32; squares as usize + 1];
+        for one in listed {
+            ends[one.square as usize + 1] += 1;
+        }
+        for square in 1..ends.len() {
+            ends[square] += ends[square - 1];
+        }
+        let mut next = ends.clone();
+        let mut sorted = vec![0u32; listed.len()];
+        for (n, one) in (0u32..).zip(listed) {
+            let place = &mut next[one.square as usize];
+            sorted[*place as usize] = n;
+            *place += 1;
+        }
+        for square in 0..squares {
+            let [begin, end] = [square, square + 1].map(|s| ends[s as usize] as usize);
+            let Some(&nearest) = sorted[begin..end].first() else {
+                continue;
+            };
+            let here = sorted[begin..end].iter().map(|n| &listed[*n as usize]);
+            let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
+            let first = self.lists.len() as u32;
+            let count = (end - begin) as u32;
+            let split = end - begin >= LEAST_SPLIT && pixels < LEAST_PIXELS * count;
+            if split {
+                self.split(here);
+            } else {
+                self.lists.extend(here.flat_map(|one| [one.copy, one.near]));
+            }
+            let count = if split { BIN_SPLIT } else { count };
+            self.bins
+                .push([corner(square), first, count, listed[nearest as usize].near]);
+        }
+    }
+
+    /// A list for each of a square's pixels: first where each begins, from the first word on, and how long it is.
+    fn split<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone) {
+        const PIXELS: usize = (SIDE * SIDE) as usize;
+        let mut counts = [0u32; PIXELS];
+        let each = |one: &Listed, visit: &mut dyn FnMut(usize)| {
+            let mut pixels = one.pixels;
+            while pixels != 0 {
+                visit(pixels.trailing_zeros() as usize);
+                pixels &= pixels - 1;
+            }
+        };
+        for one in here.clone() {
+            each(one, &mut |pixel| counts[pixel] += 1);
+        }
+        let start = self.lists.len();
+        let mut next = [0usize; PIXELS];
+        let mut at = 2 * PIXELS;
+        for (next, count) in next.iter_mut().zip(counts) {
+            self.lists.extend([at as u32, count]);
+            *next = start + at;
+            at += 2 * count as usize;
+        }
+        self.lists.resize(start + at, 0);
+        for one in here {
+            each(one, &mut |pixel| {
+                self.lists[next[pixel]] = one.copy;
+                self.lists[next[pixel] + 1] = one.near;
+                next[pixel] += 2;
+            });
+        }
+    }
+}
+
+/// A rectangle of bins or work groups, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Rectangle {
+    pub low: (u32, u32),
+    pub high: (u32, u32),
+}
+
+impl Rectangle {
+    /// How many squares.
+    pub fn squares(self) -> u64 {
+        u64::from(self.high.0 - self.low.0 + 1) * u64::from(self.high.1 - self.low.1 + 1)
+    }
+
+    /// The squares of as many whole groups of squares as hold it.
+    pub fn padded(self) -> u32 {
+        let groups = |low: u32, high: u32| (high - low + 1).next_multiple_of(GROUP_PIXELS);
+        groups(self.low.0, self.high.0) * groups(self.low.1, self.high.1)
+    }
+}
+
+/// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the picture.
+pub(crate) fn rectangle(
+    view: &View,
+    unit: u32,
+    radius: f64,
+    placement: &Placement,
+) -> Option<Rectangle> {
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    let mut nearest = f64::INFINITY;
+    let mut farthest = f64::NEG_INFINITY;
+    for corner in 0..8 {
+        let sign = |bit: u32| if corner & bit == 0 { -1.0 } else { 1.0 };
+        let p = DVec3::new(
+            sign(1) * radius,
+            sign(2) * radius,
+            f64::from(corner / 4 % 2),
+        );
+        let world = placement.position + placement.rotation * (placement.scale * p);
+        let (pixel, depth) = view.project(world);
+        nearest = nearest.min(depth);
+        farthest = farthest.max(depth);
+        low = low.min(pixel);
+        high = high.max(pixel);
+    }
+    if farthest <= 0.0 {
+        return None;
+    }
+    let [corner, full] = view.corners();
+    if nearest <= 1e-9 * farthest {
+        // A box around or beside the eye projects to no rectangle.
+        (low, high) = (corner, full);
+    }
+    low = (low - 1.0).max(corner);
+    high = (high + 1.0).min(full - 1.0);
+    if low.x > high.x || low.y > high.y || !(low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    let bin = |v: f64| (v / f64::from(unit)) as u32;
+    Some(Rectangle {
+        low: (bin(low.x), bin(low.y)),
+        high: (bin(high.x), bin(high.y)),
+    })
+}

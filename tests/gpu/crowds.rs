@@ -1,0 +1,212 @@
+//! Crowds: copies that are proven hidden are left out, and no pixel differs for it.
+
+use crate::common::ways::STAGES;
+use crate::common::{device, shapes};
+use glam::{DQuat, DVec3};
+use revmap::frame::Frame;
+use revmap::gpu::{DrawPath, Offscreen};
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Light, Object, Placement, Scene, Shadow};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Spots as even as they are irregular.
+fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
+    (0..count).map(move |k| {
+        let part = |step: f64| (f64::from(k + 1000 * seed) * step).fract();
+        [
+            part(0.754_877_666),
+            part(0.569_840_291),
+            part(0.618_034),
+            part(0.414_214),
+        ]
+    })
+}
+
+fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
+    let mut scene = Scene::new(Camera::new(
+        DVec3::new(0.0, 0.0, 1.4),
+        DVec3::new(6.0, 6.0, 0.4),
+    ));
+    scene.lights.push(Light {
+        direction: DVec3::new(0.7, 0.5, -0.4),
+        color: [0.8, 0.7, 0.6],
+    });
+    for (seed, profile) in (0u32..).zip(profiles) {
+        let mut object = Object::new("test", Arc::new(profile));
+        object.color = [0.3 + 0.3 * seed as f32, 0.7, 0.9 - 0.3 * seed as f32];
+        let place = |[x, y, turn, size]: [f64; 4]| Placement {
+            position: DVec3::new(12.0 * x - 1.0, 12.0 * y - 1.0, 0.0),
+            rotation: DQuat::from_rotation_z(TAU * turn)
+                * DQuat::from_rotation_x(0.4 * (size - 0.5)),
+            scale: DVec3::new(0.7, 0.8, 0.6 + 0.6 * size),
+        };
+        object.instances = spots(count, seed).map(place).collect();
+        scene.objects.push(object);
+    }
+    scene
+}
+
+fn army(count: u32) -> Scene {
+    crowd(
+        vec![shapes::sphere(), shapes::vase(), shapes::cone()],
+        count,
+    )
+}
+
+fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
+    Settings {
+        width: 233,
+        height: 131,
+        stage,
+        planes: Planes::All,
+        occlusion_culling,
+        ..Settings::exact()
+    }
+}
+
+fn draw(scene: &Scene, settings: &Settings) -> Frame {
+    let mut offscreen = Offscreen::new(device(), scene, settings).unwrap();
+    offscreen.draw().unwrap();
+    let paths = offscreen.draw_paths();
+    assert!(paths.iter().all(|p| *p == DrawPath::Bins), "{paths:?}");
+    offscreen.read().unwrap()
+}
+
+#[track_caller]
+fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
+    let differs = (0..a.pixels()).filter(|&i| {
+        let bits = |f: &Frame| f.pixel(i).map(f32::to_bits);
+        // Look-ups are counted of hidden copies, too.
+        let count = bits(a).len() - 1;
+        bits(a)[..count] != bits(b)[..count]
+    });
+    assert_eq!(differs.count(), 0, "{what}");
+}
+
+/// From within, from above, from straight above and from afar, where most copies are less than a pixel.
+const VIEWS: [(&str, DVec3, DVec3); 4] = [
+    (
+        "within",
+        DVec3::new(0.0, 0.0, 0.9),
+        DVec3::new(6.0, 6.0, 0.4),
+    ),
+    (
+        "above",
+        DVec3::new(-5.0, -4.0, 7.0),
+        DVec3::new(5.0, 5.0, 0.0),
+    ),
+    (
+        "straight down",
+        DVec3::new(5.0, 5.0, 9.0),
+        DVec3::new(5.0, 5.01, 0.0),
+    ),
+    (
+        "afar",
+        DVec3::new(-70.0, -50.0, 30.0),
+        DVec3::new(5.0, 5.0, 0.0),
+    ),
+];
+
+/// Bit for bit, whether copies are culled or not, and in either stage.
+#[test]
+fn culled_copies_are_not_missed() {
+    for (name, eye, target) in VIEWS {
+        let mut scene = army(700);
+        (scene.camera.eye, scene.camera.target) = (eye, target);
+        let frames: Vec<Frame> = STAGES
+            .into_iter()
+            .flat_map(|stage| [true, false].map(|cull| draw(&scene, &settings(stage, cull))))
+            .collect();
+        let hit = frames[0].distance.iter().filter(|d| d.is_finite()).count();
+        assert!(hit > 50, "{name}: {hit} pixels");
+        for (frame, what) in frames[1..]
+            .iter()
+            .zip(["fragment, all", "compute", "compute, all"])
+        {
+            assert_same_bits(&frames[0], frame, &format!("{name}: {what}"));
+        }
+        // The nearest hits stop later copies from being searched, and those proven hidden are not even listed.
+        let steps = |frame: &Frame| frame.steps.iter().map(|s| f64::from(*s)).sum::<f64>();
+        assert!(steps(&frames[0]) <= steps(&frames[1]), "{name}");
+    }
+    device().check().unwrap();
+}
+
+/// The picture is that of the same copies as objects of their own, drawn by boxes and rectangles.
+#[test]
+fn a_crowd_is_as_many_single_objects() {
+    let scene = army(40);
+    let mut single = scene.clone();
+    single.objects = scene
+        .objects
+        .iter()
+        .flat_map(|object| {
+            object.instances.iter().map(|placement| Object {
+                placement: *placement,
+                instances: Vec::new(),
+                ..object.clone()
+            })
+        })
+        .collect();
+    for stage in STAGES {
+        let settings = Settings {
+            solver: Solver::Quadric,
+            ..settings(stage, true)
+        };
+        let one = draw(&scene, &settings);
+        let mut offscreen = Offscreen::new(device(), &single, &settings).unwrap();
+        offscreen.draw().unwrap();
+        assert_same_bits(&one, &offscreen.read().unwrap(), &format!("{stage:?}"));
+    }
+    device().check().unwrap();
+}
+
+/// What is hidden from the eye may still throw a shadow; and copies that come into view are there in the first frame.
+#[test]
+fn hidden_copies_throw_shadows_and_come_back() {
+    for stage in STAGES {
+        let mut scene = army(70);
+        scene.shadow = Shadow::Hard;
+        let culled = draw(&scene, &settings(stage, true));
+        let all = draw(&scene, &settings(stage, false));
+        assert_same_bits(&culled, &all, &format!("{stage:?}, shadows"));
+        scene.shadow = Shadow::Off;
+        let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
+        for (name, eye, target) in VIEWS {
+            (scene.camera.eye, scene.camera.target) = (eye, target);
+            offscreen.update(&scene).unwrap();
+            offscreen.draw().unwrap();
+            let moved = offscreen.read().unwrap();
+            let fresh = draw(&scene, &settings(stage, true));
+            assert_same_bits(&moved, &fresh, &format!("{stage:?}, {name}"));
+        }
+        // One object changes: what it hides of the others does, too.
+        scene.objects[1].instances.truncate(3);
+        offscreen.update(&scene).unwrap();
+        offscreen.draw().unwrap();
+        let fresh = draw(&scene, &settings(stage, true));
+        assert_same_bits(
+            &offscreen.read().unwrap(),
+            &fresh,
+            &format!("{stage:?}, fewer"),
+        );
+    }
+    device().check().unwrap();
+}
+
+/// A crowd that stands behind the eye or beside the picture is not drawn at all.
+#[test]
+fn what_is_out_of_view_is_nothing() {
+    let mut scene = army(20);
+    scene.camera = Camera::new(DVec3::new(-4.0, -4.0, 1.0), DVec3::new(-9.0, -9.0, 1.0));
+    for stage in STAGES {
+        let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
+        offscreen.draw().unwrap();
+        assert_eq!(offscreen.draw_paths(), [DrawPath::Nothing; 3]);
+        let frame = offscreen.read().unwrap();
+        assert!(frame.distance.iter().all(|d| d.is_infinite()));
+    }
+    device().check().unwrap();
+}
