@@ -2,6 +2,7 @@
 
 use super::call::Call;
 use super::instance::{Instance, into_device};
+use super::memory_budget::MemoryBudget;
 use super::pipelines::Pipelines;
 use super::report::{Candidate, DeviceReport, candidates, choose, inspect, refuse, variable};
 use crate::error::{Error, Result, Stage};
@@ -50,6 +51,7 @@ pub(crate) struct Shared {
     pub timestamp_bits: u32,
     pub anisotropy: Option<f32>,
     pub report: DeviceReport,
+    pub budget: MemoryBudget,
     /// None of a borrowed device.
     instance: Option<Instance>,
 }
@@ -101,6 +103,18 @@ impl Device {
         Ok(Self {
             shared: Arc::new(shared),
         })
+    }
+
+    /// Bounds the bytes of all buffers and images on the device, those of pictures included; `None`: as many as it has. What was taken
+    /// before counts; what would exceed the budget fails, and nothing else does.
+    pub fn set_memory_budget(&self, bytes: Option<u64>) {
+        self.shared.budget.set(bytes);
+    }
+
+    /// Bytes that all buffers and images on the device take.
+    #[must_use]
+    pub fn memory_bytes(&self) -> u64 {
+        self.shared.budget.used()
     }
 
     fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
@@ -292,6 +306,7 @@ impl Shared {
             anisotropy: chosen
                 .anisotropic()
                 .then_some(limits.max_sampler_anisotropy),
+            budget: MemoryBudget::default(),
             report: chosen.report.clone(),
             raw,
             instance: None,

@@ -5,7 +5,7 @@ use super::device::Shared;
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
 use std::sync::Arc;
 
 pub(crate) struct Buffer {
@@ -161,8 +161,24 @@ fn allocate(
     location: MemoryLocation,
     linear: bool,
 ) -> Result<Allocation> {
-    device
-        .allocator()?
+    device.budget.take(name, requirements.size)?;
+    let made = device
+        .allocator()
+        .and_then(|mut allocator| allocated(&mut allocator, name, requirements, location, linear));
+    // What was made is given back as large as it is.
+    let bytes = made.as_ref().map_or(0, Allocation::size);
+    device.budget.give(requirements.size.saturating_sub(bytes));
+    made
+}
+
+fn allocated(
+    allocator: &mut Allocator,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: MemoryLocation,
+    linear: bool,
+) -> Result<Allocation> {
+    allocator
         .allocate(&AllocationCreateDesc {
             name,
             requirements,
@@ -188,7 +204,11 @@ fn bound(owner: &mut Option<Allocation>, allocation: Allocation) -> (vk::DeviceM
 }
 
 fn free(device: &Shared, allocation: Option<Allocation>) {
-    if let (Some(allocation), Ok(mut allocator)) = (allocation, device.allocator()) {
+    let Some(allocation) = allocation else {
+        return;
+    };
+    device.budget.give(allocation.size());
+    if let Ok(mut allocator) = device.allocator() {
         // An error here can only be reported, and nobody is left to report it to.
         let _ = allocator.free(allocation);
     }

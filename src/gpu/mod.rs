@@ -20,6 +20,7 @@ mod hulls;
 mod instance;
 mod levels;
 mod memory;
+mod memory_budget;
 mod messages;
 mod offscreen;
 mod offset_surface;

@@ -30,6 +30,8 @@ mod offsets;
 mod proxy_hulls;
 mod replicas;
 mod shadows;
+#[cfg(all(feature = "drawing", feature = "scene-file"))]
+mod smallest;
 mod texturing;
 mod tolerance;
 mod trouble;

@@ -1,7 +1,7 @@
 //! Levels of surfaces: errors stay below the tolerance, and pictures follow from the view alone.
 
 use crate::common::{device, draw, eye, placement, reference, scene_of, shapes};
-use revmap::gpu::{INSTANCE_BYTES, Offscreen};
+use revmap::gpu::{Device, INSTANCE_BYTES, Offscreen};
 use revmap::scene::{Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Tolerance};
 use revmap_lab::compare::pixel_errors;
@@ -114,6 +114,26 @@ fn no_tolerance_is_the_exact_level() {
     }
     const { assert!(INSTANCE_BYTES <= 96) };
     assert_eq!(all[0].instance_bytes, INSTANCE_BYTES);
+}
+
+/// What does not fit fails with the numbers; what fitted goes on, and all is given back.
+#[test]
+fn a_memory_budget_is_kept() {
+    let device = Device::open_validated(None).unwrap();
+    let scene = scene_of(shapes::vase(), eye(25.0, 2.2));
+    let settings = settings(DrawStage::Fragment, 0.25);
+    let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
+    offscreen.draw().unwrap();
+    let taken = device.memory_bytes();
+    assert!(taken > offscreen.device_bytes());
+    device.set_memory_budget(Some(taken + (1 << 20)));
+    let error = Offscreen::new(&device, &scene, &settings).err().unwrap();
+    assert!(error.message.contains("memory budget"), "{error}");
+    assert_eq!(device.memory_bytes(), taken);
+    offscreen.draw().unwrap();
+    drop(offscreen);
+    assert_eq!(device.memory_bytes(), 0);
+    device.check().unwrap();
 }
 
 /// A shadow may fall nearer to the eye than what casts it: all objects take the level of the nearest.

@@ -2,7 +2,6 @@
 
 use super::options::{Drawing, Tracing};
 use super::output;
-use super::pipelines;
 use super::progress::Progress;
 use super::samples::Samples;
 use clap::Args;
@@ -98,7 +97,7 @@ impl Animate {
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
         written.extend((0..self.frames).filter_map(|n| self.picture(n)));
         output::spare(file.files(), &written, "--output")?;
-        let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
+        let (device, kept) = self.drawing.open()?;
         let progress = Progress::start(
             &format!("drawing on {}", device.report().name),
             self.drawing.quiet,

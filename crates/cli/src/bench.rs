@@ -14,7 +14,9 @@ use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::Extent;
-use revmap_lab::report::{DeviceBench, compare_runs, folder, overview, papers, scaling, text};
+use revmap_lab::report::{
+    DeviceBench, budget, compare_runs, folder, overview, papers, scaling, text,
+};
 use std::path::PathBuf;
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
@@ -39,8 +41,11 @@ pub struct Bench {
     /// How time grows with pixels, with solids and with rows of the map
     #[arg(long, conflicts_with_all = ["full", "scenes", "size", "framing", "tables"])]
     scaling: bool,
+    /// What a tolerance costs: errors and times of ten scenes at five tolerances
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling"])]
+    budget: bool,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling"])]
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget"])]
     compare: Vec<PathBuf>,
 }
 
@@ -57,6 +62,9 @@ impl Bench {
         }
         if self.scaling {
             return self.scaling();
+        }
+        if self.budget {
+            return self.budget();
         }
         let (budget, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
             (TimeBudget::QUICK, Extent::One, &[25.0], &[(800, 600)])
@@ -128,6 +136,28 @@ impl Bench {
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
+        session.finish(&plan, &measured)
+    }
+
+    fn budget(&self) -> Result<()> {
+        let stages = self.axes(&[], &[]).stages;
+        let limits = if self.quick {
+            TimeBudget::QUICK
+        } else {
+            TimeBudget::CHART
+        };
+        let plan = budget::plan(&stages, self.quick)?;
+        let session = Session::open(&self.lists)?;
+        let mut errors = budget::Errors::default();
+        let (measured, _) = session.measure(
+            &plan,
+            &self.lists.time_budget(&limits),
+            |_| false,
+            &mut |seen| errors.add(seen),
+        )?;
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        budget::write(&session.out, &plan, &measured, &errors, &session.machine)?;
+        print(&budget::as_text(&measured.rows, &errors));
         session.finish(&plan, &measured)
     }
 

@@ -10,6 +10,7 @@ mod chart;
 mod compare;
 mod devices;
 mod interrupt;
+mod levels;
 mod lists;
 mod options;
 mod output;

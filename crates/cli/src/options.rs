@@ -1,7 +1,9 @@
 //! Options that every drawing command takes.
 
+use super::pipelines::{self, Kept};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
@@ -81,6 +83,9 @@ pub struct Drawing {
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     pub device: Option<String>,
+    /// The most memory that buffers and pictures may take on the device, MiB [default: as much as it has]
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
+    pub memory_budget: Option<u64>,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -110,6 +115,13 @@ impl Drawing {
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
         }
+    }
+
+    /// Opens the device, with the pipelines of earlier runs and the memory that may be taken.
+    pub fn open(&self) -> revmap::Result<(Device, Kept)> {
+        let (device, kept) = pipelines::open(self.device.as_deref())?;
+        device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
+        Ok((device, kept))
     }
 
     /// What looks unintended: in the scene, and options that the method passes over.

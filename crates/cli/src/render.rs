@@ -3,7 +3,7 @@
 use super::options::{self, Drawing, Tracing};
 use super::progress::Progress;
 use super::samples::Samples;
-use super::{output, pipelines};
+use super::{levels, output};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
@@ -30,6 +30,9 @@ pub struct Render {
     /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
+    /// Also writes a picture of the level of patches that each pixel was drawn by: blue is exact, red the coarsest
+    #[arg(long, value_name = "FILE.png")]
+    levels: Option<PathBuf>,
     /// One JSON object on standard output in place of text: all that --verbose says
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
@@ -55,10 +58,13 @@ struct Picture {
 impl Render {
     pub fn run(self) -> Result<()> {
         output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
+        let levels: Vec<_> = self.levels.iter().cloned().collect();
+        output::check(&levels, "--levels", &["png"], &[&self.scene])?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
         let scene = file.scene(&self.drawing.set)?;
         output::spare(file.files(), &self.output, "--output")?;
+        output::spare(file.files(), &levels, "--levels")?;
         let loading = milliseconds(begin);
         let floats = self
             .output
@@ -96,7 +102,7 @@ impl Render {
     }
 
     fn on_gpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
-        let (device, kept) = pipelines::open(self.drawing.device.as_deref())?;
+        let (device, kept) = self.drawing.open()?;
         let report = device.report();
         let progress = Progress::start(&format!("drawing on {}", report.name), self.drawing.quiet);
         let drawn = self
@@ -133,6 +139,13 @@ impl Render {
             progress.report(times.len(), 1 + self.samples.count as usize);
             renderer.read()
         })?;
+        let costs = renderer.object_costs();
+        let device_bytes = renderer.device_bytes();
+        if let Some(file) = &self.levels {
+            renderer.update(&levels::painted(scene, &costs))?;
+            renderer.draw()?;
+            frame::write_png(&renderer.read()?, file)?;
+        }
         device.check()?;
         Ok(MethodDrawn {
             frame,
@@ -143,8 +156,8 @@ impl Render {
             },
             map_bytes: renderer.map_bytes(),
             notes: renderer.notes().to_vec(),
-            costs: renderer.object_costs(),
-            device_bytes: renderer.device_bytes(),
+            costs,
+            device_bytes,
         })
     }
 

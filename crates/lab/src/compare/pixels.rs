@@ -10,8 +10,12 @@ use revmap_reference::{Ray, Reference};
 /// moved.
 const JUMP: f64 = 4.0;
 
-/// To how much of a pixel a moved contour is measured.
-const FINE: f64 = 1e-3;
+/// Directions in which the contour is looked for, and how often the distance found is halved: to 2 % and a 16th of itself.
+const DIRECTIONS: u32 = 16;
+const HALVINGS: u32 = 4;
+/// The distances looked at, pixels, each twice the one before; the last stands for all that are farther.
+const LEAST: f64 = 1.0 / 256.0;
+const MOST: f64 = 4.0;
 
 /// What moved by how much, pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,10 +40,6 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
     let reference = Reference::new(scene)?;
     // Of a unit at unit depth, which rays' directions are scaled to.
     let pixel = camera.right.length();
-    let scale = (scene.objects.iter())
-        .flat_map(|object| object.placements())
-        .map(|copy| copy.scale.max_element())
-        .fold(0.0, f64::max);
     let errors: Vec<(f64, bool)> = (0..truth.pixels())
         .into_par_iter()
         .filter(|&k| truth.hits(k) || frame.hits(k))
@@ -52,17 +52,24 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
             if truth.hits(k) && frame.hits(k) && !(off > JUMP && is_near(truth, k, drawn)) {
                 return (off, false);
             }
-            let end = match (truth.hits(k), frame.hits(k)) {
-                (true, true) => 0.5 * (there + drawn) / direction.length(),
-                _ => f64::INFINITY,
+            // What the reference shows nearby, on the other side of the contour.
+            let shows = |x: f64, y: f64| {
+                let direction = direction + camera.right * x - camera.up * y;
+                let ray = Ray {
+                    origin: camera.eye,
+                    direction,
+                };
+                match reference.trace(ray).hit {
+                    None => !frame.hits(k),
+                    Some(_) if !frame.hits(k) => false,
+                    Some(_) if !truth.hits(k) => true,
+                    Some(hit) => {
+                        let beside = hit.t * direction.length();
+                        (beside - drawn).abs() <= 0.5 * (there - drawn).abs()
+                    }
+                }
             };
-            let size = size(there.min(drawn));
-            let ray = Ray {
-                origin: camera.eye,
-                direction,
-            };
-            let clear = reference.clearance_within(ray, [0.0, end], FINE * size / scale);
-            (clear.abs() * scale / size, true)
+            (way_to(shows), true)
         })
         .collect();
     let mut all: Vec<f64> = errors.iter().map(|e| e.0).collect();
@@ -77,6 +84,30 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
             .map_or(0.0, |rank| all[rank]),
         contour_max: moved().map(|e| e.0).fold(0.0, f64::max),
     })
+}
+
+/// How far from a pixel's middle something is shown, pixels.
+fn way_to(shows: impl Fn(f64, f64) -> bool) -> f64 {
+    let around = |far: f64| {
+        (0..DIRECTIONS).any(|n| {
+            let (y, x) = (std::f64::consts::TAU * f64::from(n) / f64::from(DIRECTIONS)).sin_cos();
+            shows(far * x, far * y)
+        })
+    };
+    let mut far = LEAST;
+    while far < MOST && !around(far) {
+        far *= 2.0;
+    }
+    let mut near = 0.5 * far;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (near + far);
+        if around(middle) {
+            far = middle;
+        } else {
+            near = middle;
+        }
+    }
+    far
 }
 
 /// Whether what is drawn in pixel `k` is nearer to what the reference has beside it.

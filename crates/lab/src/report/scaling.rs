@@ -4,6 +4,7 @@ mod growth;
 mod ranges;
 
 pub use growth::{Growth, growth, value};
+pub(crate) use ranges::field;
 pub use ranges::{MESHES, Ranges, plan};
 
 use super::chapters;

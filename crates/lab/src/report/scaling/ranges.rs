@@ -114,7 +114,7 @@ pub fn plan(stages: &[DrawStage], methods: &[Method], ranges: Ranges) -> Result<
 }
 
 /// `count` copies on a square field one unit wide, seen whole.
-fn field(one: &View, count: u32) -> View {
+pub(crate) fn field(one: &View, count: u32) -> View {
     let mut view = one.clone();
     let side = f64::from(count).sqrt().ceil();
     for object in &mut view.scene.objects {
