@@ -6,7 +6,7 @@ use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::{MapSource, Projection};
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver, Tolerance};
 
 /// Names in the controls and of the option `--stage`.
 pub const STAGES: [(&str, DrawStage); 2] = [
@@ -48,6 +48,7 @@ impl Shown {
             map_format: search.map_format,
             planes,
             proxy_min_pixels: search.proxy_min_pixels,
+            tolerance: search.tolerance,
         }
     }
 }
@@ -218,6 +219,11 @@ fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
         ("exact", Some(MapSource::Exact)),
     ];
     changed |= choice(ui, "map source", &mut search.map_source, &sources);
+    let mut pixels = search.tolerance.pixels();
+    let slider = Slider::new(&mut pixels, 0.0..=8.0).logarithmic(true);
+    changed |= ui.add(slider.text("tolerance, pixels")).changed();
+    // The slider gives no other numbers than a tolerance takes.
+    search.tolerance = Tolerance::new(pixels).unwrap_or(search.tolerance);
     changed |= optional(ui, "map rows", &mut search.map_rows, 512, 2..=4096);
     changed | optional(ui, "max steps", &mut search.max_steps, 64, 1..=1024)
 }
