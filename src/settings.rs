@@ -227,6 +227,23 @@ impl From<&Settings> for SearchSettings {
     }
 }
 
+/// The search as given; size, stage and planes as in the default.
+impl From<&SearchSettings> for Settings {
+    fn from(search: &SearchSettings) -> Self {
+        Self {
+            solver: search.solver,
+            max_steps: search.max_steps,
+            map_rows: search.map_rows,
+            map_source: search.map_source,
+            map_format: search.map_format,
+            proxy_min_pixels: search.proxy_min_pixels,
+            occlusion_culling: search.occlusion_culling,
+            tolerance: search.tolerance,
+            ..Self::default()
+        }
+    }
+}
+
 impl SearchSettings {
     /// The default with no tolerance, as measurements want it.
     #[must_use]

@@ -86,15 +86,8 @@ impl RevmapPicture {
             width: self.width,
             height: self.height,
             stage: enums::stage(self.stage)?,
-            solver: search.solver,
-            max_steps: search.max_steps,
-            map_rows: search.map_rows,
-            map_source: search.map_source,
-            map_format: search.map_format,
             planes: enums::planes(self.planes)?,
-            proxy_min_pixels: search.proxy_min_pixels,
-            tolerance: search.tolerance,
-            occlusion_culling: search.occlusion_culling,
+            ..Settings::from(&search)
         })
     }
 }

@@ -1,8 +1,9 @@
 //! The window's events.
 
-use super::controls::{self, Asked, Shown, Told};
+use super::controls::{self, Asked, Told};
 use super::inspect::Inspector;
 use super::saved;
+use super::shown::Shown;
 use super::stage::Stage;
 use super::times::Times;
 use super::{View, orbit};

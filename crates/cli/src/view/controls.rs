@@ -1,57 +1,12 @@
 //! Sliders and choices for all that a scene and its search hold.
 
-use super::inspect::Inspected;
+use super::shown::{Inspected, STAGES, Shown};
 use super::times::Times;
 use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::{MapSource, Projection};
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver, Tolerance};
-
-/// Names in the controls and of the option `--stage`.
-pub const STAGES: [(&str, DrawStage); 2] = [
-    ("fragment", DrawStage::Fragment),
-    ("compute", DrawStage::Compute),
-];
-
-/// What is shown, and how.
-#[derive(Clone)]
-pub struct Shown {
-    pub scene: Scene,
-    pub search: SearchSettings,
-    pub stage: DrawStage,
-    pub inspected: Inspected,
-}
-
-impl Shown {
-    /// The scene as it is lit, by the fragment stage.
-    pub fn new(scene: Scene, search: SearchSettings) -> Self {
-        Self {
-            scene,
-            search,
-            stage: DrawStage::Fragment,
-            inspected: Inspected::Color,
-        }
-    }
-
-    /// Settings of an off-screen frame of it.
-    pub fn settings(&self, (width, height): (u32, u32), planes: Planes) -> Settings {
-        let search = &self.search;
-        Settings {
-            width,
-            height,
-            stage: self.stage,
-            solver: search.solver,
-            max_steps: search.max_steps,
-            map_rows: search.map_rows,
-            map_source: search.map_source,
-            map_format: search.map_format,
-            planes,
-            proxy_min_pixels: search.proxy_min_pixels,
-            tolerance: search.tolerance,
-        }
-    }
-}
+use revmap::settings::{SearchSettings, Solver, Tolerance};
 
 /// What the controls say besides values.
 pub struct Told<'a> {

@@ -1,7 +1,7 @@
 //! Pictures that the window shows in place of the drawn scene: planes of an off-screen frame, the
 //! compute stage's frame, and errors against the reference.
 
-use super::controls::Shown;
+use super::shown::{Inspected, Shown};
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::frame::{Frame, Picture};
@@ -12,32 +12,6 @@ use revmap_lab::report::pictures::steps;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use winit::window::Window;
-
-/// What the window shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inspected {
-    /// The scene as it is lit.
-    Color,
-    /// Distances from the eye: white is near, dark is far.
-    Depth,
-    /// World normals: red, green and blue are x, y and z, from -1 to 1.
-    Normals,
-    /// Look-ups or patches that each pixel's search made.
-    Steps,
-    /// Errors of depth and silhouette against the double-precision reference.
-    Error,
-}
-
-impl Inspected {
-    /// Names in the controls and of the option `--show`.
-    pub const NAMES: [(&'static str, Self); 5] = [
-        ("color", Self::Color),
-        ("depth", Self::Depth),
-        ("normals", Self::Normals),
-        ("steps", Self::Steps),
-        ("error", Self::Error),
-    ];
-}
 
 /// Side of a pixel of the error's picture, in pixels of the window: the reference takes seconds for
 /// a whole window.

@@ -5,6 +5,7 @@ mod controls;
 mod inspect;
 mod orbit;
 mod saved;
+mod shown;
 mod stage;
 mod swapchain;
 mod times;
@@ -27,7 +28,7 @@ pub struct View {
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
     /// Where rays are traced; the compute stage's frames go through the CPU into the window
-    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&controls::STAGES))]
+    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&shown::STAGES))]
     stage: DrawStage,
     /// How the first hit along a ray is found
     #[arg(long, value_name = "NAME", default_value = "hull")]
@@ -42,8 +43,8 @@ pub struct View {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// What is shown: color, depth, normals, steps, or error against the reference
-    #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&inspect::Inspected::NAMES))]
-    show: inspect::Inspected,
+    #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&shown::Inspected::NAMES))]
+    show: shown::Inspected,
     /// Show so many frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
@@ -76,7 +77,7 @@ impl View {
             )
         };
         let events = EventLoop::new().map_err(screen)?;
-        let mut shown = controls::Shown::new(scene, search);
+        let mut shown = shown::Shown::new(scene, search);
         (shown.stage, shown.inspected) = (self.stage, self.show);
         let mut app = app::App::new(self, file, shown);
         events.run_app(&mut app).map_err(screen)?;

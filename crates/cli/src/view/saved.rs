@@ -1,6 +1,6 @@
 //! What the window writes: the scene as TOML, a turntable, times of its frames.
 
-use super::controls::Shown;
+use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, Result, Stage as Where};

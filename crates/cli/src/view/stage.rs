@@ -1,7 +1,7 @@
 //! What the window shows: the scene's renderer and the controls, in one pass.
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
-use super::controls::Shown;
+use super::shown::Shown;
 use super::swapchain::{Begun, DEPTH, FRAMES, Swapchain};
 use super::times::Cost;
 use super::vulkan::Vulkan;
