@@ -14,6 +14,7 @@ use super::pipelines::Pipelines;
 use super::report::{DeviceReport, candidates, choose, text, variable};
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes, Solver};
+use crate::shader::generated::{LONG_LIST, MIDDLE_LIST, SHORT_LIST};
 use crate::shader::{Dispatch, Kind, Variant, listed};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
@@ -177,6 +178,19 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
         (Kind::ConvexHull, _) => "convex hull",
         (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",
+        (Kind::List, _) => "lists of patches",
+        (Kind::Listed, _) | (Kind::Compute, Dispatch::Lists) => {
+            match (variant.list_length, several) {
+                (SHORT_LIST, false) => "tiles of 8 patches",
+                (SHORT_LIST, true) => "tiles of 8 patches of several",
+                (MIDDLE_LIST, false) => "tiles of 16 patches",
+                (MIDDLE_LIST, true) => "tiles of 16 patches of several",
+                (LONG_LIST, false) => "tiles of 32 patches",
+                (LONG_LIST, true) => "tiles of 32 patches of several",
+                (_, false) => "tiles of 48 patches",
+                (_, true) => "tiles of 48 patches of several",
+            }
+        }
         (Kind::Compute, Dispatch::Rectangle) if several => "rectangle of several",
         (Kind::Compute, Dispatch::Rectangle) => "rectangle",
         (Kind::Compute, Dispatch::Bins) => "bins",

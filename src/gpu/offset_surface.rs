@@ -4,7 +4,7 @@ use super::arena::Slot;
 use super::bins::Inner;
 use super::hulls::GpuProxyHull;
 use super::solid::Outlined;
-use super::tables::GpuTables;
+use super::tables::{self, GpuTables};
 use crate::error::Result;
 use crate::maps::envelope::Envelope;
 use crate::scene::Offset;
@@ -16,9 +16,10 @@ pub(crate) struct OffsetSurface {
     recipe: Recipe,
     made: OnceLock<Result<Made>>,
     tables: OnceLock<GpuTables>,
+    listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
     inner: OnceLock<Inner>,
-    slots: [OnceLock<Slot>; 2],
+    slots: [OnceLock<Slot>; 3],
 }
 
 /// What a surface is made from.
@@ -38,13 +39,15 @@ enum Made {
     Envelope,
 }
 
-/// The two parts of a surface that stand in the arena.
+/// The parts of a surface that stand in the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     /// What searches walk.
     Tables,
     /// What the vertex shaders of hulls grow.
     Frusta,
+    /// What lists of patches are made from.
+    Patches,
 }
 
 impl OffsetSurface {
@@ -53,9 +56,10 @@ impl OffsetSurface {
             recipe,
             made: OnceLock::new(),
             tables: OnceLock::new(),
+            listed: OnceLock::new(),
             hull: OnceLock::new(),
             inner: OnceLock::new(),
-            slots: [OnceLock::new(), OnceLock::new()],
+            slots: [const { OnceLock::new() }; 3],
         }
     }
 
@@ -87,6 +91,14 @@ impl OffsetSurface {
                 (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuTables::envelope(envelope),
                 _ => GpuTables::patches(&[]),
             })
+    }
+
+    /// What lists of patches are made from; nothing where there are none, or too many.
+    pub fn listed(&self) -> &[[u32; 4]] {
+        self.listed.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => tables::listed(patches),
+            _ => Vec::new(),
+        })
     }
 
     /// What the rasteriser draws; of cones nothing.
@@ -139,6 +151,7 @@ impl OffsetSurface {
         match part {
             Part::Tables => &self.tables().vectors,
             Part::Frusta => &self.hull().vectors,
+            Part::Patches => self.listed(),
         }
     }
 

@@ -12,6 +12,9 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
+/// Words that are pushed: `Pushed` of `beams.glsl`.
+pub(crate) const PUSHED: u32 = 4;
+
 /// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
     /// By frequency: 0 buffers of a frame, 1 textures of an object, 2 the target of a compute pass.
@@ -96,7 +99,7 @@ impl Pipelines {
         }
         let pushed = [vk::PushConstantRange::default()
             .stage_flags(S::COMPUTE)
-            .size(8)];
+            .size(4 * PUSHED)];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&all.set_layouts)
             .push_constant_ranges(&pushed);

@@ -5,7 +5,7 @@ use super::hulls;
 use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::scene::Object;
-use crate::shader::generated::GROUP_PIXELS;
+use crate::shader::generated::{GROUP_PIXELS, LIST_LENGTHS};
 use ash::vk;
 use std::ops::Range;
 
@@ -58,6 +58,24 @@ pub(crate) struct Tiles {
     pub block: Option<u32>,
     /// Among the object's.
     pub instance: usize,
+    /// Whether each comes with a list of patches.
+    pub listed: bool,
+}
+
+impl Tiles {
+    /// Where the dispatches of listed patches begin: see `patch_lists.glsl`.
+    pub fn heads(&self) -> u32 {
+        self.at + 4 + 4 * self.rectangle.padded()
+    }
+
+    /// Words of all its lists: a dispatch and four words a tile, or what `patch_lists.glsl` says.
+    fn words(&self) -> u32 {
+        if self.listed {
+            self.heads() - self.at + LIST_LENGTHS * (4 + 2 * self.rectangle.padded())
+        } else {
+            4 + 4 * self.rectangle.padded()
+        }
+    }
 }
 
 impl Work {
@@ -130,8 +148,10 @@ impl Planner<'_> {
             if shown.is_empty() {
                 return Work::Nothing;
             }
-            if self.beams_pay(&shown, placements.len(), lists) {
-                return lists.beams(&shown, placements.len());
+            let listed = surface.is_boundary() && !surface.listed().is_empty();
+            let tiles = lists.tiles(&shown, placements.len(), listed);
+            if self.beams_pay(&shown, &tiles, placements.len(), lists) {
+                return lists.beams(tiles);
             }
         }
         match placements {
@@ -141,11 +161,17 @@ impl Planner<'_> {
         }
     }
 
-    fn beams_pay(&self, shown: &[(usize, Rectangle)], copies: usize, lists: &Lists) -> bool {
+    fn beams_pay(
+        &self,
+        shown: &[(usize, Rectangle)],
+        tiles: &[Tiles],
+        copies: usize,
+        lists: &Lists,
+    ) -> bool {
         // A tile listed is a work group.
         let most = self.limits.max_compute_work_group_count[0];
         // All lists stand in one buffer, of which a quarter is for them: bins need the rest.
-        let words: u64 = shown.iter().map(|(_, r)| words_of(*r) as u64).sum();
+        let words: u64 = tiles.iter().map(|t| u64::from(t.words())).sum();
         let room = u64::from(self.limits.max_storage_buffer_range) / 16;
         let fits =
             lists.tiles as u64 + words <= room && shown.iter().all(|(_, r)| r.padded() <= most);
@@ -161,11 +187,6 @@ const MOST_WRAPPED: usize = 64;
 /// Tiles that each of several copies should cover for a list of its own to pay.
 const LEAST_TILES: u64 = 64;
 
-/// Words of the list of a rectangle's tiles: the dispatch, and four a tile.
-fn words_of(rectangle: Rectangle) -> usize {
-    4 + 4 * rectangle.padded() as usize
-}
-
 /// What the objects of a frame put into buffers that they share, in compute.
 #[derive(Default)]
 pub(crate) struct Lists {
@@ -176,22 +197,27 @@ pub(crate) struct Lists {
 }
 
 impl Lists {
-    /// Lists of tiles for the copies that show.
-    fn beams(&mut self, shown: &[(usize, Rectangle)], copies: usize) -> Work {
-        let tiles = shown.iter().map(|&(instance, rectangle)| {
-            let at = self.tiles as u32;
-            self.tiles += words_of(rectangle);
-            let block = (copies > 1).then(|| {
-                self.copies += 1;
-                self.copies - 1
-            });
-            Tiles {
+    /// Lists of tiles for the copies that show, not counted yet.
+    fn tiles(&self, shown: &[(usize, Rectangle)], copies: usize, listed: bool) -> Vec<Tiles> {
+        let (mut at, mut block) = (self.tiles as u32, self.copies);
+        let of = |&(instance, rectangle): &(usize, Rectangle)| {
+            let tiles = Tiles {
                 rectangle,
                 at,
-                block,
+                block: (copies > 1).then_some(block),
                 instance,
-            }
-        });
-        Work::Beams(tiles.collect())
+                listed,
+            };
+            at += tiles.words();
+            block += 1;
+            tiles
+        };
+        shown.iter().map(of).collect()
+    }
+
+    fn beams(&mut self, tiles: Vec<Tiles>) -> Work {
+        self.tiles += tiles.iter().map(|t| t.words() as usize).sum::<usize>();
+        self.copies += tiles.iter().filter(|t| t.block.is_some()).count() as u32;
+        Work::Beams(tiles)
     }
 }

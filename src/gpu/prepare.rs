@@ -283,19 +283,31 @@ impl Renderer {
         };
         let bands_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
+        let listed = matches!(&work, Work::Beams(copies) if copies.iter().any(|c| c.listed));
+        let patches_at = put(prepared.wrapped.as_ref().filter(|_| listed), Part::Patches)?;
         let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
             entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
             entry.draw.key = Some((variant, kind));
         }
-        if matches!(work, Work::Beams(_)) && entry.draw.list == vk::Pipeline::null() {
+        if matches!(work, Work::Beams(_)) {
             let pipelines = self.device.pipelines()?;
-            entry.draw.list = pipelines.get(Variant::BEAM, Kind::Beam, &self.output, self.owner)?;
+            let get = |variant, kind| pipelines.get(variant, kind, &self.output, self.owner);
+            let kind = if listed { Kind::List } else { Kind::Beam };
+            entry.draw.list = get(Variant::BEAM, kind)?;
+            if listed {
+                let lists = variant.listed(variant.depth_keep != 0);
+                for (to, variant) in entry.draw.listed.iter_mut().zip(lists) {
+                    *to = get(variant, Kind::Listed)?;
+                }
+            }
         }
         entry.draw.frusta = bands_at.unwrap_or(0);
         entry.draw.tables = tables_at.unwrap_or(0);
         entry.draw.tables_offset = 16 * entry.draw.tables;
+        entry.draw.patches = patches_at.unwrap_or(0);
+        entry.draw.patches_offset = 16 * entry.draw.patches;
         entry.draw.work = Some(work);
         self.mark(number);
         for old in replaced {
@@ -447,6 +459,7 @@ impl Entry {
             block.bounds[1] += surface.slack() as f32;
         }
         block.hull[0] = self.draw.frusta;
+        block.hull[2] = self.draw.patches;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {
             block.patches = surface.tables().block(self.draw.tables);

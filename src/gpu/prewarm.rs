@@ -99,7 +99,7 @@ impl Renderer {
                     // SAFETY: `cmd` is recording within a pass; all that is bound lives as long as the caller promised.
                     unsafe { raw.cmd_draw(cmd, 3, 1, 0, entry.instances.start) };
                 } else {
-                    self.dispatch(cmd, [0, 0], [0, 0]);
+                    self.dispatch(cmd, [0; 4], [0, 0]);
                     self.wait_for_writes(cmd);
                 }
             }

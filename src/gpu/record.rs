@@ -4,11 +4,16 @@ use super::bins::{Rectangle, Shown};
 use super::frame_slot::FrameSlot;
 use super::hulls;
 use super::output::Output;
+use super::pipelines::PUSHED;
 use super::plan::{Tiles, Work};
-use super::renderer::{Draw, Entry, Renderer};
+use super::renderer::{Entry, Renderer};
 use super::usage::{Usage, buffer_barrier};
+use crate::shader::LIST_LENGTHS;
 use crate::shader::generated::GROUP_PIXELS;
 use ash::vk;
+
+/// What is pushed for a dispatch: `Pushed` of `beams.glsl`.
+type Pushed = [u32; PUSHED as usize];
 
 impl Renderer {
     /// Records the draws of the frame that was prepared for `slot`, within a pass of the output's formats. A slot that is not there
@@ -84,28 +89,21 @@ impl Renderer {
                 Some(Work::Beams(copies)) => {
                     for tiles in copies {
                         after_the_last();
-                        self.bind(
-                            cmd,
-                            slot,
-                            entry,
-                            entry.draw.pipeline,
-                            tiles.block.unwrap_or(number),
-                        );
-                        self.record_beams(cmd, slot, &entry.draw, tiles);
+                        self.record_beams(cmd, slot, entry, number, tiles);
                     }
                 }
                 Some(Work::Rectangle(Rectangle { low, high })) => {
                     after_the_last();
                     self.bind(cmd, slot, entry, entry.draw.pipeline, number);
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
-                    self.dispatch(cmd, [0, low.0 | low.1 << 16], groups);
+                    self.dispatch(cmd, [0, low.0 | low.1 << 16, 0, 0], groups);
                 }
                 Some(Work::Bins(Shown { range, .. })) => {
                     after_the_last();
                     self.bind(cmd, slot, entry, entry.draw.pipeline, number);
                     for start in range.clone().step_by(most.max(1) as usize) {
                         let count = (range.end - start).min(most);
-                        self.dispatch(cmd, [start, 0], [1, count]);
+                        self.dispatch(cmd, [start, 0, 0, 0], [1, count]);
                     }
                 }
                 Some(Work::Nothing | Work::Box | Work::Hull(_)) | None => {}
@@ -120,47 +118,53 @@ impl Renderer {
     }
 
     /// Lists the tiles that a single instance's rays may meet, then traces those.
-    fn record_beams(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, draw: &Draw, tiles: &Tiles) {
-        let (at, Rectangle { low, high }) = (tiles.at, tiles.rectangle);
+    fn record_beams(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        entry: &Entry,
+        number: u32,
+        tiles: &Tiles,
+    ) {
         let raw = &self.device.raw;
-        let words = &slot.lists;
-        let none: [u32; 4] = [0, 1, 1, 0];
-        let pushed = [at, low.0 | low.1 << 16];
+        let (words, draw) = (&slot.lists, &entry.draw);
+        let number = tiles.block.unwrap_or(number);
+        let (at, Rectangle { low, high }) = (tiles.at, tiles.rectangle);
         let groups = |a: u32, b: u32| (b - a + 1).div_ceil(GROUP_PIXELS);
-        let (point, stage) = (
-            vk::PipelineBindPoint::COMPUTE,
-            vk::ShaderStageFlags::COMPUTE,
-        );
-        buffer_barrier(
-            &self.device,
-            cmd,
-            words,
-            Usage::TileRead,
-            Usage::TransferWrite,
-        );
-        // SAFETY: `cmd` is recording, outside a render pass; the list's words lie within the buffer; all that is bound lives as
-        // long as `self`, and both pipelines have one layout.
+        let none: [u32; 4] = [0, 1, 1, 0];
+        let mut pushed = [at, low.0 | low.1 << 16, tiles.rectangle.padded(), 0];
+        let barrier = |from, to| buffer_barrier(&self.device, cmd, words, from, to);
+        barrier(Usage::TileRead, Usage::TransferWrite);
+        // SAFETY: `cmd` is recording, outside a render pass; the lists' words lie within the buffer; all that is bound lives as
+        // long as `self`, and all pipelines have one layout.
         unsafe {
             raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(at), bytemuck::bytes_of(&none));
-            buffer_barrier(
-                &self.device,
-                cmd,
-                words,
-                Usage::TransferWrite,
-                Usage::ComputeWrite,
-            );
-            raw.cmd_bind_pipeline(cmd, point, draw.list);
-            let bytes = bytemuck::bytes_of(&pushed);
-            raw.cmd_push_constants(cmd, self.layout(), stage, 0, bytes);
-            raw.cmd_dispatch(cmd, groups(low.0, high.0), groups(low.1, high.1), 1);
-            buffer_barrier(
-                &self.device,
-                cmd,
-                words,
-                Usage::ComputeWrite,
-                Usage::TileRead,
-            );
-            raw.cmd_bind_pipeline(cmd, point, draw.pipeline);
+            if tiles.listed {
+                let heads = [none; LIST_LENGTHS.len()];
+                let bytes = bytemuck::bytes_of(&heads);
+                raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(tiles.heads()), bytes);
+            }
+            barrier(Usage::TransferWrite, Usage::ComputeWrite);
+            let patches = if tiles.listed {
+                draw.patches_offset
+            } else {
+                draw.tables_offset
+            };
+            self.bind_tables(cmd, slot, entry, draw.list, number, patches);
+            self.dispatch(cmd, pushed, [groups(low.0, high.0), groups(low.1, high.1)]);
+            barrier(Usage::ComputeWrite, Usage::TileRead);
+            if tiles.listed {
+                for ((k, head), pipeline) in
+                    (0u32..).zip((tiles.heads()..).step_by(4)).zip(draw.listed)
+                {
+                    pushed[3] = k;
+                    self.bind_tables(cmd, slot, entry, pipeline, number, patches);
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(head));
+                }
+            }
+            self.bind(cmd, slot, entry, draw.pipeline, number);
+            self.push(cmd, pushed);
             raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
         }
     }
@@ -178,16 +182,19 @@ impl Renderer {
         unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
     }
 
-    /// `pushed` as in `bins.glsl`.
-    pub(super) fn dispatch(&self, cmd: vk::CommandBuffer, pushed: [u32; 2], groups: [u32; 2]) {
-        let raw = &self.device.raw;
+    /// `pushed` as in `beams.glsl`.
+    pub(super) fn dispatch(&self, cmd: vk::CommandBuffer, pushed: Pushed, groups: [u32; 2]) {
+        self.push(cmd, pushed);
         // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as `self`.
-        unsafe {
-            let stage = vk::ShaderStageFlags::COMPUTE;
-            let bytes = bytemuck::bytes_of(&pushed);
-            raw.cmd_push_constants(cmd, self.layout(), stage, 0, bytes);
-            raw.cmd_dispatch(cmd, groups[0], groups[1], 1);
-        }
+        unsafe { self.device.raw.cmd_dispatch(cmd, groups[0], groups[1], 1) };
+    }
+
+    fn push(&self, cmd: vk::CommandBuffer, pushed: Pushed) {
+        let stage = vk::ShaderStageFlags::COMPUTE;
+        let bytes = bytemuck::bytes_of(&pushed);
+        let raw = &self.device.raw;
+        // SAFETY: `cmd` is recording.
+        unsafe { raw.cmd_push_constants(cmd, self.layout(), stage, 0, bytes) };
     }
 
     /// Binds a pipeline, an entry's sets, and the block of this number.
@@ -199,13 +206,26 @@ impl Renderer {
         pipeline: vk::Pipeline,
         block: u32,
     ) {
+        self.bind_tables(cmd, slot, entry, pipeline, block, entry.draw.tables_offset);
+    }
+
+    /// The same, with the tables of the arena that begin at this byte for the entry's own.
+    fn bind_tables(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        entry: &Entry,
+        pipeline: vk::Pipeline,
+        block: u32,
+        tables: u32,
+    ) {
         let point = match self.output {
             Output::Pass(_) => vk::PipelineBindPoint::GRAPHICS,
             Output::Compute(_) => vk::PipelineBindPoint::COMPUTE,
         };
         let textures = entry.prepared.as_ref().map(|p| p.textures.set);
         let sets = [slot.set, textures.unwrap_or_default(), slot.target_set];
-        let offsets = [block * slot.stride, entry.draw.tables_offset];
+        let offsets = [block * slot.stride, tables];
         let raw = &self.device.raw;
         // SAFETY: the sets fit the layout, and all they name lives as long as the caller of `record` promised.
         unsafe {

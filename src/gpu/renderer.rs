@@ -18,7 +18,7 @@ use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::scene::{GrownObject, Lighting, Object, Offset, Placement};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{Kind, Met, Variant};
+use crate::shader::{Kind, LIST_LENGTHS, Met, Variant};
 use ash::vk;
 use range_alloc::RangeAllocator;
 use std::any::Any;
@@ -154,9 +154,14 @@ pub(super) struct Draw {
     pub pipeline: vk::Pipeline,
     /// The pipeline that lists tiles, where the work is of beams.
     pub list: vk::Pipeline,
+    /// The pipelines of tiles whose patches are listed.
+    pub listed: [vk::Pipeline; LIST_LENGTHS.len()],
     /// What the pipeline was compiled for.
     pub key: Option<(Variant, Kind)>,
     pub tables_offset: u32,
+    /// Likewise of the patches that lists are made from, and the vector with which they begin.
+    pub patches_offset: u32,
+    pub patches: u32,
     /// Vectors with which frusta, tables begin.
     pub frusta: u32,
     pub tables: u32,

@@ -1,8 +1,8 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
 use crate::maps::envelope::Envelope;
-use crate::shader::generated::{BEAM_FIRST_NODE, PATCH_ROWS};
-use crate::surface::{Cones, QuadricPatch, Tables};
+use crate::shader::generated::{BEAM_FIRST_NODE, LISTED_PATCHES, PATCH_ROWS};
+use crate::surface::{Cones, GpuPatch, QuadricPatch, Tables};
 
 /// A table that may stand anywhere in a buffer.
 pub(crate) struct GpuTables {
@@ -61,7 +61,6 @@ impl GpuTables {
 
     /// What beams ask of an envelope: nodes, and nothing that a search walks.
     pub fn envelope(envelope: &Envelope) -> Self {
-        #[allow(clippy::cast_possible_truncation)]
         let extents: Vec<[f32; 2]> = envelope
             .radii
             .iter()
@@ -75,6 +74,40 @@ impl GpuTables {
             beam_nodes: 0,
         }
     }
+}
+
+/// Patches of which lists are made, in the layout of `patch_lists.glsl`; nothing if there are too many.
+pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
+    if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
+        return Vec::new();
+    }
+    let unit = patches.iter().fold(1e-6, |m: f64, p| m.max(p.r[1])) / 65535.0;
+    // Ranges are rounded outwards; a beam is wider than a rounding.
+    let levels = |p: &QuadricPatch| {
+        let [low, high] = p.z.map(|z| (z * 32767.0).clamp(0.0, 32767.0));
+        let sense = (p.quadric[0] + 1.0) as u32;
+        low.floor() as u32 | (high.ceil() as u32) << 15 | sense << 30
+    };
+    let radii = |p: &QuadricPatch| {
+        let [low, high] = p.r.map(|r| (r / unit).clamp(0.0, 65535.0));
+        low.floor() as u32 | (high.ceil() as u32) << 16
+    };
+    let record = |(k, p): (usize, &QuadricPatch)| {
+        let GpuPatch { quadric, guard, .. } = GpuPatch::new(p, k);
+        let asked = [
+            levels(p),
+            radii(p),
+            quadric[2].to_bits(),
+            quadric[3].to_bits(),
+        ];
+        [quadric.map(f32::to_bits), guard.map(f32::to_bits), asked]
+    };
+    // A guard that nothing passes.
+    let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
+    std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
+        .chain(patches.iter().enumerate().flat_map(record))
+        .chain(none)
+        .collect()
 }
 
 /// Least and largest `r^2` of nodes as words of two halves, rounded outwards; and their unit.

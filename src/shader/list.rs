@@ -14,6 +14,8 @@ pub enum Entry {
     BinsVertex,
     /// Lists of tiles.
     Beam,
+    /// Lists of tiles, each with a list of patches.
+    List,
     /// Fragments of shape boxes and convex hulls.
     Box,
     /// Fragments of shells.
@@ -22,6 +24,8 @@ pub enum Entry {
     Bins,
     /// Pixels of the compute stage.
     Trace,
+    /// Pixels of tiles whose patches are listed.
+    Listed,
 }
 
 impl Entry {
@@ -34,10 +38,12 @@ impl Entry {
             Self::HullVertex => "hull.vert",
             Self::BinsVertex => "bins.vert",
             Self::Beam => "beam.comp",
+            Self::List => "list.comp",
             Self::Box => "box.frag",
             Self::Hull => "hull.frag",
             Self::Bins => "bins.frag",
             Self::Trace => "trace.comp",
+            Self::Listed => "listed.comp",
         }
     }
 }
@@ -152,6 +158,8 @@ pub enum Dispatch {
     Bins,
     /// Tiles of one instance that beams have listed.
     Beams,
+    /// The same, each with the patches that its rays may meet.
+    Lists,
 }
 
 /// One module.
@@ -271,6 +279,7 @@ impl Module {
             Dispatch::Rectangle => {}
             Dispatch::Bins => all.push(("DISPATCH", "DISPATCH_BINS")),
             Dispatch::Beams => all.push(("DISPATCH", "DISPATCH_BEAMS")),
+            Dispatch::Lists => all.push(("DISPATCH", "DISPATCH_LISTS")),
         }
         all
     }
@@ -283,7 +292,7 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
-        if self.entry == Entry::Beam {
+        if matches!(self.entry, Entry::Beam | Entry::List) {
             return name;
         }
         if self.search != Search::None {
@@ -341,7 +350,7 @@ fn has(search: Search, features: Features, output: Output, dispatch: Dispatch) -
 #[must_use]
 pub fn modules() -> Vec<Module> {
     use Output as O;
-    let mut all = vec![Module::plain(Entry::Beam)];
+    let mut all = vec![Module::plain(Entry::Beam), Module::plain(Entry::List)];
     for output in [O::Color, O::Depth] {
         let vertex = |entry, search| Module {
             search,
@@ -390,6 +399,15 @@ pub fn modules() -> Vec<Module> {
                             ..fragment(Entry::Trace, search)
                         });
                     }
+                }
+                if shaded
+                    && search == Search::Quadric
+                    && has(search, features, output, Dispatch::Beams)
+                {
+                    all.push(Module {
+                        dispatch: Dispatch::Lists,
+                        ..fragment(Entry::Listed, search)
+                    });
                 }
             }
             if shaded || features == Features::Plain {

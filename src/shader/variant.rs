@@ -9,6 +9,10 @@ use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
 
+/// Lengths of lists of patches; longer ones are searched by the tree.
+pub const LIST_LENGTHS: [u32; g::LIST_LENGTHS as usize] =
+    [g::SHORT_LIST, g::MIDDLE_LIST, g::LONG_LIST, g::LONGEST_LIST];
+
 /// What a pipeline draws with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
@@ -24,6 +28,10 @@ pub enum Kind {
     Bins,
     /// The list of tiles that beams choose.
     Beam,
+    /// The same, and the patches that their rays may meet.
+    List,
+    /// Pixels of tiles whose patches are listed.
+    Listed,
 }
 
 /// What a shadow's ray may meet, which the code of the object that it left must do for.
@@ -64,6 +72,8 @@ pub struct Variant {
     pub depth_keep: u32,
     /// 1 where there may be more than two lights.
     pub more_lights: u32,
+    /// Patches that each pixel tests, of those that are listed for its tile; else 0.
+    pub list_length: u32,
 }
 
 impl Variant {
@@ -82,6 +92,7 @@ impl Variant {
         depth_test: 1,
         depth_keep: 1,
         more_lights: 0,
+        list_length: 0,
     };
 
     /// The variant that draws `object` by the search `solver`, which is that of the settings or stands in for it. Tables are taken to
@@ -151,6 +162,7 @@ impl Variant {
             depth_keep: 1,
             // With shadows all are in one loop.
             more_lights: u32::from(lighting.lights.len() > 2 && !casts),
+            list_length: 0,
         };
         match planes {
             Planes::Depth { parallel } => shaded.depth_only(parallel),
@@ -167,6 +179,16 @@ impl Variant {
             depth_keep: u32::from(several),
             ..self
         }
+    }
+
+    /// The same of tiles whose patches are listed, by the length of lists.
+    #[must_use]
+    pub fn listed(self, several: bool) -> [Self; LIST_LENGTHS.len()] {
+        LIST_LENGTHS.map(|list_length| Self {
+            search: Search::Quadric,
+            list_length,
+            ..self.dispatched(Dispatch::Lists, several)
+        })
     }
 
     /// The same where the search's tables fit into a uniform buffer, or do not.
@@ -245,6 +267,11 @@ impl Variant {
                 if wraps && held {
                     let beams = variant.dispatched(Dispatch::Beams, several || copies);
                     all.extend([(beams, Kind::Compute), (Self::BEAM, Kind::Beam)]);
+                    if !on_map(&variant) {
+                        let lists = variant.listed(several || copies);
+                        all.extend(lists.map(|v| (v, Kind::Listed)));
+                        all.push((Self::BEAM, Kind::List));
+                    }
                 }
                 let dispatch = if copies {
                     Dispatch::Bins
@@ -268,7 +295,9 @@ impl Variant {
             }
         }
         if self.shadow == g::SHADOW_OFF {
-            let lit = all.iter().filter(|(_, kind)| *kind != Kind::Beam);
+            let lit = all
+                .iter()
+                .filter(|(_, kind)| !matches!(kind, Kind::Beam | Kind::List));
             let more_lights = 1 - self.more_lights;
             let more: Vec<_> = lit
                 .map(|&(v, kind)| (Self { more_lights, ..v }, kind))
@@ -286,7 +315,7 @@ impl Variant {
             Kind::Hull => Entry::HullVertex,
             Kind::Bins => Entry::BinsVertex,
             Kind::ConvexHull => Entry::ConvexHullVertex,
-            Kind::Compute | Kind::Beam => return None,
+            Kind::Compute | Kind::Beam | Kind::List | Kind::Listed => return None,
         };
         Some(self.module(kind).vertices(entry))
     }
@@ -296,10 +325,12 @@ impl Variant {
     pub const fn module(&self, kind: Kind) -> Module {
         let entry = match kind {
             Kind::Beam => return Module::plain(Entry::Beam),
+            Kind::List => return Module::plain(Entry::List),
             Kind::Box | Kind::ConvexHull => Entry::Box,
             Kind::Hull => Entry::Hull,
             Kind::Bins => Entry::Bins,
             Kind::Compute => Entry::Trace,
+            Kind::Listed => Entry::Listed,
         };
         Module {
             entry,
@@ -312,7 +343,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 9] {
+    pub fn constants(&self) -> [(u32, u32); 10] {
         [
             (g::CELLS_ID, self.cells),
             (g::SHADOW_ID, self.shadow),
@@ -323,6 +354,7 @@ impl Variant {
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
             (g::MORE_LIGHTS_ID, self.more_lights),
+            (g::LIST_LENGTH_ID, self.list_length),
         ]
     }
 }

@@ -161,6 +161,30 @@ fn eyes_anywhere() {
     }
 }
 
+/// From near to far, in compute: tiles whose rays may meet few patches, many, and more than the longest list holds, which the tree is walked
+/// for. Pixels count as steps what they test: a list's length, or what they met of the tree.
+#[test]
+fn lists_of_every_length() {
+    let lengths = [8.0, 16.0, 32.0, 48.0];
+    let mut counted = [0usize; 5];
+    for distance in [1.6, 2.4, 5.0, 8.0] {
+        let scene = scene_of(shapes::discs(), eye(25.0, distance));
+        EXACT.assert_same(&format!("discs from {distance}"), &scene, WRAPPED);
+        let settings = settings(Solver::Hull, DrawStage::Compute);
+        let frame = draw_by("discs", &scene, &settings, WRAPPED);
+        for (steps, _) in frame
+            .steps
+            .iter()
+            .zip(&frame.distance)
+            .filter(|(_, t)| t.is_finite())
+        {
+            let length = lengths.iter().position(|l| l == steps);
+            counted[length.unwrap_or(4)] += 1;
+        }
+    }
+    assert!(counted.iter().all(|&n| n > 0), "{counted:?}");
+}
+
 /// What box and search do as before: a solid cut by its box; turned and flattened ones; copies that pass through one another; coarse
 /// maps, whose texels are as large as their solid's parts; shadows, whose rays begin on the solid.
 #[test]

@@ -22,6 +22,7 @@
 #define DISPATCH_RECTANGLE 0 // compute: one instance, every pixel of its rectangle
 #define DISPATCH_BINS 1      // several instances, listed for each square of the screen
 #define DISPATCH_BEAMS 2     // one instance; tiles, and where their rays begin and end, come from beam.comp
+#define DISPATCH_LISTS 3     // one instance; tiles, and the patches that their rays may meet, come from list.comp
 
 // What build.rs leaves out is 0.
 #ifndef SEARCH
@@ -77,6 +78,9 @@ layout(constant_id = 5) const uint REFINEMENT = 0u; // of the linear search: one
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
+#if DISPATCH == DISPATCH_LISTS
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // of DISPATCH_LISTS: patches that a pixel tests
+#endif
 
 const uint REFINEMENT_NONE = 0u;
 const uint REFINEMENT_HALVINGS = 1u;
@@ -106,6 +110,12 @@ const uint BEAM_FIRST_NODE = 256u; // where that begins
 const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
+const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made: three vectors each, of PATCH_VECTORS
+const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches
+const uint SHORT_LIST = 8u; // the first of them
+const uint MIDDLE_LIST = 16u;
+const uint LONG_LIST = 32u;
+const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a bin

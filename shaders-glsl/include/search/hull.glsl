@@ -7,8 +7,6 @@
 #include "core/hit.glsl"
 #include "search/quadric.glsl"
 
-const float HULL_FLOOR = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
-
 bool trace_hull(uvec2 pixel, out Hit hit)
 {
     take_over();
@@ -23,15 +21,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     float best = 3e38;
     vec4 quadric = vec4(0.0);
     for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-        vec4 guard = hull_guard[k];
-        float root = entering_root(m, hull_quadric[k], 1.0);
-        float z = m.o.z + root * m.v.z;
-        float place = guard.x * z + guard.y * square_at(m, root);
-        bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + HULL_FLOOR && root > -rays.base;
-        if (valid && root < best) {
-            best = root;
-            quadric = hull_quadric[k];
-        }
+        take_nearer(m, hull_quadric[k], hull_guard[k], -rays.base, best, quadric);
     }
     hit.t = best;
     hit.normal = quadric_normal(m, best, quadric);

@@ -24,6 +24,21 @@ float square_at(Meridian m, float s)
     return m.c + s * (2.0 * m.b + s * m.a);
 }
 
+const float FLOOR = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
+
+// The nearest hit so far, or that of a patch, if it is after `least` and nearer.
+void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, inout vec4 quadric)
+{
+    float root = entering_root(m, q, 1.0);
+    float z = m.o.z + root * m.v.z;
+    float place = guard.x * z + guard.y * square_at(m, root);
+    bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + FLOOR && root > least;
+    if (valid && root < best) {
+        best = root;
+        quadric = q;
+    }
+}
+
 // Whether the start of the ray is in the solid: by the number of patches beyond it, away from the axis.
 bool starts_within(Meridian m)
 {

@@ -10,6 +10,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Pushed {
     uint first_bin; // of beams: where their words begin
     uint corner;    // of a single instance's rectangle, in work groups: x | y << 16
+    uint tiles;     // of lists of patches: how many tiles there may be
+    uint list;      // number of the lists' length
 } pushed;
 
 #endif

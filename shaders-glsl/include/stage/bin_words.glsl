@@ -8,7 +8,7 @@
 // A run is a row of bins that fragments are drawn for: the corner of the first, its number, how many, the bits of the nearest depth.
 //
 // Of batches that take beams: the three words of an indirect dispatch, one unused, and four words a tile: its corner, the bits of its first and last
-// t, one unused.
+// t, one unused; or what patch_lists.glsl says.
 #ifndef BIN_WORDS_GLSL
 #define BIN_WORDS_GLSL
 #ifndef BIN_WORDS

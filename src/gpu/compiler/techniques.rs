@@ -49,10 +49,12 @@ impl Technique {
             })
             // What other values of the parameters lead to is another technique's.
             .filter(|(v, kind)| {
-                *kind == Kind::Beam || (v.search, v.more_lights) == (own.search, own.more_lights)
+                matches!(kind, Kind::Beam | Kind::List)
+                    || (v.search, v.more_lights) == (own.search, own.more_lights)
             });
         let large = |(v, kind): &(Variant, Kind)| {
-            (self.name == BARE && *kind != Kind::Hull).then(|| (v.with_tables(false), *kind))
+            (self.name == BARE && !matches!(kind, Kind::Hull | Kind::Listed))
+                .then(|| (v.with_tables(false), *kind))
         };
         all.flat_map(|one| std::iter::once(one).chain(large(&one)))
             .collect()

@@ -1,0 +1,86 @@
+// A beam: the rays of a square of pixels, as the middle one and how far the others are from it.
+#ifndef BEAM_GLSL
+#define BEAM_GLSL
+#include "core/patch_tables.glsl"
+#include "core/pixel_ray.glsl"
+
+struct Beam {
+    vec3 o;
+    vec3 v;
+    float a, b, least, nearest; // r^2 of the middle ray: least + a (t - nearest)^2
+    float inverse_a, per_z, speed;
+    float spread; // how far directions are from the middle one
+    float width;  // how far rays are from it at one t, anywhere in the box
+    float base;
+    float unit; // of the radii of patches
+};
+
+// Depth of the far side of the box.
+float farthest_of(PixelRays rays)
+{
+    vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
+    vec3 forward = rotate(conjugate(solid.single.rotation), frame.forward.xyz) * scale_of(solid.single);
+    return rays.base + dot(abs(forward), half_size);
+}
+
+// Of a square of pixels.
+Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit)
+{
+    Beam beam;
+    float half_side = 0.5 * float(side);
+    vec2 middle = vec2(corner) + half_side - 0.5;
+    beam.v = rays.dir_00 + middle.x * rays.dir_x + middle.y * rays.dir_y;
+    beam.o = rays.origin + rays.base * (middle.x * rays.dir_x + middle.y * rays.dir_y);
+    beam.spread = half_side * max(length(rays.dir_x + rays.dir_y), length(rays.dir_x - rays.dir_y));
+    beam.width = beam.spread * farthest + 1e-4;
+    float square = dot(beam.v, beam.v);
+    beam.speed = sqrt(square);
+    beam.a = max(dot(beam.v.xy, beam.v.xy), 1e-12 * square);
+    beam.inverse_a = 1.0 / beam.a;
+    beam.b = dot(beam.o.xy, beam.v.xy);
+    beam.nearest = -beam.b * beam.inverse_a;
+    beam.least = max(dot(beam.o.xy, beam.o.xy) - beam.a * beam.nearest * beam.nearest, 0.0);
+    beam.per_z = 1.0 / (abs(beam.v.z) > 1e-20 ? beam.v.z : 1e-20);
+    beam.base = rays.base;
+    beam.unit = unit;
+    return beam;
+}
+
+// Whether a ray of the beam may enter the solid through patch `k`, and between which t.
+bool may_meet(Beam beam, uint k, out vec2 span)
+{
+    uvec4 words = own_patch_tables[3u + 3u * k];
+    vec2 z = vec2(words.x & 0x7fffu, words.x >> 15 & 0x7fffu) / 32767.0;
+    vec2 r = vec2(words.y & 0xffffu, words.y >> 16) * beam.unit;
+    float k1 = uintBitsToFloat(words.z);
+    float k2 = uintBitsToFloat(words.w);
+    float sense = float(int(words.x >> 30)) - 1.0;
+    float low = (z.x - beam.width - beam.o.z) * beam.per_z;
+    float high = (z.y + beam.width - beam.o.z) * beam.per_z;
+    float inner = max(r.x - beam.width, 0.0);
+    float outer = r.y + beam.width;
+    float reach = sqrt(max(outer * outer - beam.least, 0.0) * beam.inverse_a);
+    float clear = sqrt(max(inner * inner - beam.least, 0.0) * beam.inverse_a);
+    float slack = 4e-7 * (abs(beam.nearest) + reach);
+    float enter = max(min(low, high), -beam.base);
+    float leave = max(low, high);
+    // Within the ring before and behind the point nearest to the axis.
+    vec2 before = vec2(max(enter, beam.nearest - reach - slack), min(leave, beam.nearest - clear + slack));
+    vec2 behind = vec2(max(enter, beam.nearest + clear - slack), min(leave, beam.nearest + reach + slack));
+
+    // Half of dG/dt along the middle ray is linear in t; where no ray's is negative the patch faces away.
+    float slope = 0.5 * k1 + k2 * beam.o.z;
+    float al = sense * beam.a + k2 * beam.v.z * beam.v.z;
+    float be = sense * beam.b + slope * beam.v.z;
+    float steep = 0.5 * abs(k1) + abs(k2); // bound of |k1 / 2 + k2 z| for z in [0, 1]
+    float turn = max(1.0, abs(k2)) * beam.width;
+    float most = (abs(sense) * r.y + steep + turn) * beam.spread + turn * beam.speed;
+    bool faces_before = min(al * before.x, al * before.y) + be <= most;
+    bool faces_behind = min(al * behind.x, al * behind.y) + be <= most;
+    bool meets_before = before.x <= before.y && faces_before;
+    bool meets_behind = behind.x <= behind.y && faces_behind;
+    span = vec2(meets_before ? before.x : behind.x, meets_behind ? behind.y : before.y);
+    return outer * outer > beam.least && (meets_before || meets_behind);
+}
+
+#endif

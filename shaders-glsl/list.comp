@@ -1,0 +1,74 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Lists, for each tile, the patches that its rays may meet. A work group has a square of tiles: its invocations first share the
+// patches out and keep those that the square's rays may meet; of these each then takes its own tile's.
+#include "stage/patch_lists.glsl"
+#include "stage/beam.glsl"
+
+const uint LIST_WORDS = (LISTED_PATCHES + 31u) / 32u;
+shared uint met[LIST_WORDS]; // a bit a patch
+
+void main()
+{
+    take_frame();
+    take_solid();
+    PixelRays rays = pixel_rays(solid.single);
+    float farthest = farthest_of(rays);
+    uvec2 tile = uvec2(pushed.corner & 0xffffu, pushed.corner >> 16) + gl_GlobalInvocationID.xy;
+    uvec2 square = tile - gl_LocalInvocationID.xy;
+    // Not from the uniform buffer: lavapipe 22 takes uniforms that loops depend on for constants.
+    uvec2 header = patch_tables[solid.hull.z].xy;
+    float unit = uintBitsToFloat(header.y);
+
+    uint self = gl_LocalInvocationIndex;
+    if (self < LIST_WORDS) {
+        met[self] = 0u;
+    }
+    barrier();
+    Beam wide = beam_of(rays, square * GROUP_PIXELS, GROUP_PIXELS * GROUP_PIXELS, farthest, unit);
+    vec2 unused;
+    for (uint k = self; k < header.x; k += GROUP_PIXELS * GROUP_PIXELS) {
+        if (may_meet(wide, k, unused)) {
+            atomicOr(met[k >> 5], 1u << (k & 31u));
+        }
+    }
+    barrier();
+
+    // The first and the last patch, and the widest gap between two that follow.
+    Beam beam = beam_of(rays, tile * GROUP_PIXELS, GROUP_PIXELS, farthest, unit);
+    uint first = 0u;
+    uint last = 0u;
+    uvec2 gap = uvec2(0u);
+    bool any_met = false;
+    vec2 range = vec2(1e30, -1e30);
+    for (uint w = 0u; w << 5 < header.x; ++w) {
+        uint rest = met[w];
+        while (rest != 0u) {
+            uint k = w << 5 | uint(findLSB(rest));
+            rest &= rest - 1u;
+            vec2 span;
+            bool meets = may_meet(beam, k, span);
+            range = meets ? vec2(min(range.x, span.x), max(range.y, span.y)) : range;
+            gap = meets && any_met && k - last > gap.y - gap.x ? uvec2(last, k) : gap;
+            first = meets && !any_met ? k : first;
+            last = meets ? k : last;
+            any_met = any_met || meets;
+        }
+    }
+    bool split = gap.y - gap.x > 1u;
+    uvec2 lengths = split ? uvec2(gap.x + 1u - first, last + 1u - gap.y) : uvec2(last + 1u - first, 0u);
+    uint listed = lengths.x + lengths.y;
+    bool shows = any_met && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
+    if (shows && listed > LONGEST_LIST) {
+        uint at = pushed.first_bin + 4u + 4u * atomicAdd(bin_words[pushed.first_bin], 1u);
+        bin_words[at] = tile.x | tile.y << 16;
+        bin_words[at + 1u] = floatBitsToUint(max(range.x, -rays.base));
+        bin_words[at + 2u] = floatBitsToUint(range.y);
+    }
+    if (shows && listed <= LONGEST_LIST) {
+        uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
+        uint at = list_tiles(n) + 2u * atomicAdd(bin_words[list_heads() + 4u * n], 1u);
+        bin_words[at] = tile.x | tile.y << 16;
+        bin_words[at + 1u] = first | lengths.x << 9 | gap.y << 15 | lengths.y << 24;
+    }
+}
