@@ -171,7 +171,8 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View) -> f64 
             scale * stretch / (nearest.max(view.near) * pixel)
         }
     };
-    let most = object.placements().iter().map(of).fold(0.0, f64::max);
+    let copies = object.placements().par_iter().with_min_len(4096);
+    let most = copies.map(of).reduce(|| 0.0, f64::max);
     most / height
 }
 

@@ -11,10 +11,11 @@ use super::target::Target;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
-use crate::scene::{CameraFrame, Growth, Object, Scene};
+use crate::scene::{CameraFrame, Growth, Object, Placement, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -170,7 +171,10 @@ impl Offscreen {
         let mut change = || {
             self.renderer.set_lighting(&lighting)?;
             for (&id, object) in self.ids.iter().zip(objects) {
-                self.renderer.set(id, object.clone())?;
+                // Copies are many, and seldom move.
+                if !self.renderer.object(id)?.equals(object) {
+                    self.renderer.set(id, object.clone())?;
+                }
             }
             for object in &objects[kept..] {
                 self.ids.push(self.renderer.add(object.clone())?);
@@ -371,15 +375,19 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
         let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
         let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
         let middle_z = 0.5 * (1.0 + growth.high - growth.low);
-        for p in object.placements() {
+        let range = |p: &Placement| {
             let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, middle_z));
             let depth = (middle - camera.eye).dot(camera.forward);
             let reach = (p.rotation.conjugate() * camera.forward * p.scale)
                 .abs()
                 .dot(half);
-            low = low.min(depth - reach);
-            high = high.max(depth + reach);
-        }
+            [depth - reach, depth + reach]
+        };
+        let all = object.placements().par_iter().with_min_len(4096).map(range);
+        let none = || [f64::INFINITY, 0.0];
+        let [nearest, farthest] = all.reduce(none, |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        low = low.min(nearest);
+        high = high.max(farthest);
     }
     if high <= 0.0 {
         return [1.0, 2.0];

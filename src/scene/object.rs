@@ -89,6 +89,13 @@ impl Object {
             && one(&a.displacement_map, &b.displacement_map)
     }
 
+    /// Whether all values are equal, what is shared being one.
+    pub(crate) fn equals(&self, other: &Self) -> bool {
+        self.placement == other.placement
+            && self.same_look(other)
+            && self.instances == other.instances
+    }
+
     /// Where every copy stands: the instances, or the one placement.
     #[must_use]
     pub fn placements(&self) -> &[Placement] {
