@@ -61,13 +61,20 @@ impl Commands {
     /// Records by `record`; [`Commands::submit_and_wait`] runs it, as often as wanted.
     pub fn record(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
         let raw = &self.device.raw;
-        // SAFETY: the last submission was waited for, so the buffer is free to record.
+        // SAFETY: the last submission was waited for, so the buffer is free to record; what failed half way is taken back, and its pool
+        // allows that.
         unsafe {
             raw.begin_command_buffer(self.buffer, &vk::CommandBufferBeginInfo::default())
                 .call("vkBeginCommandBuffer")?;
-            record(self.buffer)?;
-            raw.end_command_buffer(self.buffer)
-                .call("vkEndCommandBuffer")
+            let recorded = record(self.buffer).and_then(|()| {
+                raw.end_command_buffer(self.buffer)
+                    .call("vkEndCommandBuffer")
+            });
+            if recorded.is_err() {
+                raw.reset_command_buffer(self.buffer, vk::CommandBufferResetFlags::empty())
+                    .call("vkResetCommandBuffer")?;
+            }
+            recorded
         }
     }
 

@@ -32,7 +32,7 @@ pub struct CompiledShader {
     /// What is drawn or dispatched: `hull`, `box`, `rectangle`, ... In compute, one object alone or
     /// one of several, whose depths are compared.
     pub path: &'static str,
-    /// The driver's name of the shader, in lower case, e.g. `fragment shader`.
+    /// The driver's name of the shader: `vertex`, `fragment`, `compute`.
     pub shader: String,
     /// The SPIR-V module that it was compiled from.
     pub module: String,
@@ -158,7 +158,7 @@ impl Compiler {
                 stage,
                 solver,
                 path: path(variant, kind),
-                shader: text(&executable.name).to_lowercase(),
+                shader: stage_name(&text(&executable.name)),
                 module: listed(&module).unwrap_or(module).name(),
                 subgroup_size: executable.subgroup_size,
                 statistics: said.iter().filter_map(statistic).collect(),
@@ -169,6 +169,12 @@ impl Compiler {
 }
 
 const EXECUTABLES: &str = "vkGetPipelineExecutablePropertiesKHR";
+
+/// Versions of a driver say `Fragment Shader` or `fragment`.
+fn stage_name(name: &str) -> String {
+    let name = name.to_lowercase();
+    name.strip_suffix(" shader").unwrap_or(&name).to_owned()
+}
 
 fn path(variant: Variant, kind: Kind) -> &'static str {
     let several = variant.depth_test != 0;

@@ -1,16 +1,18 @@
 //! What about a scene is allowed but looks unintended.
 
-use super::{CameraFrame, Scene};
+use super::{CameraFrame, Scene, Shadow};
 use glam::DVec3;
 
 /// A field of view below this many degrees looks like one in radians.
 const NARROW: f64 = 2.0;
 /// A light brighter than this looks like a colour from 0 to 255.
 const BRIGHT: f32 = 16.0;
+/// More solids than this cast shadows slowly: 10,000 on 80 x 60 pixels took a minute and a half.
+const CROWD: usize = 1000;
 
 impl Scene {
     /// What looks unintended in a picture of `width x height` pixels, a sentence each, with its key: a field of view that looks like
-    /// radians, colours above 1, what the profiles' pictures [warn of](crate::profile::Profile::warnings), nothing in view.
+    /// radians, colours above 1, what the profiles' pictures [warn of](crate::profile::Profile::warnings), shadows of a crowd, nothing in view.
     #[must_use]
     pub fn warnings(&self, width: u32, height: u32) -> Vec<String> {
         let mut found = Vec::new();
@@ -39,6 +41,12 @@ impl Scene {
         for (i, object) in self.objects.iter().enumerate() {
             let of_profile = object.profile.warnings.iter();
             found.extend(of_profile.map(|w| format!("object.{i}.profile: {w}")));
+        }
+        let copies: usize = self.objects.iter().map(|o| o.placements().len()).sum();
+        if self.shadow != Shadow::Off && copies > CROWD {
+            found.push(format!(
+                "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
+            ));
         }
         if !self.is_in_view(width, height) {
             found.push(
@@ -75,8 +83,9 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::CROWD;
     use crate::profile::Profile;
-    use crate::scene::{Camera, Object, Scene};
+    use crate::scene::{Camera, Object, Scene, Shadow};
     use glam::DVec3;
     use std::sync::Arc;
 
@@ -110,6 +119,21 @@ mod tests {
         warns("background", |s| s.background = [255.0, 0.0, 0.0, 1.0]);
         warns("object.0.color: has 200", |s| s.objects[0].color[1] = 200.0);
         warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
+    }
+
+    #[test]
+    fn shadows_of_a_crowd_are_slow() {
+        let crowd = |s: &mut Scene| {
+            let object = &mut s.objects[0];
+            object.instances = vec![object.placement; CROWD + 1];
+        };
+        warns("shadow: 1001 solids", |s| {
+            crowd(s);
+            s.shadow = Shadow::Soft;
+        });
+        let mut unlit = scene();
+        crowd(&mut unlit);
+        assert!(unlit.warnings(80, 60).is_empty());
     }
 
     #[test]

@@ -134,7 +134,7 @@ fn no_shader_spills_vectors_or_takes_scratch_memory() {
 #[test]
 fn what_a_scene_does_not_use_costs_nothing() {
     let pixels = |row: &&Row| {
-        row["shader"] != "vertex shader"
+        row["shader"] != "vertex"
             && !["depth alone", "every plane"].contains(&row["technique"].as_str())
     };
     let place = |row: &Row| ["stage", "solver", "path"].map(|c| row[c].clone());

@@ -212,6 +212,11 @@ impl Truth {
         if !hit && !drawn || truth == z {
             return false;
         }
+        // The drawn point is that near to a true one. Where cells or boxes cut a solid, the clearance alone does not tell it: on
+        // the other side of the cut it is that of another solid.
+        if hit && drawn && (z - truth).abs() <= 0.1 * self.texel {
+            return false;
+        }
         let width = self.frame.width as usize;
         let ray = Ray {
             origin: self.eye,

@@ -226,6 +226,27 @@ fn shot(case: usize, picture: &Picture, caption: String) -> Result<Shot> {
     })
 }
 
+/// A case at a glance: the reference, the search that fails most and where it does, side by side. The default where no other fails.
+fn strip(sheet: &Sheet) -> Picture {
+    let [drawn, truth, heat] = &sheet.own;
+    let all = match &sheet.other {
+        Some((_, [drawn, heat])) => [truth, drawn, heat],
+        None => [truth, drawn, heat],
+    };
+    let mut strip = Picture {
+        width: all.iter().map(|p| p.width).sum(),
+        height: truth.height,
+        rgba: Vec::new(),
+    };
+    for y in 0..truth.height as usize {
+        for picture in all {
+            let row = picture.rgba.chunks_exact(picture.width as usize).nth(y);
+            strip.rgba.extend_from_slice(row.unwrap_or_default());
+        }
+    }
+    strip
+}
+
 fn shots(sheet: &Sheet) -> Result<Vec<Shot>> {
     let [drawn, truth, heat] = &sheet.own;
     let default = Solver::DEFAULT.name();
@@ -281,9 +302,11 @@ pub fn write(
             page.text(&format!("At {}:", number(sheet.value, 6)));
             let all = shots(sheet)?;
             page.shots(&all.iter().collect::<Vec<_>>());
+            let glance = folder.join("pictures").join(format!("{}.png", case.name));
+            crate::report::folder::make(&folder.join("pictures"))?;
+            crate::report::folder::write_bytes(&glance, &png(&strip(sheet))?)?;
             for one in &all {
                 let name = one.caption.replace([',', ':', ' '], "-").replace("--", "-");
-                crate::report::folder::make(&folder.join("pictures"))?;
                 let file = format!("{}-{name}.png", case.name);
                 crate::report::folder::write_bytes(
                     &folder.join("pictures").join(file),
