@@ -48,6 +48,8 @@ pub(crate) struct Shared {
     pub queue: Option<Mutex<vk::Queue>>,
     pub family: u32,
     pub limits: vk::PhysicalDeviceLimits,
+    /// Invocations that run together.
+    pub subgroup_size: u32,
     pub timestamp_bits: u32,
     pub anisotropy: Option<f32>,
     pub report: DeviceReport,
@@ -302,6 +304,7 @@ impl Shared {
             queue: queue.map(Mutex::new),
             family: chosen.family,
             limits,
+            subgroup_size: chosen.subgroup_size,
             timestamp_bits: chosen.timestamp_bits,
             anisotropy: chosen
                 .anisotropic()

@@ -172,6 +172,7 @@ impl Renderer {
         let planner = Planner {
             view,
             limits: &self.device.limits,
+            subgroup_size: self.device.subgroup_size,
             least_pixels: self.settings.proxy_min_pixels,
         };
         let entries = &self.entries;
@@ -198,6 +199,7 @@ impl Renderer {
         let planner = Planner {
             view,
             limits: &self.device.limits,
+            subgroup_size: self.device.subgroup_size,
             least_pixels: self.settings.proxy_min_pixels,
         };
         let mut lists = Lists::default();

@@ -38,6 +38,7 @@ pub(crate) struct Candidate {
     pub timestamp_bits: u32,
     pub features: vk::PhysicalDeviceFeatures,
     pub properties: vk::PhysicalDeviceProperties,
+    pub subgroup_size: u32,
     pub extensions: Vec<vk::ExtensionProperties>,
 }
 
@@ -216,9 +217,10 @@ pub(crate) fn inspect(
                 .unwrap_or_default(),
         )
     };
+    let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
     let mut missing = Vec::new();
     if basic.api_version >= API_VERSION {
-        extended = extended.push_next(&mut driver);
+        extended = extended.push_next(&mut driver).push_next(&mut subgroup);
         // SAFETY: the device is of version 1.2, whose core has the query.
         unsafe { raw.get_physical_device_properties2(physical, &mut extended) };
     } else {
@@ -291,6 +293,7 @@ pub(crate) fn inspect(
         timestamp_bits,
         features,
         properties: basic,
+        subgroup_size: subgroup.subgroup_size,
         extensions,
     }
 }
