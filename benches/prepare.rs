@@ -1,5 +1,5 @@
-//! What preparing a frame costs the CPU: 1,000 objects that stand still, that move, whose offsets change, under one camera that
-//! stands or moves. `cargo bench --bench prepare`.
+//! What preparing a frame costs the CPU: 1,000 objects that stand still, that move, whose offsets
+//! change, under one camera that stands or moves. `cargo bench --bench prepare`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 use ash::vk;

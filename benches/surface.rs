@@ -1,4 +1,5 @@
-//! What it costs to make contour, patches and tables anew, and to walk them: `cargo bench --bench patches`.
+//! What it costs to make contour, patches and tables anew, and to walk them: `cargo bench --bench
+//! patches`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/common/shapes.rs"]
@@ -78,7 +79,8 @@ fn prepare(bencher: Bencher, name: &str) {
     bencher.bench(|| ContourSource::new(black_box(&outline)).unwrap());
 }
 
-/// What a slider moves: all of it. The goal is a millisecond for 64 to 128 rows; shaders draw with 256.
+/// What a slider moves: all of it. The goal is a millisecond for 64 to 128 rows; shaders draw with
+/// 256.
 #[divan::bench(args = cases(), consts = [64, 128, ROWS])]
 fn rebuild<const N: u32>(bencher: Bencher, (name, technique): (&str, &str)) {
     let source = ContourSource::new(&outline(name)).unwrap();

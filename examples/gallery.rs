@@ -1,7 +1,9 @@
-//! Draws the pictures of docs/gallery.md into docs/pictures/: `scripts/gallery`, or `cargo run --release --example gallery [NAME ...]`.
+//! Draws the pictures of docs/gallery.md into docs/pictures/: `scripts/gallery`, or `cargo run
+//! --release --example gallery [NAME ...]`.
 //!
-//! Each scene of assets/gallery/ becomes one picture. Pixels are the mean light of 3 x 3 rays. The line `# size WIDTHxHEIGHT`, with which
-//! a scene begins, says how large; each line `# beside KEY=VALUE` adds the same scene once more to the right, with that key set.
+//! Each scene of assets/gallery/ becomes one picture. Pixels are the mean light of 3 x 3 rays. The
+//! line `# size WIDTHxHEIGHT`, with which a scene begins, says how large; each line `# beside
+//! KEY=VALUE` adds the same scene once more to the right, with that key set.
 #![allow(clippy::expect_used)]
 
 use image::{GrayImage, Luma, RgbaImage, imageops};
@@ -106,7 +108,8 @@ fn shrink(large: &Frame, small: &mut Frame, left: u32) {
     }
 }
 
-/// A shape map's channels and a displacement map's, each beside the whole, as the program's `bake` writes them.
+/// A shape map's channels and a displacement map's, each beside the whole, as the program's `bake`
+/// writes them.
 fn maps(root: &Path, target: &Path) -> Result<()> {
     const SIDE: u32 = 184;
     use revmap::maps::{BakeOptions, DisplacementMap, MapFormat, MapSource, ShapeMap};

@@ -1,4 +1,5 @@
-//! Prints how far shape maps of a disc are off, by source and resolution: `cargo run --release --example map_accuracy`
+//! Prints how far shape maps of a disc are off, by source and resolution: `cargo run --release
+//! --example map_accuracy`
 
 use revmap::maps::accuracy::{Disc, MapErrors};
 use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap};

@@ -1,7 +1,9 @@
-//! Draws the shape maps of profiles as pictures to look at: `cargo run --release --example map_pictures -- OUT FILE...`
+//! Draws the shape maps of profiles as pictures to look at: `cargo run --release --example
+//! map_pictures -- OUT FILE...`
 //!
-//! Of each source: solid is dark, what is empty light, with a line every 16 texels of distance and the zero line in red. Of the best
-//! source also the papers' texture, and the length along the contour as grey.
+//! Of each source: solid is dark, what is empty light, with a line every 16 texels of distance and
+//! the zero line in red. Of the best source also the papers' texture, and the length along the
+//! contour as grey.
 
 use revmap::maps::{ArcLength, BakeOptions, MapSource, Projection, ShapeMap};
 use revmap::profile::{Profile, ProfileAxis};

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// One invocation a tile of GROUP_PIXELS^2: lists the tiles whose rays may meet the solid, and between which t. The list's length becomes the
-// number of work groups of the dispatch that follows.
+// One invocation a tile of GROUP_PIXELS^2: lists the tiles whose rays may meet the solid, and between which t. The
+// list's length becomes the number of work groups of the dispatch that follows.
 #include "stage/beams.glsl"
 #include "core/patch_tables.glsl"
 
@@ -29,7 +29,8 @@ void main()
     float begin = 1e30;
     float end = -1e30;
     for (uint k = 0u; k < BEAM_NODES; ++k) {
-        // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
+        // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes
+        // over it.
         float most = node_extent(patch_tables[solid.hull.y + (k >> 2)][k & 3u]).y;
         float radius = sqrt(max(most, 0.0)) + beam;
         float low = (float(k) / float(BEAM_NODES) - beam - o.z) * per_z;

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Lists, for each tile, the patches that its rays may meet. A work group has a square of tiles: its invocations first share the
-// patches out and keep those that the square's rays may meet; of these each then takes its own tile's.
+// Lists, for each tile, the patches that its rays may meet. A work group has a square of tiles: its invocations first
+// share the patches out and keep those that the square's rays may meet; of these each then takes its own tile's.
 #include "stage/patch_lists.glsl"
 #include "stage/beam.glsl"
 

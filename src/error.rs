@@ -1,4 +1,5 @@
-//! What can go wrong, and where: every failure names its stage, and the file and the key it came from.
+//! What can go wrong, and where: every failure names its stage, and the file and the key it came
+//! from.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -49,8 +50,8 @@ pub struct Error {
 }
 
 impl Error {
-    /// A failure of `stage`; `message` says what is wrong and what would be right. What other libraries say in several lines is
-    /// told in one.
+    /// A failure of `stage`; `message` says what is wrong and what would be right. What other
+    /// libraries say in several lines is told in one.
     pub fn new(stage: Stage, message: impl Into<String>) -> Self {
         let mut message: String = message.into();
         if message.contains('\n') {

@@ -1,4 +1,5 @@
-//! What a build without any feature answers to files that it cannot read, and that it has its shaders all the same.
+//! What a build without any feature answers to files that it cannot read, and that it has its
+//! shaders all the same.
 #![allow(clippy::unwrap_used)]
 
 use crate::maps::ShapeMap;

@@ -1,8 +1,9 @@
 //! Revolution mapping on Vulkan: solids of revolution drawn from one 2D map, without a mesh.
 //!
-//! A flat **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`. Nothing is tessellated: a **shape box** is
-//! rasterised (or its rectangle of the screen handed to a compute shader), and in each pixel the ray `o + t v` is followed in the
-//! half-plane, where it is the branch of a hyperbola
+//! A flat **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`.
+//! Nothing is tessellated: a **shape box** is rasterised (or its rectangle of the screen handed to
+//! a compute shader), and in each pixel the ray `o + t v` is followed in the half-plane, where it
+//! is the branch of a hyperbola
 //!
 //! ```text
 //! r(t) = sqrt(a t^2 + 2 b t + c),   z(t) = o_z + t v_z,     a = v_x^2 + v_y^2,  b = o_x v_x + o_y v_y,  c = o_x^2 + o_y^2,
@@ -14,31 +15,39 @@
 //! F(r, z) = d(r, z) - w(z) = 0,     w = e + b min(1 - z, c),
 //! ```
 //!
-//! with `d` the signed distance to the profile's boundary and `e`, `b`, `c` the extension, bevel and chamfer. All three may change
-//! from frame to frame; no map is computed again.
+//! with `d` the signed distance to the profile's boundary and `e`, `b`, `c` the extension, bevel
+//! and chamfer. All three may change from frame to frame; no map is computed again.
 //!
 //! The method, its extensions and its choice of projections are those of
 //!
-//! * A. Halli, A. Saaidi, K. Satori, H. Tairi: *Extrusion and revolution mapping*. ACM Transactions on Graphics 29 (5), 2010, 1-14.
+//! * A. Halli, A. Saaidi, K. Satori, H. Tairi: *Extrusion and revolution mapping*. ACM Transactions
+//!   on Graphics 29 (5), 2010, 1-14.
 //!   [doi:10.1145/1857907.1857908](https://doi.org/10.1145/1857907.1857908)
-//! * A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori: *Revolution mapping with bump mapping support*. Graphical Models 100,
-//!   2018, 1-11. [doi:10.1016/j.gmod.2018.09.001](https://doi.org/10.1016/j.gmod.2018.09.001)
-//! * A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori, H. El Moubtahij: *The extensions of revolution-bump mapping*. Journal of
-//!   Graphic Engineering and Design 13 (1), 2022, 21-31. [doi:10.24867/JGED-2022-1-021](https://doi.org/10.24867/JGED-2022-1-021)
-//! * A. Ragragui, A. Ouazzani Chahdi, A. Arbah, H. El Moubtahij, A. Halli, K. Satori: *Revolution-bump mapping with texture function
-//!   adjustment according to the geometry of the revolved object*. Journal of Graphic Engineering and Design, 2025.
+//! * A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori: *Revolution mapping with bump mapping
+//!   support*. Graphical Models 100, 2018, 1-11.
+//!   [doi:10.1016/j.gmod.2018.09.001](https://doi.org/10.1016/j.gmod.2018.09.001)
+//! * A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori, H. El Moubtahij: *The extensions of
+//!   revolution-bump mapping*. Journal of Graphic Engineering and Design 13 (1), 2022, 21-31.
+//!   [doi:10.24867/JGED-2022-1-021](https://doi.org/10.24867/JGED-2022-1-021)
+//! * A. Ragragui, A. Ouazzani Chahdi, A. Arbah, H. El Moubtahij, A. Halli, K. Satori:
+//!   *Revolution-bump mapping with texture function adjustment according to the geometry of the
+//!   revolved object*. Journal of Graphic Engineering and Design, 2025.
 //!
-//! The last two are "the papers" of this documentation. Their search is [`Solver::Circle`](settings::Solver::Circle); with 20 steps over
-//! the distances of a binary image in 8 bits it is the **RBM baseline** (revolution-bump mapping) of reports.
+//! The last two are "the papers" of this documentation. Their search is
+//! [`Solver::Circle`](settings::Solver::Circle); with 20 steps over the distances of a binary image
+//! in 8 bits it is the **RBM baseline** (revolution-bump mapping) of reports.
 //!
 //! # What holds
 //!
-//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are equal to the last bit, but for those of
-//!   the default, which each stage finds in its own way.
-//! * The default search, [`Solver::Hull`](settings::Solver::Hull), meets the exact boundary: what it draws differs from the
-//!   reference in double precision (the crate `revmap-reference`) by hundredths of a texel of a map of 512 rows.
-//! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand anywhere.
-//! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is left half written.
+//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are
+//!   equal to the last bit, but for those of the default, which each stage finds in its own way.
+//! * The default search, [`Solver::Hull`](settings::Solver::Hull), meets the exact boundary: what
+//!   it draws differs from the reference in double precision (the crate `revmap-reference`) by
+//!   hundredths of a texel of a map of 512 rows.
+//! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand
+//!   anywhere.
+//! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is
+//!   left half written.
 //!
 //! # A picture
 //!
@@ -59,8 +68,9 @@
 //!
 //! # In an engine
 //!
-//! A [`gpu::Renderer`] holds objects and records them into any command buffer: within a host's render pass or dynamic rendering,
-//! with the host's matrices and depth buffer, with several frames in flight.
+//! A [`gpu::Renderer`] holds objects and records them into any command buffer: within a host's
+//! render pass or dynamic rendering, with the host's matrices and depth buffer, with several frames
+//! in flight.
 //!
 //! ```no_run
 //! # use revmap::{gpu::*, scene::*, settings::*};
@@ -119,7 +129,8 @@
 //! | `exr` | | frames and maps as EXR files |
 //! | `shaderc` | | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
 //!
-//! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in `revmap-lab`; the program is `revmap-cli`.
+//! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in
+//! `revmap-lab`; the program is `revmap-cli`.
 
 pub mod error;
 pub mod frame;

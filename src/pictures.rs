@@ -78,7 +78,8 @@ fn rgba<T: Copy, U>(values: &[T], channels: usize, opaque: T, to: impl Fn(T) -> 
         .collect()
 }
 
-/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks for.
+/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; `kinds` is what the remedy asks
+/// for.
 ///
 /// The size is read and checked before anything is decoded.
 pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<Pixels> {
@@ -119,8 +120,8 @@ pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<Pixels> 
 #[cfg(feature = "exr")]
 const EXR_MOST: u64 = 1 << 14;
 
-/// Refuses EXR layers that are larger than any picture, or than a file of `length` bytes can hold: by the header, before the reader
-/// allocates them.
+/// Refuses EXR layers that are larger than any picture, or than a file of `length` bytes can hold:
+/// by the header, before the reader allocates them.
 #[cfg(feature = "exr")]
 pub(crate) fn check_exr(
     meta: &exr::meta::MetaData,
@@ -149,7 +150,8 @@ pub(crate) struct Png<'a>(png::Reader<Cursor<&'a [u8]>>);
 
 impl<'a> Png<'a> {
     pub fn open(bytes: &'a [u8]) -> std::result::Result<Self, png::DecodingError> {
-        // Callers check the size; the decoder's own guess at a limit would refuse large pictures of 16 bits.
+        // Callers check the size; the decoder's own guess at a limit would refuse large pictures of
+        // 16 bits.
         let limits = png::Limits { bytes: usize::MAX };
         let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
         decoder.set_transformations(png::Transformations::EXPAND);

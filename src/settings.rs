@@ -29,18 +29,21 @@ pub enum Solver {
     Secant,
     /// The papers' circle tracing: steps of the distance read from the map.
     Circle,
-    /// Ours for parameters that change from frame to frame: steps that are safe to a texel under every offset, a last secant, no fixed count
-    /// of steps; on the map alone.
+    /// Ours for parameters that change from frame to frame: steps that are safe to a texel under
+    /// every offset, a last secant, no fixed count of steps; on the map alone.
     Live,
-    /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r <= f(z)`); others are an error.
+    /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z
+    /// (`r <= f(z)`); others are an error.
     Cone,
-    /// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings back: as the papers list it. It passes
-    /// surfaces.
+    /// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings
+    /// back: as the papers list it. It passes surfaces.
     Relaxed,
-    /// Ours for speed: the boundary as patches of quadrics under a tree of rows, solved exactly; rebuilt when parameters change.
+    /// Ours for speed: the boundary as patches of quadrics under a tree of rows, solved exactly;
+    /// rebuilt when parameters change.
     Quadric,
-    /// The same patches, found by what the stage does best: in the fragment stage the rasteriser finds them with proxy hulls, in compute
-    /// tiles of pixels are first asked as a whole. Objects for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
+    /// The same patches, found by what the stage does best: in the fragment stage the rasteriser
+    /// finds them with proxy hulls, in compute tiles of pixels are first asked as a whole. Objects
+    /// for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
     Hull,
 }
 
@@ -92,21 +95,23 @@ impl Solver {
         )
     }
 
-    /// Whether it searches patches, of which there are levels for every [`Tolerance`]. The others ignore it.
+    /// Whether it searches patches, of which there are levels for every [`Tolerance`]. The others
+    /// ignore it.
     #[must_use]
     pub const fn follows_tolerance(self) -> bool {
         matches!(self, Self::Quadric | Self::Hull)
     }
 
-    /// Whether a ray may use up the bound on steps before its search has come to an end. Equal steps reach the end whatever their
-    /// number, and patches are solved without any.
+    /// Whether a ray may use up the bound on steps before its search has come to an end. Equal
+    /// steps reach the end whatever their number, and patches are solved without any.
     #[must_use]
     pub const fn may_run_out(self) -> bool {
         matches!(self, Self::Circle | Self::Relaxed | Self::Live)
     }
 
-    /// The bound on steps where none is given: 64 equal ones, or relaxed cones; the papers' 20, and 25 before the halvings of a bevel; for `live` more
-    /// than any ray of a sound map takes. `cone`, `quadric` and `hull` have none to bound.
+    /// The bound on steps where none is given: 64 equal ones, or relaxed cones; the papers' 20, and
+    /// 25 before the halvings of a bevel; for `live` more than any ray of a sound map takes.
+    /// `cone`, `quadric` and `hull` have none to bound.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         match self {
@@ -152,7 +157,8 @@ impl FromStr for Solver {
 pub enum Planes {
     /// Colour alone, 8-bit sRGB.
     Color,
-    /// Depth alone, for shadow maps; `parallel`: along parallel rays, as a directional light sees. In a host's pass only.
+    /// Depth alone, for shadow maps; `parallel`: along parallel rays, as a directional light sees.
+    /// In a host's pass only.
     Depth {
         /// Whether views are parallel.
         parallel: bool,
@@ -182,16 +188,19 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
-    /// Pixels that an object's box covers for each frustum of its hull that may be seen, from which on [`Solver::Hull`] draws the hull, and
-    /// [`Solver::Live`] the convex one: triangles cost the same however small they are. `u32::MAX`: boxes alone, and no beams either.
+    /// Pixels that an object's box covers for each frustum of its hull that may be seen, from which
+    /// on [`Solver::Hull`] draws the hull, and [`Solver::Live`] the convex one: triangles cost the
+    /// same however small they are. `u32::MAX`: boxes alone, and no beams either.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,
-    /// Whether copies are left out that others are proven to hide. No pixel differs; false is there to show it.
+    /// Whether copies are left out that others are proven to hide. No pixel differs; false is there
+    /// to show it.
     pub occlusion_culling: bool,
 }
 
-/// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage and planes are its output's.
+/// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage
+/// and planes are its output's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchSettings {
     /// The search.

@@ -1,4 +1,5 @@
-//! The name by which programs find the shared library; `scripts/install-c` makes files of that name.
+//! The name by which programs find the shared library; `scripts/install-c` makes files of that
+//! name.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -1,9 +1,10 @@
 //! Completes a distribution's shaderc.
 //!
-//! Debian 12 and Ubuntu package `libshaderc_combined.a` without the glslang and SPIRV-Tools objects it was
-//! meant to combine, and a shared library with undefined symbols. Their packages `glslang-dev` and
-//! `spirv-tools` hold the missing archives. Link order matters between them; a whole archive is asked for
-//! because shaderc, which needs their symbols, stands earlier on the linker's command line.
+//! Debian 12 and Ubuntu package `libshaderc_combined.a` without the glslang and SPIRV-Tools objects
+//! it was meant to combine, and a shared library with undefined symbols. Their packages
+//! `glslang-dev` and `spirv-tools` hold the missing archives. Link order matters between them; a
+//! whole archive is asked for because shaderc, which needs their symbols, stands earlier on the
+//! linker's command line.
 
 use std::path::{Path, PathBuf};
 
@@ -20,8 +21,9 @@ const ARCHIVES: [&str; 9] = [
     "SPIRV-Tools",
 ];
 
-/// An archive smaller than this may be a stub: glslang 14 and later keep the names of libraries that they have merged
-/// into one, each with a single function that does nothing and has the same name in all.
+/// An archive smaller than this may be a stub: glslang 14 and later keep the names of libraries
+/// that they have merged into one, each with a single function that does nothing and has the same
+/// name in all.
 const STUB_BYTES: u64 = 4096;
 
 fn main() {

@@ -1,7 +1,8 @@
-//! A small engine that draws revolved solids beside its own meshes: its device, its pass, its depth buffer, its matrices, two frames
-//! in flight, parameters that move in every frame.
+//! A small engine that draws revolved solids beside its own meshes: its device, its pass, its depth
+//! buffer, its matrices, two frames in flight, parameters that move in every frame.
 //!
-//! `cargo run --release --example engine -- out` writes the first frame, one in the middle and the last as PNG files into `out/`.
+//! `cargo run --release --example engine -- out` writes the first frame, one in the middle and the
+//! last as PNG files into `out/`.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
 mod host;
@@ -133,7 +134,8 @@ fn main() -> Fallible<()> {
             projection * view,
             towards_light,
             &meshes,
-            // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its pass.
+            // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of
+            // its pass.
             |cmd, slot| Ok(unsafe { renderer_cell.borrow_mut().prepare(cmd, slot, &seen) }?),
             // SAFETY: the slot was prepared, and the pass is of the output's formats.
             |cmd, slot| unsafe { renderer_cell.borrow().record(cmd, slot) },

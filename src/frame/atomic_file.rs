@@ -8,12 +8,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Writes a file by `fill`, which gets a buffered writer that can seek.
 ///
-/// The bytes go into a new file in the target's folder, reach the disk, and only then take the target's name: a reader never
-/// sees half a file, and a failure leaves what was there before. A symbolic link is followed. A target that is neither a
-/// file nor missing (a device, a pipe) is written directly, since nothing can take its place.
+/// The bytes go into a new file in the target's folder, reach the disk, and only then take the
+/// target's name: a reader never sees half a file, and a failure leaves what was there before. A
+/// symbolic link is followed. A target that is neither a file nor missing (a device, a pipe) is
+/// written directly, since nothing can take its place.
 ///
 /// # Errors
-/// Of `stage`, naming the file: what `fill` reports, or that the file cannot be made or written (folder missing, no permission, full disk).
+/// Of `stage`, naming the file: what `fill` reports, or that the file cannot be made or written
+/// (folder missing, no permission, full disk).
 pub fn write_atomically(
     stage: Stage,
     target: &Path,

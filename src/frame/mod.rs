@@ -11,7 +11,8 @@ pub use png::{Picture, srgb_from_linear, write_png};
 
 use crate::error::{Error, Result, Stage};
 
-/// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this is 9 GB.
+/// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
+/// is 9 GB.
 pub const MAX_PIXELS: u64 = 1 << 27;
 
 /// All planes of a drawn picture; each holds `width * height` values, row 0 on top.
@@ -37,12 +38,14 @@ pub struct Frame {
     pub uv: Vec<[f32; 2]>,
     /// Look-ups that the search made.
     pub steps: Vec<f32>,
-    /// Number of pixels in which a search that has a bound on its steps used them up: what is seen there is a guess. Files do not
-    /// hold it; 0 where it was not counted ([`Planes::Color`](crate::settings::Planes::Color), the reference).
+    /// Number of pixels in which a search that has a bound on its steps used them up: what is seen
+    /// there is a guess. Files do not hold it; 0 where it was not counted
+    /// ([`Planes::Color`](crate::settings::Planes::Color), the reference).
     pub exhausted: usize,
 }
 
-/// Where two frames first differ, in reading order of the pixels and, within a pixel, in the order of the channels.
+/// Where two frames first differ, in reading order of the pixels and, within a pixel, in the order
+/// of the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// The frames are not of one size: `(width, height)` of each.
@@ -90,7 +93,8 @@ impl Frame {
     /// A frame in which nothing is hit.
     ///
     /// # Errors
-    /// [`Stage::Frame`] when a side is 0, when there are more than [`MAX_PIXELS`], or when memory for them is refused.
+    /// [`Stage::Frame`] when a side is 0, when there are more than [`MAX_PIXELS`], or when memory
+    /// for them is refused.
     pub fn new(width: u32, height: u32, background: [f32; 4]) -> Result<Self> {
         let pixels = pixel_count(width, height)?;
         Ok(Self {
@@ -119,7 +123,8 @@ impl Frame {
         self.distance.get(index).is_some_and(|z| z.is_finite())
     }
 
-    /// All channels of pixel number `index` (`y * width + x`), in the order of [`CHANNELS`]; zeros past the end.
+    /// All channels of pixel number `index` (`y * width + x`), in the order of [`CHANNELS`]; zeros
+    /// past the end.
     #[must_use]
     pub fn pixel(&self, index: usize) -> [f32; 17] {
         if index >= self.pixels() {
@@ -184,7 +189,8 @@ impl Frame {
         self.steps[index] = steps;
     }
 
-    /// Where `self` and `other` first differ in a bit, or `None` when they are equal in all channels.
+    /// Where `self` and `other` first differ in a bit, or `None` when they are equal in all
+    /// channels.
     ///
     /// Bits are compared, so `0.0` and `-0.0` differ and a NaN equals itself.
     #[must_use]

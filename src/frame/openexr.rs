@@ -49,7 +49,8 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
 /// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
 ///
 /// # Errors
-/// [`Stage::Frame`], naming the file, when it cannot be read, is too large, or lacks a channel (then naming that).
+/// [`Stage::Frame`], naming the file, when it cannot be read, is too large, or lacks a channel
+/// (then naming that).
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
     let path = path.as_ref();
     read_checked(path).map_err(|e| e.in_file(path))

@@ -6,7 +6,8 @@ use crate::error::{Error, Result, Stage};
 use std::io::Write;
 use std::path::Path;
 
-/// Writes the colour of a frame as 8-bit sRGB RGBA. Values are clamped to `[0, 1]`; alpha is linear.
+/// Writes the colour of a frame as 8-bit sRGB RGBA. Values are clamped to `[0, 1]`; alpha is
+/// linear.
 ///
 /// # Errors
 /// [`Stage::Frame`], naming the file, when it cannot be written.
@@ -90,7 +91,8 @@ fn linear_from_srgb(code: f64) -> f64 {
     }
 }
 
-/// Exact rounding to the nearest code without a power per value: the linear values at which one code turns into the next.
+/// Exact rounding to the nearest code without a power per value: the linear values at which one
+/// code turns into the next.
 struct Codes([f64; 255]);
 
 impl Codes {

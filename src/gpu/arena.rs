@@ -1,4 +1,5 @@
-//! One storage buffer for the tables and frusta of all surfaces: each stands at one place for as long as it lives.
+//! One storage buffer for the tables and frusta of all surfaces: each stands at one place for as
+//! long as it lives.
 
 use super::buffers::storage;
 use super::device::Shared;
@@ -67,8 +68,9 @@ impl TableArena {
         })
     }
 
-    /// Gives a part of a surface its place and writes it there, if it has none. Returns the vector with which it begins, and the
-    /// buffer that was too small, which frames in flight may still read.
+    /// Gives a part of a surface its place and writes it there, if it has none. Returns the vector
+    /// with which it begins, and the buffer that was too small, which frames in flight may still
+    /// read.
     pub fn place(
         &mut self,
         surface: &Arc<OffsetSurface>,
@@ -149,7 +151,8 @@ fn full() -> Error {
     )
 }
 
-/// With a window's length behind the last unit: the window on the last tables is as long as on all others.
+/// With a window's length behind the last unit: the window on the last tables is as long as on all
+/// others.
 fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
     let vectors = u64::from(unit) * u64::from(units) + u64::from(PATCH_VECTORS);
     storage(device, "tables", 16 * vectors)

@@ -17,8 +17,8 @@ pub(crate) fn largest_width(offset: &Offset) -> f64 {
     offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
 }
 
-/// How far from the axis the map must reach: to the solid's own radius where that stays within the box's inscribed
-/// cylinder about a centred axis, else to what of the solid the box can hold.
+/// How far from the axis the map must reach: to the solid's own radius where that stays within the
+/// box's inscribed cylinder about a centred axis, else to what of the solid the box can hold.
 pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
     let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
@@ -56,7 +56,8 @@ fn farthest_corner(object: &Object) -> f64 {
     (x + object.profile.radius).hypot(y + object.profile.radius)
 }
 
-/// The batch's block; `instances` are its range, `shadow_map` its map's index among those that shadows read.
+/// The batch's block; `instances` are its range, `shadow_map` its map's index among those that
+/// shadows read.
 pub(crate) fn solid_block(
     object: &Object,
     map: &MapFacts,
@@ -146,7 +147,8 @@ pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) 
     block.texturing[3] = (2.0 * (radius * growth.height() - growth.side)) as f32;
 }
 
-/// A copy of `object` as a view sees it. World coordinates are subtracted here, in double precision.
+/// A copy of `object` as a view sees it. World coordinates are subtracted here, in double
+/// precision.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn instance_block(object: &Object, placement: &Placement, view: &View) -> InstanceBlock {
     let rotation = placement.rotation.normalize();

@@ -21,7 +21,8 @@ pub struct FrameBlock {
     pub clip_x: [f32; 4],
     /// Clip y; w: depth of the near plane.
     pub clip_y: [f32; 4],
-    /// Ray through the centre of pixel (0, 0), forward component 1; w: a pixel's size at unit depth.
+    /// Ray through the centre of pixel (0, 0), forward component 1; w: a pixel's size at unit
+    /// depth.
     pub dir_00: [f32; 4],
     /// Its change from column to column; w: the constant of depth = w + `dir_y.w` / t.
     pub dir_x: [f32; 4],
@@ -33,7 +34,8 @@ pub struct FrameBlock {
     pub ambient: [f32; 4],
     /// Width, height, number of lights, unused.
     pub size: [u32; 4],
-    /// Clip x is x of a pixel's corner times the first, plus the second; clip y likewise by the others.
+    /// Clip x is x of a pixel's corner times the first, plus the second; clip y likewise by the
+    /// others.
     pub pixels: [f32; 4],
     /// The first `size[2]` count.
     pub lights: [LightBlock; MAX_LIGHTS as usize],
@@ -49,7 +51,8 @@ pub struct InstanceBlock {
     pub rotation: [f32; 4],
     /// Scale along y and z; depth of the box's middle; its clip x.
     pub scale_depth: [f32; 4],
-    /// Of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's middle.
+    /// Of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's
+    /// middle.
     pub origin: [f32; 4],
 }
 
@@ -67,7 +70,8 @@ pub struct SolidBlock {
     pub axis: [f32; 4],
     /// Linear RGB.
     pub albedo: [f32; 4],
-    /// Strength and shininess; height of the box, and of its part below `z = 0`, in units of the profile's box.
+    /// Strength and shininess; height of the box, and of its part below `z = 0`, in units of the
+    /// profile's box.
     pub specular: [f32; 4],
     /// Repetitions along xi and eta; bump depth `a`; `2 R` of the profile's box in its units.
     pub texturing: [f32; 4],
@@ -75,8 +79,8 @@ pub struct SolidBlock {
     pub cells: [u32; 4],
     /// First, number, index of the shape map among those of shadows.
     pub instances: [u32; 4],
-    /// Of the quadric search's tables: where they begin, first record, first range, bits of the unit of `r^2`; of the cone search's: where
-    /// they begin, rows, bits of the largest radius.
+    /// Of the quadric search's tables: where they begin, first record, first range, bits of the
+    /// unit of `r^2`; of the cone search's: where they begin, rows, bits of the largest radius.
     pub patches: [u32; 4],
     /// Of the hull: its first frustum; the first vector of the nodes that beams are asked against.
     pub hull: [u32; 4],

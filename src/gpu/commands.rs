@@ -61,8 +61,8 @@ impl Commands {
     /// Records by `record`; [`Commands::submit_and_wait`] runs it, as often as wanted.
     pub fn record(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
         let raw = &self.device.raw;
-        // SAFETY: the last submission was waited for, so the buffer is free to record; what failed half way is taken back, and its pool
-        // allows that.
+        // SAFETY: the last submission was waited for, so the buffer is free to record; what failed
+        // half way is taken back, and its pool allows that.
         unsafe {
             raw.begin_command_buffer(self.buffer, &vk::CommandBufferBeginInfo::default())
                 .call("vkBeginCommandBuffer")?;

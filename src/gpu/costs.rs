@@ -9,14 +9,16 @@ use super::view::View;
 
 /// How an object was drawn in the last prepared frame, and what it takes on the device.
 ///
-/// Objects that show one profile under one offset share tables and maps: each counts them as its own.
+/// Objects that show one profile under one offset share tables and maps: each counts them as its
+/// own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectCost {
     /// How it was drawn.
     pub path: DrawPath,
     /// Level of its patches; 0 is the exact one. None of searches that have no patches.
     pub level: Option<u32>,
-    /// The most that the patches of this level move its silhouette, pixels; none where it reaches the eye.
+    /// The most that the patches of this level move its silhouette, pixels; none where it reaches
+    /// the eye.
     pub error_pixels: Option<f64>,
     /// Number of patches.
     pub patches: usize,
@@ -39,7 +41,8 @@ impl Renderer {
         self.ordered().map(cost).collect()
     }
 
-    /// Bytes of all buffers and images of the renderer on the device; a target and the pipelines are not among them.
+    /// Bytes of all buffers and images of the renderer on the device; a target and the pipelines
+    /// are not among them.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let slots: u64 = self.frames.iter().map(|slot| slot.bytes()).sum();

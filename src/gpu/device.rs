@@ -59,9 +59,9 @@ pub(crate) struct Shared {
 }
 
 impl Device {
-    /// Opens the device chosen by `choice` (index, or part of a name), else by the environment variable `REVMAP_DEVICE`, else
-    /// the first by kind: discrete, integrated, virtual, CPU. With `REVMAP_VALIDATION=1` in the environment the validation
-    /// layers watch every call.
+    /// Opens the device chosen by `choice` (index, or part of a name), else by the environment
+    /// variable `REVMAP_DEVICE`, else the first by kind: discrete, integrated, virtual, CPU. With
+    /// `REVMAP_VALIDATION=1` in the environment the validation layers watch every call.
     ///
     /// # Errors
     /// [`Stage::Device`] when there is none, or it lacks what is needed.
@@ -69,7 +69,8 @@ impl Device {
         Self::on(Instance::from_environment()?, choice)
     }
 
-    /// As [`Device::open`], with the validation layers on whatever the environment says: core checks and synchronization.
+    /// As [`Device::open`], with the validation layers on whatever the environment says: core
+    /// checks and synchronization.
     ///
     /// # Errors
     /// As `open`, and [`Stage::Device`] when the layer is not installed.
@@ -83,12 +84,14 @@ impl Device {
     /// [`Stage::Device`] when the device lacks what is needed; [`Stage::Draw`] of Vulkan.
     ///
     /// # Safety
-    /// This call makes layouts, and an allocator and a pipeline cache where the host gives none. They are destroyed with the
-    /// last of: this value, its clones, and all that was made with them.
+    /// This call makes layouts, and an allocator and a pipeline cache where the host gives none.
+    /// They are destroyed with the last of: this value, its clones, and all that was made with
+    /// them.
     ///
     /// The caller must see to it that
     /// * all handles belong together and stay valid until then;
-    /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or later;
+    /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or
+    ///   later;
     /// * `host.queue`, where there is one, is used by nobody else while an `Offscreen` submits.
     pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
         let mut candidate = inspect(host.instance, 0, host.physical);
@@ -107,8 +110,9 @@ impl Device {
         })
     }
 
-    /// Bounds the bytes of all buffers and images on the device, those of pictures included; `None`: as many as it has. What was taken
-    /// before counts; what would exceed the budget fails, and nothing else does.
+    /// Bounds the bytes of all buffers and images on the device, those of pictures included;
+    /// `None`: as many as it has. What was taken before counts; what would exceed the budget fails,
+    /// and nothing else does.
     pub fn set_memory_budget(&self, bytes: Option<u64>) {
         self.shared.budget.set(bytes);
     }
@@ -153,8 +157,8 @@ impl Device {
         self.shared.pipelines().map_or(0, Pipelines::compiled)
     }
 
-    /// Adds what [`Device::pipeline_cache_data`] gave in another process: pipelines compiled there are found instead of compiled.
-    /// Data of another driver is passed over.
+    /// Adds what [`Device::pipeline_cache_data`] gave in another process: pipelines compiled there
+    /// are found instead of compiled. Data of another driver is passed over.
     ///
     /// # Errors
     /// [`Stage::Draw`] of Vulkan.
@@ -185,7 +189,8 @@ impl Device {
         self.shared.allocator.clone().ok_or_else(closed)
     }
 
-    /// Takes the validation layers' messages since the last call; always empty without the layers, and of a borrowed device.
+    /// Takes the validation layers' messages since the last call; always empty without the layers,
+    /// and of a borrowed device.
     #[must_use]
     pub fn take_messages(&self) -> Vec<String> {
         self.messages()
@@ -332,7 +337,8 @@ impl Shared {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: everything made on the device held this alive and is gone by now; a host has waited for its own work.
+        // SAFETY: everything made on the device held this alive and is gone by now; a host has
+        // waited for its own work.
         unsafe {
             if self.instance.is_some() {
                 let _ = self.raw.device_wait_idle();

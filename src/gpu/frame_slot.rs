@@ -1,4 +1,5 @@
-//! What one frame in flight reads and no other: its blocks, instances and lists, and the sets that bind them.
+//! What one frame in flight reads and no other: its blocks, instances and lists, and the sets that
+//! bind them.
 
 use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock, SolidBlock};
 use super::buffers::{storage, uniform, write, write_slice};
@@ -89,7 +90,8 @@ impl FrameSlot {
         Ok(slot)
     }
 
-    /// Sees to it that so many blocks and instances fit. Whoever calls this knows that no frame reads the buffers.
+    /// Sees to it that so many blocks and instances fit. Whoever calls this knows that no frame
+    /// reads the buffers.
     pub fn fit(&mut self, blocks: u32, instances: u32) -> Result<()> {
         let blocks = u64::from(blocks) * u64::from(self.stride);
         let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
@@ -145,7 +147,8 @@ impl FrameSlot {
         write(&mut self.shadows, 0, &all)
     }
 
-    /// Takes over bins and their lists, with room behind them up to `all` words: lists that the device makes.
+    /// Takes over bins and their lists, with room behind them up to `all` words: lists that the
+    /// device makes.
     pub fn write_lists(&mut self, words: &[u32], all: usize) -> Result<()> {
         let bytes = 4 * all.max(words.len()) as u64;
         if self.lists.bytes < bytes {
@@ -223,7 +226,8 @@ fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
 
 impl Drop for FrameSlot {
     fn drop(&mut self) {
-        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null pool may be destroyed.
+        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null pool may
+        // be destroyed.
         unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
     }
 }

@@ -14,14 +14,16 @@ use std::ops::Range;
 /// By how much an eye has to stand clear of a shell, and a shell of the near plane, object units.
 const CLEARANCE: f64 = 1e-3;
 
-/// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics and guards.
+/// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics
+/// and guards.
 pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * PATCHES_PER_CELL);
 
 /// A hull, and its frusta in the layout of `hull.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
-    /// Whether two parts of the boundary meet in a circle, where no wall between their shells can stand.
+    /// Whether two parts of the boundary meet in a circle, where no wall between their shells can
+    /// stand.
     pub touches: bool,
 }
 
@@ -75,8 +77,8 @@ fn touches(patches: &[QuadricPatch]) -> bool {
     })
 }
 
-/// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and holds no replicas. Rays that are searched
-/// as in the box may be cut by it.
+/// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and
+/// holds no replicas. Rays that are searched as in the box may be cut by it.
 pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     if !surface.is_boundary() {
         return object.repeat == [1; 3];
@@ -88,8 +90,8 @@ pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
 }
 
-/// Whether rays of all of an object's copies can be taken between the ends that beams give: they begin outside the solid and no face
-/// of the box shows.
+/// Whether rays of all of an object's copies can be taken between the ends that beams give: they
+/// begin outside the solid and no face of the box shows.
 pub(crate) fn takes_beams(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
     let [r_max, z_min, z_max] = surface.extent();
     let apart = |copy: &Placement| {
@@ -99,7 +101,8 @@ pub(crate) fn takes_beams(object: &Object, surface: &OffsetSurface, view: &View)
     is_whole(object, surface) && (!surface.is_boundary() || object.placements().iter().all(apart))
 }
 
-/// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there, `(p - eye) . forward` is its depth.
+/// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,
+/// `(p - eye) . forward` is its depth.
 fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
     let [x, y] = axis_offset(object);
     let turn = placement.rotation.conjugate();
@@ -107,8 +110,9 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
-/// Largest ratio of the sides of a box, in the world, that hulls are drawn in. Their rays start in the plane through the box's middle, in a flat
-/// box up to so many heights from where they meet the solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
+/// Largest ratio of the sides of a box, in the world, that hulls are drawn in. Their rays start in
+/// the plane through the box's middle, in a flat box up to so many heights from where they meet the
+/// solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
 const LOPSIDED: f64 = 32.0;
 
 /// Whether a copy's box is too flat or too slender for its hull.
@@ -121,8 +125,9 @@ fn is_lopsided(object: &Object, copy: &Placement) -> bool {
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
 const SAMPLES: usize = 64;
 
-/// The hull of `object`, around its boundary or the envelope of its map, if it shows from this camera all that the box would (the eye is outside all shells,
-/// the near plane cuts none) and the object is large enough on the screen for its triangles to pay.
+/// The hull of `object`, around its boundary or the envelope of its map, if it shows from this
+/// camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
+/// object is large enough on the screen for its triangles to pay.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
@@ -205,7 +210,8 @@ pub(crate) fn corners(frusta: u32) -> u32 {
     6 * HULL_SIDES * frusta
 }
 
-/// Corners that every frustum's triangles join, in the numbering of `hull.vert`: `2 n` vertices a frustum, the rings one after the other.
+/// Corners that every frustum's triangles join, in the numbering of `hull.vert`: `2 n` vertices a
+/// frustum, the rings one after the other.
 pub(crate) fn indices(frusta: usize) -> Vec<u32> {
     let n = HULL_SIDES;
     (0..u32::try_from(frusta).unwrap_or(0))

@@ -22,7 +22,8 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
-    /// Loads Vulkan. With `validate` the layers' core and synchronization checks are on, and their absence is an error.
+    /// Loads Vulkan. With `validate` the layers' core and synchronization checks are on, and their
+    /// absence is an error.
     pub fn new(validate: bool) -> Result<Self> {
         // SAFETY: the loader is the system's; nothing else of this process replaces it meanwhile.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {

@@ -1,6 +1,6 @@
-//! Levels of a surface: the same boundary fitted at tolerances that double from level to level. The finest, number 0, is the
-//! exact one. Which of them an object is drawn by follows from the view alone, so that a picture does not depend on the frames
-//! before it.
+//! Levels of a surface: the same boundary fitted at tolerances that double from level to level. The
+//! finest, number 0, is the exact one. Which of them an object is drawn by follows from the view
+//! alone, so that a picture does not depend on the frames before it.
 
 use super::offset_surface::{OffsetSurface, Part};
 use super::renderer::{Entry, Prepared, Renderer};
@@ -16,11 +16,13 @@ use std::sync::Arc;
 /// The coarsest level: patches within a 36th of the height.
 pub(crate) const COARSEST: u8 = 12;
 
-/// Pixels of tolerance for one pixel that the surface moves. A ray that meets the surface at an angle with the cosine `c` is off
-/// by `1 / c` times what the surface moves. Over eight solids the 99.9th percentile of that is 7 to 15.
+/// Pixels of tolerance for one pixel that the surface moves. A ray that meets the surface at an
+/// angle with the cosine `c` is off by `1 / c` times what the surface moves. Over eight solids the
+/// 99.9th percentile of that is 7 to 15.
 pub(crate) const GRAZING: f64 = 16.0;
 
-/// Largest distance between the patches of a level and the exact contour, in units of the profile's height.
+/// Largest distance between the patches of a level and the exact contour, in units of the profile's
+/// height.
 pub(crate) fn bound(level: u8) -> f64 {
     FitOptions::default().tolerance * f64::from(1u32 << level)
 }
@@ -31,8 +33,8 @@ impl Renderer {
         self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
     }
 
-    /// Gives each of these entries the level that the view allows. With shadows all take the finest that one of them needs: a
-    /// shadow may fall nearer to the eye than what casts it.
+    /// Gives each of these entries the level that the view allows. With shadows all take the finest
+    /// that one of them needs: a shadow may fall nearer to the eye than what casts it.
     pub(super) fn choose_levels(&mut self, view: &View, numbers: &[u32]) -> Result<()> {
         if !self.has_levels() {
             return Ok(());
@@ -116,7 +118,8 @@ impl Prepared {
         surface.filter(|_| self.solver.follows_tolerance())
     }
 
-    /// Draws by another level from now on; those before are kept, as the view may come back to them.
+    /// Draws by another level from now on; those before are kept, as the view may come back to
+    /// them.
     fn take_level(&mut self, level: u8, surface: Arc<OffsetSurface>) {
         self.level = level;
         if self.wrapped.is_some() {
@@ -130,7 +133,8 @@ impl Prepared {
     }
 }
 
-/// The coarsest level that `tolerance` allows an object of which `pixels` are a unit's size where it is nearest.
+/// The coarsest level that `tolerance` allows an object of which `pixels` are a unit's size where
+/// it is nearest.
 pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
     let allowed = tolerance.pixels() / GRAZING;
     (1..=COARSEST)
@@ -139,8 +143,8 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
         .unwrap_or(0)
 }
 
-/// The most pixels that one unit of an object can take, over the copies that lie in front of the eye; infinite where one may
-/// reach the eye. `height`: of the box in units of the profile's.
+/// The most pixels that one unit of an object can take, over the copies that lie in front of the
+/// eye; infinite where one may reach the eye. `height`: of the box in units of the profile's.
 pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View) -> f64 {
     // Off the middle of the picture a length across the ray covers more pixels.
     let stretch = if view.parallel {

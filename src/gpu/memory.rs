@@ -42,7 +42,8 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator asks for it.
+    /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator asks for
+    /// it.
     pub fn mapped(&mut self) -> Result<&mut [u8]> {
         let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
         self.allocation
@@ -197,7 +198,8 @@ fn allocated(
 
 /// Hands an allocation to its owner before anything else can fail: whoever owns it frees it.
 fn bound(owner: &mut Option<Allocation>, allocation: Allocation) -> (vk::DeviceMemory, u64) {
-    // SAFETY: the handle is used to bind the resource that owns the allocation, and for nothing else.
+    // SAFETY: the handle is used to bind the resource that owns the allocation, and for nothing
+    // else.
     let place = (unsafe { allocation.memory() }, allocation.offset());
     *owner = Some(allocation);
     place

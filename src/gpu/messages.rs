@@ -53,7 +53,8 @@ impl Messages {
 
 impl Drop for Messages {
     fn drop(&mut self) {
-        // SAFETY: the owner drops this before the instance, and no other thread makes Vulkan calls then.
+        // SAFETY: the owner drops this before the instance, and no other thread makes Vulkan calls
+        // then.
         unsafe {
             self.functions
                 .destroy_debug_utils_messenger(self.messenger, None);

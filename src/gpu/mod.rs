@@ -1,7 +1,8 @@
 //! Drawing on a Vulkan device. The only module with `unsafe`.
 //!
-//! A [`Device`] is opened, or borrowed from a host. On it a [`Renderer`] holds objects and records them into any command buffer;
-//! [`Offscreen`] does so for a whole scene, submits, waits and reads the frame back.
+//! A [`Device`] is opened, or borrowed from a host. On it a [`Renderer`] holds objects and records
+//! them into any command buffer; [`Offscreen`] does so for a whole scene, submits, waits and reads
+//! the frame back.
 #![allow(unsafe_code)]
 
 mod arena;

@@ -43,7 +43,8 @@ pub struct Offscreen {
     settings: Settings,
     /// Whether a guest draws the scene's objects.
     guests_only: bool,
-    /// From the first thing that an update changes to the last: what one that failed in between has left must not be drawn.
+    /// From the first thing that an update changes to the last: what one that failed in between has
+    /// left must not be drawn.
     stale: bool,
     /// Null in compute.
     pass: vk::RenderPass,
@@ -55,28 +56,31 @@ pub trait Guest {
     /// Records what its draws need beforehand, such as copies into its buffers. It is not timed.
     ///
     /// # Safety
-    /// `cmd` is recording, outside of a pass. What is recorded must stay valid until the frame was drawn.
+    /// `cmd` is recording, outside of a pass. What is recorded must stay valid until the frame was
+    /// drawn.
     unsafe fn prepare(&self, _cmd: vk::CommandBuffer) {}
 
     /// Records its draws.
     ///
     /// # Safety
-    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], viewport and scissor set. What is recorded must stay
-    /// valid until the frame was drawn.
+    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], viewport and scissor set.
+    /// What is recorded must stay valid until the frame was drawn.
     unsafe fn record(&self, cmd: vk::CommandBuffer);
 }
 
 impl Offscreen {
-    /// Bakes and uploads the scene's maps and makes a target of the settings' size. Pipelines are compiled by the first frame.
+    /// Bakes and uploads the scene's maps and makes a target of the settings' size. Pipelines are
+    /// compiled by the first frame.
     ///
     /// # Errors
-    /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan ([`Stage::Draw`]).
+    /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan
+    /// ([`Stage::Draw`]).
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         Self::open(device, scene, settings, false)
     }
 
-    /// As [`Offscreen::new`], but without the scene's objects, now and in every update: a guest draws them. Camera, background,
-    /// lights and the range of depths are the scene's.
+    /// As [`Offscreen::new`], but without the scene's objects, now and in every update: a guest
+    /// draws them. Camera, background, lights and the range of depths are the scene's.
     ///
     /// # Errors
     /// As `new`.
@@ -135,11 +139,12 @@ impl Offscreen {
         Ok(offscreen)
     }
 
-    /// Takes over a scene: camera, lights, objects, more or fewer of them. Cost follows what differs from the scene before.
+    /// Takes over a scene: camera, lights, objects, more or fewer of them. Cost follows what
+    /// differs from the scene before.
     ///
     /// # Errors
-    /// Of the scene's values ([`Stage::Scene`]), of profiles and maps: what was drawn before can be drawn on. Of Vulkan
-    /// ([`Stage::Draw`]): nothing is drawn before an update succeeds.
+    /// Of the scene's values ([`Stage::Scene`]), of profiles and maps: what was drawn before can be
+    /// drawn on. Of Vulkan ([`Stage::Draw`]): nothing is drawn before an update succeeds.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         scene.check()?;
         let view = view_of(scene, (self.settings.width, self.settings.height))?;
@@ -198,8 +203,9 @@ impl Offscreen {
         result
     }
 
-    /// Compiles every pipeline that updates can come to need, as long as no object's technique changes ([`Renderer::prewarm`]), and
-    /// has the driver run each on nothing, as some compile only then ([`Renderer::record_prewarm`]).
+    /// Compiles every pipeline that updates can come to need, as long as no object's technique
+    /// changes ([`Renderer::prewarm`]), and has the driver run each on nothing, as some compile
+    /// only then ([`Renderer::record_prewarm`]).
     ///
     /// # Errors
     /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
@@ -235,8 +241,8 @@ impl Offscreen {
         self.draw_with(None)
     }
 
-    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. In compute there is no pass, and the guest
-    /// is not asked.
+    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. In
+    /// compute there is no pass, and the guest is not asked.
     ///
     /// # Errors
     /// As [`Offscreen::draw`].
@@ -257,13 +263,15 @@ impl Offscreen {
             // SAFETY: `cmd` is recording, and the frame before was waited for.
             unsafe { renderer.prepare(cmd, 0, view)? };
             if let (Some(guest), false) = (guest, compute) {
-                // SAFETY: `cmd` is recording outside of a pass, and is waited for before this returns.
+                // SAFETY: `cmd` is recording outside of a pass, and is waited for before this
+                // returns.
                 unsafe { guest.prepare(cmd) };
             }
             clock.start(cmd);
             target.clear(cmd, *background, renderer.compares_depths());
-            // SAFETY: the frame was prepared above; the target was cleared, the pass is of the output's formats and sets viewport and
-            // scissor; the commands are waited for before anything is dropped.
+            // SAFETY: the frame was prepared above; the target was cleared, the pass is of the
+            // output's formats and sets viewport and scissor; the commands are waited for before
+            // anything is dropped.
             unsafe {
                 if compute {
                     renderer.record_compute(cmd, 0);
@@ -290,7 +298,8 @@ impl Offscreen {
         })
     }
 
-    /// The pass that a guest's pipelines are made for; null in compute. It lives as long as the device.
+    /// The pass that a guest's pipelines are made for; null in compute. It lives as long as the
+    /// device.
     #[must_use]
     pub fn render_pass(&self) -> vk::RenderPass {
         self.pass

@@ -1,4 +1,5 @@
-//! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what is made of them for the GPU.
+//! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what
+//! is made of them for the GPU.
 
 use super::arena::Slot;
 use super::bins::Inner;
@@ -24,7 +25,8 @@ pub(crate) struct OffsetSurface {
 
 /// What a surface is made from.
 pub(crate) enum Recipe {
-    /// Quadrics that follow the outline under an offset, of this level, within this distance in object units.
+    /// Quadrics that follow the outline under an offset, of this level, within this distance in
+    /// object units.
     Patches(Arc<Outlined>, Offset, u8, f64),
     /// A row of so many empty cones around it, relaxed or not.
     Cones(Arc<Outlined>, Offset, u32, bool),
@@ -118,7 +120,8 @@ impl OffsetSurface {
         }
     }
 
-    /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays are searched as in the box.
+    /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays
+    /// are searched as in the box.
     pub fn is_boundary(&self) -> bool {
         !matches!(self.recipe, Recipe::Envelope(_))
     }
@@ -131,7 +134,8 @@ impl OffsetSurface {
         }
     }
 
-    /// By how much it may bulge beyond the contour: as much of a coarse level, nothing of the exact one.
+    /// By how much it may bulge beyond the contour: as much of a coarse level, nothing of the exact
+    /// one.
     pub fn slack(&self) -> f64 {
         match self.recipe {
             Recipe::Patches(_, _, level, tolerance) if level > 0 => tolerance,

@@ -17,7 +17,8 @@ pub enum Output {
 pub struct PassFormats {
     /// How the host begins it.
     pub begun: PassKind,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the number.
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
+    /// number.
     pub samples: u32,
     /// Which end of the depth range is near.
     pub depth: DepthOrder,

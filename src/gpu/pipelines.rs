@@ -1,4 +1,5 @@
-//! Pipelines, one per variant, use and output: shared by all renderers of a device, compiled once and kept.
+//! Pipelines, one per variant, use and output: shared by all renderers of a device, compiled once
+//! and kept.
 
 use super::call::Call;
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
@@ -124,7 +125,8 @@ impl Pipelines {
         self
     }
 
-    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of [`Pipelines::owner`].
+    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of
+    /// [`Pipelines::owner`].
     pub fn get(
         &self,
         variant: Variant,
@@ -154,8 +156,8 @@ impl Pipelines {
         Ok(made)
     }
 
-    /// Who owns pipelines for an output: nobody, or a new owner. A host may destroy its render pass once its renderer is gone, and
-    /// make another of the same handle.
+    /// Who owns pipelines for an output: nobody, or a new owner. A host may destroy its render pass
+    /// once its renderer is gone, and make another of the same handle.
     pub fn owner(&self, output: &Output) -> u64 {
         match output {
             Output::Pass(PassFormats {
@@ -209,7 +211,8 @@ impl Pipelines {
     /// Adds what [`Pipelines::cache_data`] gave another time.
     pub fn add_cache(&self, data: &[u8]) -> Result<()> {
         let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: drivers look at the data's header and pass over what is not theirs; the second cache is gone again.
+        // SAFETY: drivers look at the data's header and pass over what is not theirs; the second
+        // cache is gone again.
         unsafe {
             let other = self
                 .raw
@@ -375,7 +378,8 @@ impl Pipelines {
                 info = info.push_next(&mut rendering);
             }
         }
-        // SAFETY: `info` and all it points to live until the call returns; a render pass lives by the output's promise.
+        // SAFETY: `info` and all it points to live until the call returns; a render pass lives by
+        // the output's promise.
         let made = unsafe {
             self.raw
                 .create_graphics_pipelines(self.cache, &[info], None)

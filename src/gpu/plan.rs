@@ -9,26 +9,30 @@ use crate::shader::generated::{GROUP_PIXELS, LIST_LENGTHS};
 use ash::vk;
 use std::ops::Range;
 
-/// How an object is drawn; chosen anew when it, or the view, changes: [`Renderer::draw_paths`](super::Renderer::draw_paths).
+/// How an object is drawn; chosen anew when it, or the view, changes:
+/// [`Renderer::draw_paths`](super::Renderer::draw_paths).
 ///
-/// A search and what it searches are two things: a box may be drawn by any of the searches, a rectangle or bins too; hulls and
-/// beams are what [`Solver::Hull`](crate::settings::Solver::Hull) and [`Solver::Live`](crate::settings::Solver::Live) take where
-/// they can.
+/// A search and what it searches are two things: a box may be drawn by any of the searches, a
+/// rectangle or bins too; hulls and beams are what [`Solver::Hull`](crate::settings::Solver::Hull)
+/// and [`Solver::Live`](crate::settings::Solver::Live) take where they can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawPath {
-    /// Not at all, as it is beside the picture, behind the eye or hidden. In the fragment stage the rasteriser finds that out for
-    /// boxes and hulls, and of objects with several copies alone is it known here.
+    /// Not at all, as it is beside the picture, behind the eye or hidden. In the fragment stage the
+    /// rasteriser finds that out for boxes and hulls, and of objects with several copies alone is
+    /// it known here.
     Nothing,
     /// Fragment stage: the fragments of its boxes are searched.
     Box,
-    /// Fragment stage: by the proxy hulls of its surface; of a search on the map the fragments of its convex hull are searched.
+    /// Fragment stage: by the proxy hulls of its surface; of a search on the map the fragments of
+    /// its convex hull are searched.
     Hull,
     /// Compute stage, a single copy: the pixels of its rectangle on the screen are searched.
     Rectangle,
-    /// Several copies: the squares of the screen in which some may show are searched, each with a list of these copies, nearest first.
+    /// Several copies: the squares of the screen in which some may show are searched, each with a
+    /// list of these copies, nearest first.
     Bins,
-    /// Compute stage, one copy or a few large ones: the tiles of each rectangle that beams have found to be near the copy are
-    /// searched.
+    /// Compute stage, one copy or a few large ones: the tiles of each rectangle that beams have
+    /// found to be near the copy are searched.
     Beams,
 }
 
@@ -52,7 +56,8 @@ pub(crate) enum Work {
 pub(crate) struct Tiles {
     /// What beams choose from, in work groups.
     pub rectangle: Rectangle,
-    /// The word where their list begins; counted from the end of all bins' words until these are known.
+    /// The word where their list begins; counted from the end of all bins' words until these are
+    /// known.
     pub at: u32,
     /// Number of the block that holds this instance alone; none where the object's own does.
     pub block: Option<u32>,
@@ -103,7 +108,8 @@ pub(crate) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn; `binned`: there is a pipeline for bins.
+    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn; `binned`:
+    /// there is a pipeline for bins.
     pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>, binned: bool) -> Work {
         let fits = |surface: &&OffsetSurface| {
             !surface.is_boundary()
@@ -184,8 +190,8 @@ impl Planner<'_> {
     }
 }
 
-/// Most copies of an object that are drawn by hulls, or to which beams are sent one by one. Of more, many are small or hidden, and bins
-/// leave out those.
+/// Most copies of an object that are drawn by hulls, or to which beams are sent one by one. Of
+/// more, many are small or hidden, and bins leave out those.
 const MOST_WRAPPED: usize = 64;
 
 /// Fewer invocations than these, run together, walk a tree faster than they test a list: few of them wait for the slowest, and

@@ -1,4 +1,5 @@
-//! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows what has changed.
+//! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows
+//! what has changed.
 
 use super::bins::{Batch, Bins, Cylinder};
 use super::block::{frame_block, instance_block, note_growth, solid_block};
@@ -25,17 +26,19 @@ use std::sync::Arc;
 const MANY: usize = 256;
 
 impl Renderer {
-    /// Prepares the frame of slot `slot`, seen by `view`: takes over what was set, writes what changed, records copies of new
-    /// textures. To be called outside of a render pass, before [`Renderer::record`].
+    /// Prepares the frame of slot `slot`, seen by `view`: takes over what was set, writes what
+    /// changed, records copies of new textures. To be called outside of a render pass, before
+    /// [`Renderer::record`].
     ///
     /// # Errors
-    /// [`Stage::Scene`] or [`Stage::Profile`](crate::error::Stage) for what cannot be drawn, with the key `object.N...`, N counted in
-    /// order: everything stays as it was before it was set. [`Stage::Usage`] for a slot that is not there or a view of the other
-    /// depth order. [`Stage::Draw`] of Vulkan.
+    /// [`Stage::Scene`] or [`Stage::Profile`](crate::error::Stage) for what cannot be drawn, with
+    /// the key `object.N...`, N counted in order: everything stays as it was before it was set.
+    /// [`Stage::Usage`] for a slot that is not there or a view of the other depth order.
+    /// [`Stage::Draw`] of Vulkan.
     ///
     /// # Safety
-    /// This call writes to memory that the frame before in `slot` read; records image copies and their barriers into `cmd`; drops what
-    /// no frame in flight reads any more.
+    /// This call writes to memory that the frame before in `slot` read; records image copies and
+    /// their barriers into `cmd`; drops what no frame in flight reads any more.
     ///
     /// The caller must see to it that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;

@@ -11,7 +11,8 @@ use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::sync::Arc;
 
-/// Pipelines that a renderer may come to need. It may be sent to another thread, and compiled there while the renderer draws.
+/// Pipelines that a renderer may come to need. It may be sent to another thread, and compiled there
+/// while the renderer draws.
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
     output: Output,
@@ -46,9 +47,9 @@ impl Prewarm {
 }
 
 impl Renderer {
-    /// Every pipeline that the objects can reach while parameters, lights, placements and the view change. What makes others
-    /// necessary is another technique: textures where there were none, replicas, shadows; in compute also more objects or copies
-    /// than one.
+    /// Every pipeline that the objects can reach while parameters, lights, placements and the view
+    /// change. What makes others necessary is another technique: textures where there were none,
+    /// replicas, shadows; in compute also more objects or copies than one.
     ///
     /// # Errors
     /// As [`Renderer::prepare`], of what was added and set.
@@ -67,15 +68,16 @@ impl Renderer {
         })
     }
 
-    /// Records draws of no pixel, or dispatches of no group, with every pipeline of [`Renderer::prewarm`]. Some drivers, all software
-    /// drivers among them, compile shaders at the first draw; they do it when these commands run.
+    /// Records draws of no pixel, or dispatches of no group, with every pipeline of
+    /// [`Renderer::prewarm`]. Some drivers, all software drivers among them, compile shaders at the
+    /// first draw; they do it when these commands run.
     ///
     /// # Errors
     /// As [`Prewarm::compile`], for pipelines that it has not compiled.
     ///
     /// # Safety
-    /// This call does what [`Renderer::record`] does in a pass, and [`Renderer::record_compute`] outside; in a pass it sets the
-    /// scissor, too, to nothing.
+    /// This call does what [`Renderer::record`] does in a pass, and [`Renderer::record_compute`]
+    /// outside; in a pass it sets the scissor, too, to nothing.
     ///
     /// The caller must see to what the same function asks for.
     pub unsafe fn record_prewarm(&self, cmd: vk::CommandBuffer, slot: usize) -> Result<()> {
@@ -96,7 +98,8 @@ impl Renderer {
                 let pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
                 self.bind(cmd, slot, entry, pipeline, number);
                 if self.draws_hulls() {
-                    // SAFETY: `cmd` is recording within a pass; all that is bound lives as long as the caller promised.
+                    // SAFETY: `cmd` is recording within a pass; all that is bound lives as long as
+                    // the caller promised.
                     unsafe { raw.cmd_draw(cmd, 3, 1, 0, entry.instances.start) };
                 } else {
                     self.dispatch(cmd, [0; 4], [0, 0]);

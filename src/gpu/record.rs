@@ -16,16 +16,18 @@ use ash::vk;
 type Pushed = [u32; PUSHED as usize];
 
 impl Renderer {
-    /// Records the draws of the frame that was prepared for `slot`, within a pass of the output's formats. A slot that is not there
-    /// records nothing.
+    /// Records the draws of the frame that was prepared for `slot`, within a pass of the output's
+    /// formats. A slot that is not there records nothing.
     ///
     /// # Safety
-    /// This call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. It sets neither viewport nor scissor, which
-    /// are dynamic.
+    /// This call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. It sets
+    /// neither viewport nor scissor, which are dynamic.
     ///
     /// The caller must see to it that
-    /// * [`Renderer::prepare`] was called for `slot` since its last frame, and nothing was added or removed in between;
-    /// * `cmd` is recording, within a pass that is compatible with the output, with the view's viewport and a scissor set;
+    /// * [`Renderer::prepare`] was called for `slot` since its last frame, and nothing was added or
+    ///   removed in between;
+    /// * `cmd` is recording, within a pass that is compatible with the output, with the view's
+    ///   viewport and a scissor set;
     /// * the renderer lives, and `slot` is not prepared again, until the commands have run.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer, slot: usize) {
         let Some(slot) = self.frames.get(slot) else {
@@ -39,7 +41,8 @@ impl Renderer {
             self.bind(cmd, slot, entry, entry.draw.pipeline, number);
             let first = entry.instances.start;
             let count = entry.instances.end - first;
-            // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the caller promised.
+            // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as
+            // the caller promised.
             unsafe {
                 match work {
                     Work::Hull(frusta) => {
@@ -62,15 +65,18 @@ impl Renderer {
         }
     }
 
-    /// Records the dispatches of the frame that was prepared for `slot`, outside of a pass, into a target that was cleared.
+    /// Records the dispatches of the frame that was prepared for `slot`, outside of a pass, into a
+    /// target that was cleared.
     ///
     /// # Safety
-    /// This call binds compute pipelines and sets, dispatches, and records barriers between its own dispatches. It records none
-    /// before its first and after its last write.
+    /// This call binds compute pipelines and sets, dispatches, and records barriers between its own
+    /// dispatches. It records none before its first and after its last write.
     ///
     /// The caller must see to it that
-    /// * `prepare` was called for `slot` since its last frame, and nothing was added or removed in between;
-    /// * `cmd` is recording, outside of a pass; writes to the target before are made available to compute shaders;
+    /// * `prepare` was called for `slot` since its last frame, and nothing was added or removed in
+    ///   between;
+    /// * `cmd` is recording, outside of a pass; writes to the target before are made available to
+    ///   compute shaders;
     /// * the renderer lives, and `slot` is not prepared again, until the commands have run.
     pub unsafe fn record_compute(&self, cmd: vk::CommandBuffer, slot: usize) {
         let Some(slot) = self.frames.get(slot) else {
@@ -135,8 +141,8 @@ impl Renderer {
         let mut pushed = [at, low.0 | low.1 << 16, tiles.rectangle.padded(), 0];
         let barrier = |from, to| buffer_barrier(&self.device, cmd, words, from, to);
         barrier(Usage::TileRead, Usage::TransferWrite);
-        // SAFETY: `cmd` is recording, outside a render pass; the lists' words lie within the buffer; all that is bound lives as
-        // long as `self`, and all pipelines have one layout.
+        // SAFETY: `cmd` is recording, outside a render pass; the lists' words lie within the
+        // buffer; all that is bound lives as long as `self`, and all pipelines have one layout.
         unsafe {
             raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(at), bytemuck::bytes_of(&none));
             if tiles.listed {
@@ -185,7 +191,8 @@ impl Renderer {
     /// `pushed` as in `beams.glsl`.
     pub(super) fn dispatch(&self, cmd: vk::CommandBuffer, pushed: Pushed, groups: [u32; 2]) {
         self.push(cmd, pushed);
-        // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as `self`.
+        // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as
+        // `self`.
         unsafe { self.device.raw.cmd_dispatch(cmd, groups[0], groups[1], 1) };
     }
 
@@ -227,7 +234,8 @@ impl Renderer {
         let sets = [slot.set, textures.unwrap_or_default(), slot.target_set];
         let offsets = [block * slot.stride, tables];
         let raw = &self.device.raw;
-        // SAFETY: the sets fit the layout, and all they name lives as long as the caller of `record` promised.
+        // SAFETY: the sets fit the layout, and all they name lives as long as the caller of
+        // `record` promised.
         unsafe {
             raw.cmd_bind_pipeline(cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(cmd, point, self.layout(), 0, &sets, &offsets);

@@ -1,4 +1,5 @@
-//! From an object's values to what the device needs of it. All that can fail comes first; then everything is taken over at once.
+//! From an object's values to what the device needs of it. All that can fail comes first; then
+//! everything is taken over at once.
 
 use super::block::{check_format, largest_width};
 use super::levels;
@@ -38,8 +39,9 @@ impl Resolved {
 }
 
 impl Renderer {
-    /// Takes over what was added and set since the last call. Where something fails, what was added since is left out until it is
-    /// set again, and everything else stays as it was. `view`: the one that is drawn next, where it is known.
+    /// Takes over what was added and set since the last call. Where something fails, what was added
+    /// since is left out until it is set again, and everything else stays as it was. `view`: the
+    /// one that is drawn next, where it is known.
     pub(super) fn refresh(&mut self, view: Option<&View>) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
@@ -250,7 +252,8 @@ impl Renderer {
             .map(Some)
     }
 
-    /// The maps that shadows read, with those of changed objects; the same list where nothing differs.
+    /// The maps that shadows read, with those of changed objects; the same list where nothing
+    /// differs.
     fn shadow_maps_with(
         &self,
         mapped: &[(Resolved, Option<Arc<ShapeTexture>>)],
@@ -347,8 +350,8 @@ impl Renderer {
         })
     }
 
-    /// What rays of an object can be held to before they are searched: its boundary; of a search on the map, where its solid may
-    /// be.
+    /// What rays of an object can be held to before they are searched: its boundary; of a search on
+    /// the map, where its solid may be.
     fn wrapped(
         &self,
         object: &Object,

@@ -1,6 +1,7 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! [`Renderer::prepare`] is in `prepare.rs`, [`Renderer::record`] in `record.rs`, what changes of an object in `refresh.rs`.
+//! [`Renderer::prepare`] is in `prepare.rs`, [`Renderer::record`] in `record.rs`, what changes of
+//! an object in `refresh.rs`.
 
 use super::arena::TableArena;
 use super::buffers::indices;
@@ -28,7 +29,8 @@ use std::sync::Arc;
 
 /// Objects on a device, drawn into whatever the host draws into.
 ///
-/// A frame is prepared, then recorded, with the number of its **slot**: frames in flight take turns in `frames` slots.
+/// A frame is prepared, then recorded, with the number of its **slot**: frames in flight take turns
+/// in `frames` slots.
 ///
 /// ```text
 /// renderer.set_placement(pawn, there)?;                  // any number of changes
@@ -36,8 +38,8 @@ use std::sync::Arc;
 /// begin_rendering(cmd); renderer.record(cmd, slot); ..   // inside
 /// ```
 ///
-/// Neither submits, waits or compiles a pipeline that was prewarmed; memory is allocated while buffers still grow. A renderer must
-/// live until the frames that it recorded are done.
+/// Neither submits, waits or compiles a pipeline that was prewarmed; memory is allocated while
+/// buffers still grow. A renderer must live until the frames that it recorded are done.
 pub struct Renderer {
     pub(super) frames: Vec<FrameSlot>,
     pub(super) entries: Vec<Option<Entry>>,
@@ -56,7 +58,8 @@ pub struct Renderer {
     pub(super) changed: Vec<u32>,
     /// Entries that must be planned anew.
     pub(super) unplanned: Vec<u32>,
-    /// Whether every entry is drawn by the fallback, as one has no surface and shadows meet all by one search.
+    /// Whether every entry is drawn by the fallback, as one has no surface and shadows meet all by
+    /// one search.
     pub(super) all_fall_back: bool,
     /// What shadows' rays may meet.
     pub(super) met: Met,
@@ -84,7 +87,8 @@ pub struct Renderer {
     pub(super) device: Arc<Shared>,
 }
 
-/// An object of a renderer. It stays the same object whatever is set, and is never another's once removed.
+/// An object of a renderer. It stays the same object whatever is set, and is never another's once
+/// removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ObjectId {
     number: u32,
@@ -243,10 +247,12 @@ impl Renderer {
         })
     }
 
-    /// Adds an object; it is drawn from the next prepared frame on, after those that were there before.
+    /// Adds an object; it is drawn from the next prepared frame on, after those that were there
+    /// before.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Draw`] for more than 2^32 instances.
+    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Draw`] for more than 2^32
+    /// instances.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
         let instances = self.allocate_instances(object.placements().len())?;
@@ -300,7 +306,8 @@ impl Renderer {
     /// Gives an object other values, all of them. What is equal costs nothing.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Usage`] for an object that is not there.
+    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Usage`] for an object that
+    /// is not there.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
         if self.entry(id)?.latest().same_look(&object) {
@@ -424,15 +431,17 @@ impl Renderer {
         self.ordered().map(path).collect()
     }
 
-    /// How many surfaces were made: one for each profile under each offset that no object had in the frame before. A camera that
-    /// moves makes those of levels that it asks for the first time; with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT)
-    /// none. Searches on the map never do.
+    /// How many surfaces were made: one for each profile under each offset that no object had in
+    /// the frame before. A camera that moves makes those of levels that it asks for the first time;
+    /// with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT) none. Searches on the map never
+    /// do.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.rebuilds
     }
 
-    /// Bytes that maps take on the device: shape maps with tables of lengths, and colour and displacement maps.
+    /// Bytes that maps take on the device: shape maps with tables of lengths, and colour and
+    /// displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         let mut seen = Vec::new();
@@ -478,7 +487,8 @@ impl Renderer {
     /// This call keeps the handles; [`Renderer::prepare`] binds them.
     ///
     /// The caller must see to it that
-    /// * they are of this device, as [`ComputeTarget`] describes them, and large enough for every view's viewport, which begins at 0;
+    /// * they are of this device, as [`ComputeTarget`] describes them, and large enough for every
+    ///   view's viewport, which begins at 0;
     /// * they live until another target is set and the frames that were recorded before are done.
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) {
         self.set_target(Some(target));

@@ -43,8 +43,8 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether textures are filtered anisotropically. Software devices take ten times as long over it, and llvmpipe filters
-    /// otherwise in fragment than in compute shaders.
+    /// Whether textures are filtered anisotropically. Software devices take ten times as long over
+    /// it, and llvmpipe filters otherwise in fragment than in compute shaders.
     pub fn anisotropic(&self) -> bool {
         self.features.sampler_anisotropy == vk::TRUE
             && self.properties.device_type != vk::PhysicalDeviceType::CPU
@@ -110,7 +110,8 @@ pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
         .collect())
 }
 
-/// The candidate that `choice` names (an index, or part of a name, in any case); none named: the first by kind.
+/// The candidate that `choice` names (an index, or part of a name, in any case); none named: the
+/// first by kind.
 pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
     let chosen = all.swap_remove(position(&all, choice)?);
     refuse(&chosen)?;

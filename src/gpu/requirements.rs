@@ -10,12 +10,13 @@ use ash::vk;
 pub struct Requirements {
     /// Least Vulkan version, of the instance and of the device.
     pub api_version: u32,
-    /// Features to enable. None of them is needed for [`Planes::Color`](crate::settings::Planes::Color) in a pass; more may be
-    /// enabled.
+    /// Features to enable. None of them is needed for
+    /// [`Planes::Color`](crate::settings::Planes::Color) in a pass; more may be enabled.
     pub features: vk::PhysicalDeviceFeatures,
     /// The first queue family on which everything works: graphics and compute.
     pub queue_family: u32,
-    /// Names of device extensions; none today. Dynamic rendering is the host's to enable, where it uses it.
+    /// Names of device extensions; none today. Dynamic rendering is the host's to enable, where it
+    /// uses it.
     pub extensions: Vec<&'static std::ffi::CStr>,
 }
 
@@ -23,11 +24,12 @@ impl Requirements {
     /// Of one physical device.
     ///
     /// # Errors
-    /// [`Stage::Device`](crate::error::Stage::Device) when it lacks something, with all that it lacks.
+    /// [`Stage::Device`](crate::error::Stage::Device) when it lacks something, with all that it
+    /// lacks.
     ///
     /// # Safety
-    /// This call makes queries of `physical` alone. The caller must see to it that `physical` belongs to `instance`, and that the
-    /// instance lives until the call returns.
+    /// This call makes queries of `physical` alone. The caller must see to it that `physical`
+    /// belongs to `instance`, and that the instance lives until the call returns.
     pub unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<Self> {
         let candidate = inspect(instance, 0, physical);
         refuse(&candidate).map_err(into_device)?;

@@ -1,6 +1,8 @@
-//! Prepared solids: everything that is made from one profile, keyed in one place and shared by all objects that show it.
+//! Prepared solids: everything that is made from one profile, keyed in one place and shared by all
+//! objects that show it.
 //!
-//! The cache holds nothing alive. Objects do, and frames in flight; what the last of them lets go is gone.
+//! The cache holds nothing alive. Objects do, and frames in flight; what the last of them lets go
+//! is gone.
 
 use super::device::Shared;
 use super::levels;
@@ -166,7 +168,8 @@ impl Solid {
         })
     }
 
-    /// Where the solid of `map` may be under offsets up to `by`; none of a solid that lies partly outside of its map.
+    /// Where the solid of `map` may be under offsets up to `by`; none of a solid that lies partly
+    /// outside of its map.
     pub fn envelope(&self, map: &ShapeTexture, by: f64) -> Result<Option<Arc<OffsetSurface>>> {
         let Some(envelope) = &map.envelope else {
             return Ok(None);
@@ -267,7 +270,8 @@ impl MapKey {
             } == *other
     }
 
-    /// What a shader is told of the map where no map is baked: its size, and what the solid occupies.
+    /// What a shader is told of the map where no map is baked: its size, and what the solid
+    /// occupies.
     pub fn unbaked(&self, profile: &Profile) -> MapFacts {
         MapFacts {
             columns: self.columns,

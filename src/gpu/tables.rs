@@ -76,7 +76,8 @@ impl GpuTables {
     }
 }
 
-/// Patches of which lists are made, in the layout of `patch_lists.glsl`; nothing if there are too many.
+/// Patches of which lists are made, in the layout of `patch_lists.glsl`; nothing if there are too
+/// many.
 pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading them back.
+//! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading
+//! them back.
 
 use super::call::Call;
 use super::commands::Commands;
@@ -15,12 +16,14 @@ use std::sync::Arc;
 /// What compute shaders write to, and fragments of all planes besides their attachments.
 #[derive(Clone, Debug)]
 pub struct ComputeTarget {
-    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all pixels, as bits of floats; then a
-    /// second word of each, which is the colour, packed as `R8G8B8A8_SRGB`, where colour alone is drawn, else a count of look-ups.
-    /// The host clears it before a frame, depths to 1.0 and colours to its background, or fills in what is already drawn.
+    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
+    /// pixels, as bits of floats; then a second word of each, which is the colour, packed as
+    /// `R8G8B8A8_SRGB`, where colour alone is drawn, else a count of look-ups. The host clears it
+    /// before a frame, depths to 1.0 and colours to its background, or fills in what is already
+    /// drawn.
     pub words: vk::Buffer,
-    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where colour alone is drawn, or fragments
-    /// draw.
+    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where
+    /// colour alone is drawn, or fragments draw.
     pub images: Vec<vk::ImageView>,
 }
 
@@ -30,11 +33,13 @@ pub(crate) struct Target {
     pub height: u32,
     stage: DrawStage,
     planes: Planes,
-    /// The fragment path's attachments, or the compute path's storage images; none where compute draws colour alone.
+    /// The fragment path's attachments, or the compute path's storage images; none where compute
+    /// draws colour alone.
     pub images: Vec<Image>,
     depth: Option<Image>,
     framebuffer: vk::Framebuffer,
-    /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where fragments draw colour alone.
+    /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where
+    /// fragments draw colour alone.
     pub words: Option<Buffer>,
     device: Arc<Shared>,
 }

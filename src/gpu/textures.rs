@@ -1,4 +1,5 @@
-//! What an object's shader samples: colour and displacement maps, each on the device once, and the sets that bind them.
+//! What an object's shader samples: colour and displacement maps, each on the device once, and the
+//! sets that bind them.
 
 use super::call::Call;
 use super::device::Shared;
@@ -254,7 +255,8 @@ impl Drop for TextureSet {
     }
 }
 
-/// Descriptor sets of textures: pools grow as sets are wanted, and sets that were given back are taken again.
+/// Descriptor sets of textures: pools grow as sets are wanted, and sets that were given back are
+/// taken again.
 struct SetPool {
     state: Mutex<Sets>,
     device: Arc<Shared>,

@@ -1,4 +1,5 @@
-//! Bytes on their way to the device: written to staging buffers at once, copied by the next commands that are prepared.
+//! Bytes on their way to the device: written to staging buffers at once, copied by the next
+//! commands that are prepared.
 
 use super::device::Shared;
 use super::memory::{Buffer, Image, ImageKind};
@@ -86,7 +87,8 @@ impl Uploads {
         for upload in &self.waiting {
             let image = &upload.image;
             image_barrier(device, cmd, image, Usage::Nothing, Usage::TransferWrite);
-            // SAFETY: `cmd` is recording, outside a render pass; the regions lie within buffer and image.
+            // SAFETY: `cmd` is recording, outside a render pass; the regions lie within buffer and
+            // image.
             unsafe {
                 device.raw.cmd_copy_buffer_to_image(
                     cmd,

@@ -1,5 +1,5 @@
-//! The usage table: for each use of a resource its stages, accesses and image layout, so that a barrier is named by what
-//! was done and what comes next.
+//! The usage table: for each use of a resource its stages, accesses and image layout, so that a
+//! barrier is named by what was done and what comes next.
 
 use super::device::Shared;
 use super::memory::{Buffer, Image};

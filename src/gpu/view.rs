@@ -1,4 +1,5 @@
-//! A view of the scene: rays of pixels and the depths that their hits get, from a camera or from a host's matrices.
+//! A view of the scene: rays of pixels and the depths that their hits get, from a camera or from a
+//! host's matrices.
 
 use super::output::DepthOrder;
 use crate::error::{Error, Result, Stage};
@@ -20,9 +21,10 @@ pub struct Viewport {
 
 /// An eye, the ray of every pixel, and the depth of every point.
 ///
-/// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j dir_y)`. Its direction is not
-/// normalised: `t` is the depth along `forward`, and the depth buffer holds `depth[0] + depth[1] / t`. A parallel view has
-/// rays `eye + i dir_x + j dir_y + t dir_00` instead, and depths `depth[0] + depth[1] t`.
+/// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j
+/// dir_y)`. Its direction is not normalised: `t` is the depth along `forward`, and the depth buffer
+/// holds `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
+/// instead, and depths `depth[0] + depth[1] t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub(crate) eye: DVec3,
@@ -40,7 +42,8 @@ pub struct View {
 }
 
 impl View {
-    /// The view of `camera` in pictures of `size` pixels, with depth 0 at `near` and 1 at `far`, both along the view.
+    /// The view of `camera` in pictures of `size` pixels, with depth 0 at `near` and 1 at `far`,
+    /// both along the view.
     ///
     /// # Errors
     /// As [`CameraFrame::new`]; [`Stage::Scene`] unless `0 < near < far`.
@@ -54,7 +57,8 @@ impl View {
         // depth = constant + factor / t
         let constant = far / (far - near);
         let factor = -far * near / (far - near);
-        // Steps of a pixel, as parts of half the picture; the middle is 0 in clip space unless the camera is shifted.
+        // Steps of a pixel, as parts of half the picture; the middle is 0 in clip space unless the
+        // camera is shifted.
         let step = |v: DVec3, pixels: u32| v * (2.0 / (v.length_squared() * f64::from(pixels)));
         let middle = |at: f64, pixels: u32| camera.forward * (2.0 * at / f64::from(pixels) - 1.0);
         let right = step(camera.right, size.0) + middle(camera.middle[0], size.0);
@@ -88,12 +92,13 @@ impl View {
         })
     }
 
-    /// The view of a host's matrices, column vectors, clip space as Vulkan's (`0 <= z <= w`): `projection * view` takes a world
-    /// point to clip space. Jitter, off-centre frusta, infinite and reversed depth are what the projection says.
+    /// The view of a host's matrices, column vectors, clip space as Vulkan's (`0 <= z <= w`):
+    /// `projection * view` takes a world point to clip space. Jitter, off-centre frusta, infinite
+    /// and reversed depth are what the projection says.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for a projection whose near plane is not at right angles to the view, or that mirrors the picture; for an
-    /// empty viewport; for numbers that are not finite.
+    /// [`Stage::Scene`] for a projection whose near plane is not at right angles to the view, or
+    /// that mirrors the picture; for an empty viewport; for numbers that are not finite.
     pub fn from_matrices(
         view: DMat4,
         projection: DMat4,
@@ -238,7 +243,8 @@ impl View {
         }
     }
 
-    /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth along the view.
+    /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth
+    /// along the view.
     pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
         let from_eye = world - self.eye;
         let depth = from_eye.dot(self.forward);

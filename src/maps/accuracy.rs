@@ -14,8 +14,8 @@ pub struct MapErrors {
     pub rms: f64,
     /// Its largest magnitude, texels.
     pub max: f64,
-    /// Angle between the derivative of the bilinear cell, which the shaders take, and the true gradient: root mean
-    /// square over points within one texel of the surface, degrees.
+    /// Angle between the derivative of the bilinear cell, which the shaders take, and the true
+    /// gradient: root mean square over points within one texel of the surface, degrees.
     pub gradient_rms: f64,
     /// The largest such angle, degrees.
     pub gradient_max: f64,
@@ -44,7 +44,8 @@ impl Default for Disc {
 }
 
 impl Disc {
-    /// The disc as a polygon of `corners` corners in a box of radius 1; its chords lie outside and inside by equal areas.
+    /// The disc as a polygon of `corners` corners in a box of radius 1; its chords lie outside and
+    /// inside by equal areas.
     ///
     /// # Errors
     /// None for discs within the half-plane.
@@ -72,7 +73,8 @@ impl Disc {
         Ok(self.measure(&map))
     }
 
-    /// Errors of a map of this disc. Of a binary map the distances outside alone count: the papers store no others.
+    /// Errors of a map of this disc. Of a binary map the distances outside alone count: the papers
+    /// store no others.
     #[must_use]
     pub fn measure(&self, map: &ShapeMap) -> MapErrors {
         let side = f64::from(map.rows);

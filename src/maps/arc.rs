@@ -1,17 +1,21 @@
-//! Length along the profile, for textures that neither height nor angle spreads evenly: the projection `arc`.
+//! Length along the profile, for textures that neither height nor angle spreads evenly: the
+//! projection `arc`.
 
 use super::nearest::for_each_texel;
 use crate::error::{Error, Result, Stage};
 use crate::profile::{Outline, Profile, Segment};
 use glam::DVec2;
 
-/// `eta`, the length along the solid's contour as a fraction of the whole, at every point of its surface.
+/// `eta`, the length along the solid's contour as a fraction of the whole, at every point of its
+/// surface.
 ///
-/// The contour falls into chains: from axis to axis (the outside of a vase, the inside of a closed bottle), or closed (a ring). Each
-/// has its own `eta` from 0 to 1. A chain from axis to axis starts at its lower end, so that `eta = 1` is the top; a closed one starts
-/// and ends at its least `r`, the side turned to the axis, and rises on its outer side.
+/// The contour falls into chains: from axis to axis (the outside of a vase, the inside of a closed
+/// bottle), or closed (a ring). Each has its own `eta` from 0 to 1. A chain from axis to axis
+/// starts at its lower end, so that `eta = 1` is the top; a closed one starts and ends at its least
+/// `r`, the side turned to the axis, and rises on its outer side.
 ///
-/// Off the surface, `eta` is that of the nearest point of it, which is what an extended or beveled surface takes.
+/// Off the surface, `eta` is that of the nearest point of it, which is what an extended or beveled
+/// surface takes.
 #[derive(Clone, Debug)]
 pub struct ArcLength {
     segments: Vec<Segment>,
@@ -21,9 +25,10 @@ pub struct ArcLength {
 
 /// `eta` on the grid of a shape map, ready for a texture: `R16_UNORM`, row 0 on top.
 ///
-/// A shader reads its four texels around `(r, z)` and mixes them bilinearly. Where two of them differ by more than one half, the seam
-/// of a closed chain lies between: add 1 to the smaller ones before, and take the fraction after. Errors are those of bilinear
-/// interpolation, at most half a texel of length, but for walls thinner than two texels, whose two sides mix.
+/// A shader reads its four texels around `(r, z)` and mixes them bilinearly. Where two of them
+/// differ by more than one half, the seam of a closed chain lies between: add 1 to the smaller ones
+/// before, and take the fraction after. Errors are those of bilinear interpolation, at most half a
+/// texel of length, but for walls thinner than two texels, whose two sides mix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcTable {
     /// Texels along `r`.

@@ -5,9 +5,10 @@ use super::transform::{NONE, Surroundings, squared_to_other};
 use crate::profile::Raster;
 use rayon::prelude::*;
 
-/// Signed distance of each texel's centre, object units. Outside: to the nearest solid texel's centre, as in the papers. Inside,
-/// where the papers store nothing, the same slope is continued through the same zero: one texel less than to the nearest empty
-/// texel's centre, negative. Beyond the right, top and bottom borders all is empty; the axis at the left is no boundary.
+/// Signed distance of each texel's centre, object units. Outside: to the nearest solid texel's
+/// centre, as in the papers. Inside, where the papers store nothing, the same slope is continued
+/// through the same zero: one texel less than to the nearest empty texel's centre, negative. Beyond
+/// the right, top and bottom borders all is empty; the axis at the left is no boundary.
 pub(super) fn distances(raster: &Raster) -> Vec<f32> {
     let form: Vec<bool> = raster.coverage.par_iter().map(|&c| c > 0.5).collect();
     let around = Surroundings {

@@ -8,8 +8,8 @@ use std::path::Path;
 
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
 ///
-/// Smaller levels hold the mean light of what they cover, weighted by alpha, so that what is transparent lends no colour to its
-/// neighbours.
+/// Smaller levels hold the mean light of what they cover, weighted by alpha, so that what is
+/// transparent lends no colour to its neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
     /// From the full size down to 1 x 1.

@@ -1,4 +1,5 @@
-//! Displacement maps: the slopes of a height map, computed once, scaled as the picture is drawn (Blinn 1978).
+//! Displacement maps: the slopes of a height map, computed once, scaled as the picture is drawn
+//! (Blinn 1978).
 
 use super::files::{encode_png, extension, write_whole};
 use super::half::to_half;
@@ -25,16 +26,18 @@ pub struct Level<T> {
 pub enum SlopeFilter {
     /// Difference of the two neighbours: the sharpest, `[-1 0 1] / 2`.
     Central,
-    /// The same, smoothed across by `[3 10 3] / 16` (Scharr 2000), which makes all directions alike.
+    /// The same, smoothed across by `[3 10 3] / 16` (Scharr 2000), which makes all directions
+    /// alike.
     #[default]
     Scharr,
 }
 
 /// Partial derivatives of a height map over texture coordinates, with mip levels.
 ///
-/// Heights are `H` in `[0, 1]`; a texel holds `(dH/du, dH/dv)` per unit of texture coordinate: `u` runs to the right over the whole
-/// width, `v` upwards over the whole height (`v = 1` is the top row). The map repeats, so differences wrap round its borders, and the
-/// sum over each level is 0. Smaller levels hold means: the slope of the smoothed heights.
+/// Heights are `H` in `[0, 1]`; a texel holds `(dH/du, dH/dv)` per unit of texture coordinate: `u`
+/// runs to the right over the whole width, `v` upwards over the whole height (`v = 1` is the top
+/// row). The map repeats, so differences wrap round its borders, and the sum over each level is 0.
+/// Smaller levels hold means: the slope of the smoothed heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplacementMap {
     /// From the full size down to 1 x 1.
@@ -45,8 +48,8 @@ pub struct DisplacementMap {
 const ZERO: f32 = 32_768.0;
 
 impl DisplacementMap {
-    /// From an image file (PNG, JPEG): its luminance, as stored, is the height. A file that [`DisplacementMap::save`] wrote is loaded
-    /// as what it is.
+    /// From an image file (PNG, JPEG): its luminance, as stored, is the height. A file that
+    /// [`DisplacementMap::save`] wrote is loaded as what it is.
     ///
     /// # Errors
     /// [`Stage::Map`], with the file: missing, damaged, no picture, larger than 16384 on a side.
@@ -122,7 +125,8 @@ impl DisplacementMap {
         self.levels.first().map_or([0, 0], |l| [l.width, l.height])
     }
 
-    /// The levels as `R16G16_SFLOAT` texels, native byte order, each rounded to the nearest half float.
+    /// The levels as `R16G16_SFLOAT` texels, native byte order, each rounded to the nearest half
+    /// float.
     #[must_use]
     pub fn encode(&self) -> Vec<Level<[u16; 2]>> {
         let pack = |t: &[f32; 2]| t.map(to_half);
@@ -146,8 +150,9 @@ impl DisplacementMap {
         ]
     }
 
-    /// Writes the full size as a 16-bit RGB PNG to look at and to load again: R, G = slope, 32768 is 0 and 1 and 65535 the
-    /// largest; B = 65535. The largest slope stands in a text chunk. Slopes come back within 1/65534 of the largest.
+    /// Writes the full size as a 16-bit RGB PNG to look at and to load again: R, G = slope, 32768
+    /// is 0 and 1 and 65535 the largest; B = 65535. The largest slope stands in a text chunk.
+    /// Slopes come back within 1/65534 of the largest.
     ///
     /// # Errors
     /// [`Stage::Map`], with the file: another extension than `.png`, or it cannot be written.

@@ -1,9 +1,12 @@
 //! How far from its axis a map's solid reaches, at every height: where rays need not be looked at.
 //!
-//! What a search on the map can meet lies where the `d` that it reads is at most `w`. What it reads changes by no more than 1.85 texels within half a texel
-//! beyond the outermost centres, where cells are extrapolated, and by less elsewhere; the nearest point of the solid is less than a texel's diagonal from
-//! a centre at which `d <= h`; and a cell's corner is as near to any of its points. So all of it is nearer than `w` and 3.3 texels to such a centre, and in
-//! [`Envelope::grown`] by `w` and [`SLACK`] texels. That holds of solids within the map; others have no envelope.
+//! What a search on the map can meet lies where the `d` that it reads is at most `w`. What it reads
+//! changes by no more than 1.85 texels within half a texel beyond the outermost centres, where
+//! cells are extrapolated, and by less elsewhere; the nearest point of the solid is less than a
+//! texel's diagonal from a centre at which `d <= h`; and a cell's corner is as near to any of its
+//! points. So all of it is nearer than `w` and 3.3 texels to such a centre, and in
+//! [`Envelope::grown`] by `w` and [`SLACK`] texels. That holds of solids within the map; others
+//! have no envelope.
 
 use super::ShapeMap;
 use glam::DVec2;
@@ -14,12 +17,14 @@ pub(crate) const BANDS: usize = crate::shader::generated::BEAM_NODES as usize;
 /// What is added to an offset, texels.
 pub(crate) const SLACK: f64 = 4.0;
 
-/// Ways in which supporting lines of the convex hull look, as parts of a right angle from the plane `z = const` upwards; downwards too.
+/// Ways in which supporting lines of the convex hull look, as parts of a right angle from the plane
+/// `z = const` upwards; downwards too.
 const WAYS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// By how much the convex hull's level faces stand off, object units: those of a solid that its box cuts lie in the box's own, and the rasteriser must
-/// not be the one to decide where these are. With lavapipe's 256ths of a pixel no picture of `tests/gpu/hulls.rs` differs without it; devices may
-/// have 16ths.
+/// By how much the convex hull's level faces stand off, object units: those of a solid that its box
+/// cuts lie in the box's own, and the rasteriser must not be the one to decide where these are.
+/// With lavapipe's 256ths of a pixel no picture of `tests/gpu/hulls.rs` differs without it; devices
+/// may have 16ths.
 const OFF: f64 = 1e-3;
 
 /// The largest radius of the solid in each of [`BANDS`] bands, object units; 0 where it has none.
@@ -29,8 +34,8 @@ pub(crate) struct Envelope {
 }
 
 impl Envelope {
-    /// Of the texels within one texel of the solid, their centres. None of a solid that lies partly outside of the map: what of it an offset
-    /// lets in stands in no texel.
+    /// Of the texels within one texel of the solid, their centres. None of a solid that lies partly
+    /// outside of the map: what of it an offset lets in stands in no texel.
     pub fn of(map: &ShapeMap) -> Option<Self> {
         let (bounds, h) = (&map.bounds, map.texel());
         // Half a texel of roundings is within the slack.
@@ -64,7 +69,8 @@ impl Envelope {
         }
     }
 
-    /// A convex polygon `(r, z)` about it, counter-clockwise from the lower end on the axis to the upper; empty where it is empty.
+    /// A convex polygon `(r, z)` about it, counter-clockwise from the lower end on the axis to the
+    /// upper; empty where it is empty.
     pub fn convex(&self) -> Vec<DVec2> {
         let edge = |k: usize| k as f64 / BANDS as f64;
         let solid = |r: &f64| *r > 0.0;
@@ -133,7 +139,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever a search can meet is in the grown envelope and in its convex hull, on fine maps and coarse ones, exact and binary.
+        /// Whatever a search can meet is in the grown envelope and in its convex hull, on fine maps
+        /// and coarse ones, exact and binary.
         #[test]
         fn nothing_is_met_outside(
             r in 0.02..0.49f64, low in 0.0..0.5f64, thin in 0.02..0.5f64, notch in 0.0..0.3f64,

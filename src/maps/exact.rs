@@ -4,7 +4,8 @@ use super::nearest::for_each_texel;
 use super::rounding::round_down;
 use crate::profile::{Outline, Segment};
 
-/// Signed distance of each texel's centre to the outline's surface, object units, never above the true one.
+/// Signed distance of each texel's centre to the outline's surface, object units, never above the
+/// true one.
 pub(super) fn distances(outline: &Outline, columns: usize, rows: usize) -> Vec<f32> {
     let segments: Vec<Segment> = outline.surface_segments().collect();
     let heights = (0..rows).map(|row| 1.0 - (row as f64 + 0.5) / rows as f64);

@@ -63,8 +63,8 @@ impl Projection {
         Self::from_name(stem.extension()?.to_str()?)
     }
 
-    /// `path` with the projection before its extension, unless it carries one already: `vase.png` becomes
-    /// `vase.spherical.png`.
+    /// `path` with the projection before its extension, unless it carries one already: `vase.png`
+    /// becomes `vase.spherical.png`.
     #[must_use]
     pub fn mark_file(self, path: impl AsRef<Path>) -> PathBuf {
         let path = path.as_ref();
@@ -87,8 +87,10 @@ fn fault(message: impl Into<String>) -> Error {
 impl ShapeMap {
     /// Writes the map, by the file's extension:
     ///
-    /// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), the scale and the rest in a text chunk;
-    /// * `.exr` (feature `exr`): without loss, 32-bit float channels `distance` (object units) and `form` (1 solid, 0 empty).
+    /// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), the scale and the rest in
+    ///   a text chunk;
+    /// * `.exr` (feature `exr`): without loss, 32-bit float channels `distance` (object units) and
+    ///   `form` (1 solid, 0 empty).
     ///
     /// The file appears whole or not at all.
     ///
@@ -110,9 +112,10 @@ impl ShapeMap {
 
     /// Reads a map that [`ShapeMap::save`] wrote, or a papers' texture of other origin.
     ///
-    /// An EXR file comes back bit for bit. Of a PNG file, distances outside are its bytes (rounded down when they were written), and
-    /// those inside, which the papers do not store, are measured from its form as the source `binary` does. A PNG without our text
-    /// chunk has no scale: all its distances are measured from its form, and its box is as wide as the map.
+    /// An EXR file comes back bit for bit. Of a PNG file, distances outside are its bytes (rounded
+    /// down when they were written), and those inside, which the papers do not store, are measured
+    /// from its form as the source `binary` does. A PNG without our text chunk has no scale: all
+    /// its distances are measured from its form, and its box is as wide as the map.
     ///
     /// # Errors
     /// [`Stage::Map`], with the file: missing, damaged, or no shape map.

@@ -2,8 +2,9 @@
 
 /// Levels from the largest down to 1 x 1, each of half the size of the one before, rounded down.
 ///
-/// A texel is the mean of what it covers; where a size is odd that is two and a bit texels of the larger level, weighted by how much
-/// of each (the box filter, exactly), so that nothing drifts from level to level.
+/// A texel is the mean of what it covers; where a size is odd that is two and a bit texels of the
+/// larger level, weighted by how much of each (the box filter, exactly), so that nothing drifts
+/// from level to level.
 pub(super) fn chain<const N: usize>(
     width: usize,
     height: usize,
@@ -21,8 +22,8 @@ pub(super) fn chain<const N: usize>(
     levels
 }
 
-/// Averages `lines` lines of `from` texels to `to` each. A line's texels stand `step` apart, and lines `stride` apart; the result
-/// keeps that order.
+/// Averages `lines` lines of `from` texels to `to` each. A line's texels stand `step` apart, and
+/// lines `stride` apart; the result keeps that order.
 fn shrink<const N: usize>(
     texels: &[[f32; N]],
     from: usize,

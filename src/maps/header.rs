@@ -1,7 +1,7 @@
 //! What a map's file says of itself beside its pixels: one line of `key=value` words.
 //!
-//! It stands in a text chunk of PNG files and in a text attribute of EXR files, under [`KEYWORD`]. Numbers are written so that
-//! they come back to the last bit.
+//! It stands in a text chunk of PNG files and in a text attribute of EXR files, under [`KEYWORD`].
+//! Numbers are written so that they come back to the last bit.
 
 use super::{Bounds, MapSource, ShapeMap};
 use crate::error::{Error, Result, Stage};

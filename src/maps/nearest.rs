@@ -1,14 +1,17 @@
 //! The nearest of many segments, exactly, for every texel of a grid.
 //!
-//! Squares of the grid are halved and halved again, and each keeps only those segments that can be nearest to any of its
-//! points. Two tests throw the others out:
+//! Squares of the grid are halved and halved again, and each keeps only those segments that can be
+//! nearest to any of its points. Two tests throw the others out:
 //!
-//! * With `m` the least distance from the square's middle to a segment and `q` half of its diagonal, a segment farther than
-//!   `m + 2 q` is nearest nowhere: both distances change by at most `q` on the way to any point.
-//! * With `b` the point, on any segment, that is nearest to the middle, a segment is nearest nowhere if at all four corners `b` is
-//!   nearer than it: for each point `s` of the segment `|p - s|^2 - |p - b|^2` is linear in `p`, and so least at a corner.
+//! * With `m` the least distance from the square's middle to a segment and `q` half of its
+//!   diagonal, a segment farther than `m + 2 q` is nearest nowhere: both distances change by at
+//!   most `q` on the way to any point.
+//! * With `b` the point, on any segment, that is nearest to the middle, a segment is nearest
+//!   nowhere if at all four corners `b` is nearer than it: for each point `s` of the segment `|p -
+//!   s|^2 - |p - b|^2` is linear in `p`, and so least at a corner.
 //!
-//! Squares of 4 x 4 texels are left with a handful, which are all measured. No approximation is made anywhere.
+//! Squares of 4 x 4 texels are left with a handful, which are all measured. No approximation is
+//! made anywhere.
 
 use crate::profile::Segment;
 use glam::DVec2;
@@ -21,9 +24,10 @@ const LEAF: usize = 4;
 /// Below this many segments halving costs more than it saves.
 const FEW: usize = 3;
 
-/// Evaluates `value(column, row, distance, segment)` for every texel of a grid of `columns x rows` square texels of side
-/// `1 / rows` (texel (0, 0) at the top left, the axis at the left edge): `distance` from the texel's centre to the nearest
-/// segment in object units, `segment` its index. Without segments: `+inf` and 0.
+/// Evaluates `value(column, row, distance, segment)` for every texel of a grid of `columns x rows`
+/// square texels of side `1 / rows` (texel (0, 0) at the top left, the axis at the left edge):
+/// `distance` from the texel's centre to the nearest segment in object units, `segment` its index.
+/// Without segments: `+inf` and 0.
 pub(crate) fn for_each_texel<T: Copy + Default + Send>(
     segments: &[Segment],
     columns: usize,
@@ -103,7 +107,8 @@ struct Search<F> {
 }
 
 impl<F> Search<F> {
-    /// Appends to the stack those of its entries from `from` on that can be nearest within a square of texels.
+    /// Appends to the stack those of its entries from `from` on that can be nearest within a square
+    /// of texels.
     fn narrow(&self, [x, y]: [usize; 2], side: usize, from: usize, stack: &mut Vec<u32>) {
         let middle = DVec2::new(x as f64, y as f64) + 0.5 * side as f64;
         // Centres of texels alone are asked for, so the square ends half a texel inside its texels.
@@ -167,7 +172,8 @@ impl<F> Search<F> {
 }
 
 impl<T, F: Fn(usize, usize, f64, usize) -> T> Search<F> {
-    /// Fills a square of `out`, whose first row is row `top` of the grid, from the candidates `stack[from..]`.
+    /// Fills a square of `out`, whose first row is row `top` of the grid, from the candidates
+    /// `stack[from..]`.
     fn fill(
         &self,
         [x, y]: [usize; 2],

@@ -12,8 +12,8 @@ use super::{MapFormat, ShapeMap};
 /// | [`MapFormat::R16`] | `R16_SFLOAT`, signed | as stored (`scale` = 1) |
 /// | [`MapFormat::R32`] | `R32_SFLOAT`, signed | as stored (`scale` = 1) |
 ///
-/// A stored distance, read back as the table says, never exceeds the map's; of rgba8 that holds for distances that are not
-/// negative, the others are stored as 0.
+/// A stored distance, read back as the table says, never exceeds the map's; of rgba8 that holds for
+/// distances that are not negative, the others are stored as 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodedMap {
     /// Texels along `r`.
@@ -78,7 +78,8 @@ impl ShapeMap {
         }
     }
 
-    /// The largest distance in the map, object units: the papers' scale, in which their extension and bevel are given.
+    /// The largest distance in the map, object units: the papers' scale, in which their extension
+    /// and bevel are given.
     #[must_use]
     pub fn largest_distance(&self) -> f32 {
         self.distance
@@ -111,8 +112,8 @@ impl ShapeMap {
         (scale, bytes)
     }
 
-    /// Unit gradient `(g_r, g_z)` at each texel's centre: central differences of the distances (one-sided at the border,
-    /// mirrored at the axis), 0 where they cancel.
+    /// Unit gradient `(g_r, g_z)` at each texel's centre: central differences of the distances
+    /// (one-sided at the border, mirrored at the axis), 0 where they cancel.
     #[must_use]
     pub fn gradients(&self) -> Vec<[f32; 2]> {
         let (columns, rows) = (self.columns as usize, self.rows as usize);

@@ -1,9 +1,11 @@
 //! The exact Euclidean distance transform of a two-valued grid, in linear time.
 //!
-//! Each cell gets the squared distance between its centre and the nearest centre of the other value. Along rows that is
-//! counting; down columns it is the lower envelope of parabolas (Felzenszwalb & Huttenlocher 2012; Meijster, Roerdink &
-//! Hesselink 2000), found in integers without a division. Both signs come out of one pass: within a run of equal cells of a
-//! column nothing beyond the run's two ends can be nearest, because there the other value begins at distance 0.
+//! Each cell gets the squared distance between its centre and the nearest centre of the other
+//! value. Along rows that is counting; down columns it is the lower envelope of parabolas
+//! (Felzenszwalb & Huttenlocher 2012; Meijster, Roerdink & Hesselink 2000), found in integers
+//! without a division. Both signs come out of one pass: within a run of equal cells of a column
+//! nothing beyond the run's two ends can be nearest, because there the other value begins at
+//! distance 0.
 
 use rayon::prelude::*;
 
@@ -22,10 +24,11 @@ pub const NONE: u32 = u32::MAX;
 /// Columns handled together: one cache line of distances per row.
 const STRIP: usize = 16;
 
-/// For each cell of `form` (row by row, `columns` to the row) the squared distance, in cells, from its centre to the centre of
-/// the nearest cell of the other value; [`NONE`] where there is none.
+/// For each cell of `form` (row by row, `columns` to the row) the squared distance, in cells, from
+/// its centre to the centre of the nearest cell of the other value; [`NONE`] where there is none.
 ///
-/// Exact for grids up to 32768 cells on a side. The same for any number of threads. An incomplete last row is left out.
+/// Exact for grids up to 32768 cells on a side. The same for any number of threads. An incomplete
+/// last row is left out.
 #[must_use]
 pub fn squared_to_other(form: &[bool], columns: usize, around: Surroundings) -> Vec<u32> {
     if columns == 0 {
@@ -139,8 +142,8 @@ impl Envelope {
     fn push(&mut self, at: i64, height: i64) {
         while let [.., a0, a1] = self.at[..] {
             let [.., h0, h1] = self.height[..] else { break };
-            // Twice where neighbours cross, as fractions: the middle one is nowhere the lowest if it meets the new one no later
-            // than it met the one before.
+            // Twice where neighbours cross, as fractions: the middle one is nowhere the lowest if
+            // it meets the new one no later than it met the one before.
             let (n0, d0) = (h1 + a1 * a1 - h0 - a0 * a0, a1 - a0);
             let (n1, d1) = (height + at * at - h1 - a1 * a1, at - a1);
             if n1 * d0 > n0 * d1 {

@@ -1,9 +1,11 @@
 //! Profiles from SVG drawings: what shows dark is solid, exactly along the drawn curves.
 //!
-//! Every fill and stroke becomes a region of the plane (curves flattened within 1e-5 of the drawing's height) and is laid over what
-//! was painted before; what shows darker than one half over white is the solid. Groups, `use`, transforms, opacity, clip
-//! paths, dashes, caps and joins count. A gradient stands for the mean of its stops, as long as these look all dark or
-//! all light. Text, pictures, patterns, masks, filters and blend modes have no outline here and are refused by name.
+//! Every fill and stroke becomes a region of the plane (curves flattened within 1e-5 of the
+//! drawing's height) and is laid over what was painted before; what shows darker than one half over
+//! white is the solid. Groups, `use`, transforms, opacity, clip paths, dashes, caps and joins
+//! count. A gradient stands for the mean of its stops, as long as these look all dark or all light.
+//! Text, pictures, patterns, masks, filters and blend modes have no outline here and are refused by
+//! name.
 
 use super::faults::{empty_fault, full_fault};
 use super::paint::{Layer, Rgba, over};
@@ -73,8 +75,8 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     Ok(Profile::new(outline, radius))
 }
 
-/// Leaves out loops thinner than the flattening can tell: where shapes abut, rounding leaves cracks and specks between them, and each
-/// would be a surface.
+/// Leaves out loops thinner than the flattening can tell: where shapes abut, rounding leaves cracks
+/// and specks between them, and each would be a surface.
 fn without_slivers(mut outline: Outline) -> Outline {
     outline.loops.retain(|points| {
         let ring = || points.iter().zip(points.iter().cycle().skip(1));
@@ -100,8 +102,8 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Paints a group's children onto the layer, `to_profile` taking the group's coordinates to `(r, z)`. Returns how many
-    /// fills and strokes there were.
+    /// Paints a group's children onto the layer, `to_profile` taking the group's coordinates to
+    /// `(r, z)`. Returns how many fills and strokes there were.
     fn draw_children(
         &self,
         group: &usvg::Group,
@@ -295,7 +297,8 @@ impl Canvas {
     }
 }
 
-/// Refuses curves so large that flattening them would take all memory; what is seen of them is next to nothing.
+/// Refuses curves so large that flattening them would take all memory; what is seen of them is next
+/// to nothing.
 fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
     let b = (to_profile * curve.clone()).control_box();
     let reach = b.x0.abs().max(b.x1.abs()).max(b.y0.abs()).max(b.y1.abs());
@@ -323,8 +326,8 @@ fn check_dashes(curve: &BezPath, stroke: &usvg::Stroke) -> Result<()> {
     )))
 }
 
-/// A closed contour cut by the box `0 <= r <= radius`, `0 <= z <= 1` (Sutherland & Hodgman 1974). Pieces of it may run
-/// along the box's border twice, there and back: they enclose nothing.
+/// A closed contour cut by the box `0 <= r <= radius`, `0 <= z <= 1` (Sutherland & Hodgman 1974).
+/// Pieces of it may run along the box's border twice, there and back: they enclose nothing.
 fn clip_to_box(mut points: Vec<DVec2>, radius: f64) -> Vec<DVec2> {
     type Inside = fn(DVec2, f64) -> f64;
     let sides: [Inside; 4] = [|p, _| p.x, |p, r| r - p.x, |p, _| p.y, |p, _| 1.0 - p.y];

@@ -9,10 +9,12 @@ use rayon::prelude::*;
 
 /// A profile from the bytes of a PNG or JPEG.
 ///
-/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then is, and what is darker
-/// than one half is solid. Width and height are read and checked before anything is decoded.
+/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then
+/// is, and what is darker than one half is solid. Width and height are read and checked before
+/// anything is decoded.
 ///
-/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the form, its axis the left edge.
+/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the
+/// form, its axis the left edge.
 pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
         return baked(bytes, &header);
@@ -46,7 +48,8 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
     })
 }
 
-/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how light over black.
+/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how
+/// light over black.
 fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
     let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
     let (width, height) = (picture.width, picture.height);
@@ -93,8 +96,8 @@ fn solid<T: Copy + Into<f32> + Sync>(
     values.par_chunks_exact(channels).map(part).collect()
 }
 
-/// The part of the picture right of the axis. With the axis in the middle of an odd width, the first column is the one that the
-/// axis splits.
+/// The part of the picture right of the axis. With the axis in the middle of an odd width, the
+/// first column is the one that the axis splits.
 fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
     if axis == ProfileAxis::Left {
         return dark;

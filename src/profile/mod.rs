@@ -83,9 +83,9 @@ impl Profile {
     ///
     /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the
     /// bottom edge `z = 0`. Solid is what is darker than one half over white, unless the options
-    /// say otherwise. Pictures are traced as by [`Profile::traced`]. The curves of drawings are flattened
-    /// within 1e-5 of the height. `R` is width / height with the axis at the left, half of that
-    /// with it in the middle.
+    /// say otherwise. Pictures are traced as by [`Profile::traced`]. The curves of drawings are
+    /// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, half
+    /// of that with it in the middle.
     ///
     /// # Errors
     /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor drawing,

@@ -80,20 +80,22 @@ impl Outline {
             .min_by(|x, y| x.distance_squared(p).total_cmp(&y.distance_squared(p)))
     }
 
-    /// Exact signed Euclidean distance of `p = (r, z)`, `r >= 0`, to the surface, object units, positive outside.
+    /// Exact signed Euclidean distance of `p = (r, z)`, `r >= 0`, to the surface, object units,
+    /// positive outside.
     ///
-    /// The axis is no boundary. The mirrored half needs no look: with `r >= 0` a point of the surface is never farther
-    /// than its mirror image. `+inf` when there is no surface.
+    /// The axis is no boundary. The mirrored half needs no look: with `r >= 0` a point of the
+    /// surface is never farther than its mirror image. `+inf` when there is no surface.
     #[must_use]
     pub fn signed_distance(&self, p: DVec2) -> f64 {
         let d = self.nearest(p).map_or(f64::INFINITY, |q| q.distance(p));
         if self.contains(p) { -d } else { d }
     }
 
-    /// Unit gradient of the signed distance at `p`: away from the surface outside, towards it inside.
+    /// Unit gradient of the signed distance at `p`: away from the surface outside, towards it
+    /// inside.
     ///
-    /// On the surface itself, where the difference vanishes, it is the outward normal of the segment that `p` lies on.
-    /// `(0, 0)` when there is no surface.
+    /// On the surface itself, where the difference vanishes, it is the outward normal of the
+    /// segment that `p` lies on. `(0, 0)` when there is no surface.
     #[must_use]
     pub fn gradient(&self, p: DVec2) -> DVec2 {
         let nearest = self.surface_segments().min_by(|x, y| {
@@ -112,8 +114,8 @@ impl Outline {
         if self.contains(p) { -unit } else { unit }
     }
 
-    /// For each height of `heights`, the radii at which a horizontal line crosses the boundary, ascending: between the
-    /// first and the second the line is inside, and so on.
+    /// For each height of `heights`, the radii at which a horizontal line crosses the boundary,
+    /// ascending: between the first and the second the line is inside, and so on.
     #[must_use]
     pub fn crossings(&self, heights: impl ExactSizeIterator<Item = f64> + Clone) -> Vec<Vec<f64>> {
         let mut rows = vec![Vec::new(); heights.len()];
@@ -135,7 +137,8 @@ impl Outline {
     }
 }
 
-/// Where a segment crosses the height `z`. Its lower end counts and its upper does not, so that a corner counts once.
+/// Where a segment crosses the height `z`. Its lower end counts and its upper does not, so that a
+/// corner counts once.
 fn crossing(s: &Segment, z: f64) -> Option<f64> {
     let (low, high) = if s.a.y <= s.b.y {
         (s.a, s.b)

@@ -9,8 +9,8 @@ pub(super) type Rgba = [f32; 4];
 #[derive(Debug, Default)]
 pub(super) struct Layer {
     cells: Vec<(Rgba, Region)>,
-    /// Opaque paint of one colour that lies on top and is not yet merged: merging many shapes at once costs far less than
-    /// one after the other.
+    /// Opaque paint of one colour that lies on top and is not yet merged: merging many shapes at
+    /// once costs far less than one after the other.
     pending: Vec<Contour>,
     pending_color: Rgba,
 }

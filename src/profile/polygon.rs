@@ -5,21 +5,22 @@ use super::region::{Rule, enclosed};
 use crate::error::{Error, Result, Stage};
 use glam::DVec2;
 
-/// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite 0, and a sliver along
-/// the axis would count as surface.
+/// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite
+/// 0, and a sliver along the axis would count as surface.
 const AXIS_SLACK: f64 = 1e-9;
 
 /// Largest coordinate: far beyond any box, and small enough to keep nine digits.
 pub(super) const EXTENT: f64 = 1e4;
 
-/// A profile from a closed polygon of `(r, z)` points in object units; the last point joins the first, either way round.
+/// A profile from a closed polygon of `(r, z)` points in object units; the last point joins the
+/// first, either way round.
 ///
-/// Where the polygon crosses or covers itself, the solid is what it winds round at all (non-zero rule). It may reach
-/// past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
+/// Where the polygon crosses or covers itself, the solid is what it winds round at all (non-zero
+/// rule). It may reach past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
 ///
 /// # Errors
-/// [`Stage::Profile`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a point with `r < 0`, no
-/// area, or a radius that is not positive and finite.
+/// [`Stage::Profile`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a
+/// point with `r < 0`, no area, or a radius that is not positive and finite.
 pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
     let fault = |message: String| Err(Error::new(Stage::Profile, message).at_key("polygon"));
     if !(radius.is_finite() && radius > 0.0) {

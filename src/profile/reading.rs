@@ -1,4 +1,5 @@
-//! How a picture is read: which grey is solid, how much noise is smoothed away, and what about it looks unintended.
+//! How a picture is read: which grey is solid, how much noise is smoothed away, and what about it
+//! looks unintended.
 
 use super::{Outline, ProfileAxis, Raster};
 use crate::error::{Error, Result, Stage};
@@ -9,13 +10,14 @@ use rayon::prelude::*;
 pub struct ProfileOptions {
     /// Which part of the picture is the half-plane.
     pub axis: ProfileAxis,
-    /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's own (sRGB) values. Pictures
-    /// alone.
+    /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
+    /// own (sRGB) values. Pictures alone.
     pub threshold: f64,
     /// Whether light is solid instead, over black: what is transparent stays empty. Pictures alone.
     pub invert: bool,
-    /// Standard deviation of the Gaussian by which noise is blurred away before the outline is traced, pixels of the picture;
-    /// 0 for none, at most [`ProfileOptions::MOST_SMOOTH`]. Pictures alone.
+    /// Standard deviation of the Gaussian by which noise is blurred away before the outline is
+    /// traced, pixels of the picture; 0 for none, at most [`ProfileOptions::MOST_SMOOTH`]. Pictures
+    /// alone.
     pub smooth: f64,
 }
 
@@ -76,8 +78,8 @@ impl ProfileOptions {
         Err(Error::new(Stage::Profile, message).at_key(key))
     }
 
-    /// The darkness of a picture's half-plane as coverage, with the threshold at one half. `split`: the axis is the middle of
-    /// column 0.
+    /// The darkness of a picture's half-plane as coverage, with the threshold at one half. `split`:
+    /// the axis is the middle of column 0.
     pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
         // What is darker than this is solid.
         let edge = 1.0
@@ -103,7 +105,8 @@ impl ProfileOptions {
     }
 }
 
-/// Blurs by a Gaussian. Left of the axis stands the mirror image; beyond the other borders the picture goes on as it ends.
+/// Blurs by a Gaussian. Left of the axis stands the mirror image; beyond the other borders the
+/// picture goes on as it ends.
 fn blur(raster: &mut Raster, sigma: f64, split: bool) {
     let reach = (3.0 * sigma).ceil() as isize;
     let weights: Vec<f32> = (-reach..=reach)
@@ -149,7 +152,8 @@ const SPECK: f64 = 9.0;
 /// As many specks are noise.
 const NOISE: usize = 8;
 
-/// What about a picture and its outline looks unintended: a sentence each, with the key that mends it.
+/// What about a picture and its outline looks unintended: a sentence each, with the key that mends
+/// it.
 pub(super) fn warnings(
     raster: &Raster,
     outline: &Outline,
@@ -322,7 +326,8 @@ mod tests {
         };
         let profile = read(&clean, smooth);
         assert_ball(&profile, 0.8);
-        // Mirrored at the axis, the ball's poles stay level: the second derivative moves the edge alike all round.
+        // Mirrored at the axis, the ball's poles stay level: the second derivative moves the edge
+        // alike all round.
         let poles = profile.outline.bounds().unwrap();
         assert!((poles.z_max - 0.5 - (0.5 - poles.z_min)).abs() < 1e-6);
     }

@@ -1,4 +1,5 @@
-//! A camera as rays: the one place where pixels become directions, shared by the GPU's block and the reference.
+//! A camera as rays: the one place where pixels become directions, shared by the GPU's block and
+//! the reference.
 
 use super::Camera;
 use crate::error::{Error, Result, Stage};
@@ -6,10 +7,12 @@ use glam::DVec3;
 
 /// The rays of a camera for pictures of one size.
 ///
-/// With `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`, the ray through the centre of pixel
-/// `(i, j)` is `eye + t (f + x right + y up')`, `x = (2 (i + 1/2) / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`.
-/// The direction is not normalised: `t` is the depth along `f`. Since pixels are square, `right` and `up` are kept multiplied
-/// by the width of a pixel at depth 1, `2 tan(fov/2) / h`, and a pixel is a number of such steps from the middle.
+/// With `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`, the ray
+/// through the centre of pixel `(i, j)` is `eye + t (f + x right + y up')`, with
+/// `x = (2 (i + 1/2) / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`. The direction
+/// is not normalised: `t` is the depth along `f`. Since pixels are square, `right` and `up` are kept multiplied by the
+/// width of a pixel at depth 1, `2 tan(fov/2) / h`, and a pixel is a number of such steps from the
+/// middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFrame {
     /// The eye, world units.
@@ -20,19 +23,21 @@ pub struct CameraFrame {
     pub right: DVec3,
     /// One pixel up, at depth 1.
     pub up: DVec3,
-    /// Where the view direction meets the picture, in pixels from its upper left corner: `(w / 2, h / 2)` less the
-    /// [shift](Camera::shift).
+    /// Where the view direction meets the picture, in pixels from its upper left corner: `(w / 2, h
+    /// / 2)` less the [shift](Camera::shift).
     pub middle: [f64; 2],
 }
 
 impl CameraFrame {
     /// The rays of `camera` for pictures of `width x height` pixels.
     ///
-    /// When `up` points along the view, world y takes its place (then world x): one may look straight down.
+    /// When `up` points along the view, world y takes its place (then world x): one may look
+    /// straight down.
     ///
     /// # Errors
-    /// [`Stage::Scene`], naming the key, when eye and target are one point, the field of view is not between 0 and 180
-    /// degrees, `up` is zero, or a number is not finite; [`Stage::Frame`] when a side of the picture is 0.
+    /// [`Stage::Scene`], naming the key, when eye and target are one point, the field of view is
+    /// not between 0 and 180 degrees, `up` is zero, or a number is not finite; [`Stage::Frame`]
+    /// when a side of the picture is 0.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
         let wrong = |key: &str, what: &str| {
             Err(Error::new(Stage::Scene, what).at_key(format!("camera.{key}")))
@@ -80,7 +85,8 @@ impl CameraFrame {
         })
     }
 
-    /// Direction through the point `(x, y)` of the picture, in pixels from its upper left corner; depth 1 along `forward`.
+    /// Direction through the point `(x, y)` of the picture, in pixels from its upper left corner;
+    /// depth 1 along `forward`.
     #[must_use]
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
         self.forward + self.right * (x - self.middle[0]) + self.up * (self.middle[1] - y)

@@ -20,7 +20,8 @@ impl Scene {
     /// Looks at every value.
     ///
     /// # Errors
-    /// [`Stage::Scene`]: the first value out of its range, with its key (`object.0.scale`) and what would be right.
+    /// [`Stage::Scene`]: the first value out of its range, with its key (`object.0.scale`) and what
+    /// would be right.
     pub fn check(&self) -> Result<()> {
         color("background", &self.background)?;
         camera(&self.camera)?;
@@ -97,7 +98,8 @@ fn camera(camera: &Camera) -> Result<()> {
     length("camera.target", camera.target)?;
     length("camera.up", camera.up)?;
     let view = camera.target - camera.eye;
-    // Relative to where they stand: far from the origin, neighbours that differ in the last digits have no direction.
+    // Relative to where they stand: far from the origin, neighbours that differ in the last digits
+    // have no direction.
     let size = camera.eye.length().max(camera.target.length());
     if view.length() <= 1e-12 * size || view == DVec3::ZERO {
         return Err(fail(

@@ -1,7 +1,7 @@
 //! Scenes from TOML files (feature `scene-file`).
 //!
-//! Paths are relative to the scene file. Unknown keys are errors. Every key but an object's `profile` (or `polygon`) and
-//! the camera's `eye` and `target` has a default.
+//! Paths are relative to the scene file. Unknown keys are errors. Every key but an object's
+//! `profile` (or `polygon`) and the camera's `eye` and `target` has a default.
 //!
 //! | key | meaning | default |
 //! |---|---|---|
@@ -106,11 +106,12 @@ const OBJECT: &[&str] = &[
 /// `R` of a polygon's box unless it says otherwise.
 const RADIUS: f64 = 0.5;
 
-/// Reads the scene `file` and all that it names. Each of `sets` is `key=value`, put in place of what the file says:
-/// `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
+/// Reads the scene `file` and all that it names. Each of `sets` is `key=value`, put in place of
+/// what the file says: `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
 ///
 /// # Errors
-/// [`Stage::Scene`] and [`Stage::Profile`], with file and key; [`Stage::Usage`] for a malformed assignment.
+/// [`Stage::Scene`] and [`Stage::Profile`], with file and key; [`Stage::Usage`] for a malformed
+/// assignment.
 pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
     SceneFile::open(file)?.scene(sets)
 }
@@ -123,7 +124,8 @@ pub fn parse(text: &str, folder: impl AsRef<Path>, sets: &[String]) -> Result<Sc
     SceneFile::parse(text, folder)?.scene(sets)
 }
 
-/// A scene file that was read, for scenes that differ in some keys: what it names is read once, and shared by all of them.
+/// A scene file that was read, for scenes that differ in some keys: what it names is read once, and
+/// shared by all of them.
 pub struct SceneFile {
     root: Table,
     file: Option<PathBuf>,
@@ -131,8 +133,8 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads the text of `file`, a scene in TOML; or a profile (SVG or a picture), which gets a scene of its own: seen from in
-    /// front and a little above, as a whole.
+    /// Reads the text of `file`, a scene in TOML; or a profile (SVG or a picture), which gets a
+    /// scene of its own: seen from in front and a little above, as a whole.
     ///
     /// # Errors
     /// [`Stage::Scene`], with the file; [`Stage::Profile`] for a profile that cannot be read.
@@ -224,8 +226,8 @@ impl SceneFile {
         })
     }
 
-    /// The file's text with each of `sets` (`key=value`, as in [`load`]) in place of what it says. Its paths are relative to
-    /// the same folder; comments and order of keys are lost.
+    /// The file's text with each of `sets` (`key=value`, as in [`load`]) in place of what it says.
+    /// Its paths are relative to the same folder; comments and order of keys are lost.
     ///
     /// # Errors
     /// [`Stage::Usage`] for a malformed assignment.

@@ -62,7 +62,8 @@ impl Growth {
             bevel,
             chamfer,
         } = object.offset;
-        // A bevel is no less than 0, so the offset is largest at the bottom, and from z = 1 on at most e.
+        // A bevel is no less than 0, so the offset is largest at the bottom, and from z = 1 on at
+        // most e.
         let largest = extend + bevel * chamfer;
         let pixel = object.profile.raster.as_ref().map(|r| f64::from(r.rows));
         let needed = |offset: f64, room: f64| {

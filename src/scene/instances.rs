@@ -7,11 +7,13 @@ use std::path::Path;
 
 /// Numbers in a row.
 const COLUMNS: usize = 10;
-/// More copies than this are taken for a mistake: their transforms alone would be hundreds of megabytes.
+/// More copies than this are taken for a mistake: their transforms alone would be hundreds of
+/// megabytes.
 const MAX_COPIES: usize = 1 << 20;
 
-/// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x` are passed over.
-/// Rotations are brought to unit length. A byte order mark, as spreadsheets write it, is passed over.
+/// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x`
+/// are passed over. Rotations are brought to unit length. A byte order mark, as spreadsheets write
+/// it, is passed over.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let text = std::fs::read_to_string(file).map_err(|e| {
         Error::new(

@@ -1,4 +1,5 @@
-//! One table of a scene file: known keys only, each read as the type it must have, every message with the key's full path.
+//! One table of a scene file: known keys only, each read as the type it must have, every message
+//! with the key's full path.
 
 use crate::error::{Error, Result, Stage};
 use std::path::{Path, PathBuf};
@@ -272,7 +273,8 @@ fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
         .map(|(_, name)| name)
 }
 
-/// Damerau's distance: insertions, deletions, changes and swaps of neighbours that turn `a` into `b`.
+/// Damerau's distance: insertions, deletions, changes and swaps of neighbours that turn `a` into
+/// `b`.
 fn edits(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];

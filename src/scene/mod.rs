@@ -1,5 +1,5 @@
-//! What is to be seen: camera, lights, objects. Plain values, checked once by [`Scene::check`]; files are read by
-//! `file::load` (feature `scene-file`).
+//! What is to be seen: camera, lights, objects. Plain values, checked once by [`Scene::check`];
+//! files are read by `file::load` (feature `scene-file`).
 //!
 //! A scene needs no file. An engine fills the same values:
 //!
@@ -62,7 +62,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// An empty scene: transparent black behind, a little ambient light, one white light, no shadows.
+    /// An empty scene: transparent black behind, a little ambient light, one white light, no
+    /// shadows.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
         Self {
@@ -89,7 +90,8 @@ impl Scene {
     pub const AMBIENT: [f32; 3] = [0.1; 3];
 }
 
-/// A pinhole camera. Pixel `(i, j)` of a `w x h` picture is looked at through its centre; row 0 is on top.
+/// A pinhole camera. Pixel `(i, j)` of a `w x h` picture is looked at through its centre; row 0 is
+/// on top.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Where the eye is, world units.
@@ -100,8 +102,8 @@ pub struct Camera {
     pub up: DVec3,
     /// Vertical field of view, degrees, between 0 and 180.
     pub fov_y: f64,
-    /// Where in its pixel each ray passes, pixels right of and below the centre. Pictures of several shifts, averaged, are
-    /// free of jagged edges.
+    /// Where in its pixel each ray passes, pixels right of and below the centre. Pictures of
+    /// several shifts, averaged, are free of jagged edges.
     pub shift: [f64; 2],
 }
 
@@ -109,7 +111,8 @@ impl Camera {
     /// The vertical field of view that a camera has unless it is told, degrees.
     pub const FOV_Y: f64 = 40.0;
 
-    /// A camera at `eye` that looks at `target`, `+z` up, with a vertical field of view of [`Camera::FOV_Y`].
+    /// A camera at `eye` that looks at `target`, `+z` up, with a vertical field of view of
+    /// [`Camera::FOV_Y`].
     #[must_use]
     pub fn new(eye: DVec3, target: DVec3) -> Self {
         Self {

@@ -1,4 +1,5 @@
-//! One solid of revolution: what is turned, what covers it, how far its surface stands off, where it stands.
+//! One solid of revolution: what is turned, what covers it, how far its surface stands off, where
+//! it stands.
 
 use super::Clip;
 use crate::maps::{ColorMap, DisplacementMap, Projection};
@@ -30,13 +31,15 @@ pub struct Object {
     pub clip: Clip,
     /// `(Ox, Oy)`: where the axis stands in box texture coordinates.
     pub axis: [f64; 2],
-    /// How many replicas the box holds along x, y, z: each is the whole solid, shrunk to its cell. At least 1 each.
+    /// How many replicas the box holds along x, y, z: each is the whole solid, shrunk to its cell.
+    /// At least 1 each.
     pub repeat: [u32; 3],
     /// Whether every second replica along x, y, z is reflected.
     pub mirror: [bool; 3],
     /// Where it stands.
     pub placement: Placement,
-    /// Where its copies stand; empty: once, at `placement`. With copies, each row's placement is used instead.
+    /// Where its copies stand; empty: once, at `placement`. With copies, each row's placement is
+    /// used instead.
     pub instances: Vec<Placement>,
 }
 
@@ -46,7 +49,8 @@ impl Object {
     /// The colour of an object that names none, linear RGB.
     pub const COLOR: [f32; 3] = [0.8; 3];
 
-    /// `profile` turned about its axis, with every other value at its default: light grey, plain, at the origin.
+    /// `profile` turned about its axis, with every other value at its default: light grey, plain,
+    /// at the origin.
     #[must_use]
     pub fn new(name: impl Into<String>, profile: Arc<Profile>) -> Self {
         Self {
@@ -67,7 +71,8 @@ impl Object {
         }
     }
 
-    /// Whether it looks the same in its own space: all values but placement and instances are equal, what is shared is one.
+    /// Whether it looks the same in its own space: all values but placement and instances are
+    /// equal, what is shared is one.
     pub(crate) fn same_look(&self, other: &Self) -> bool {
         fn one<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
             match (a, b) {
@@ -129,8 +134,8 @@ impl Default for Placement {
     }
 }
 
-/// The offset `w(z)` by which the surface `F = d - w = 0` stands off the profile, with the depth `u = 1 - z`:
-/// `w = extend + bevel * min(u, chamfer)`.
+/// The offset `w(z)` by which the surface `F = d - w = 0` stands off the profile, with the depth `u
+/// = 1 - z`: `w = extend + bevel * min(u, chamfer)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     /// `e`, object units; negative insets.
@@ -204,10 +209,12 @@ impl Default for Texturing {
 /// How a height map tilts the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BumpForm {
-    /// By the gradient along the surface, in which a groove is as deep near the axis as far from it (Mikkelsen 2010).
+    /// By the gradient along the surface, in which a groove is as deep near the axis as far from it
+    /// (Mikkelsen 2010).
     #[default]
     SurfaceGradient,
-    /// As printed in the papers on revolution mapping, without the factor `1 / (2 pi r)` of the azimuth.
+    /// As printed in the papers on revolution mapping, without the factor `1 / (2 pi r)` of the
+    /// azimuth.
     Papers,
 }
 

@@ -3,8 +3,8 @@
 use crate::error::{Error, Result, Stage};
 use toml::{Table, Value};
 
-/// Puts `assignment`, `path.to.key=value`, into `root`. The value is read as TOML, else taken as text; tables on
-/// the way are made, list entries must exist.
+/// Puts `assignment`, `path.to.key=value`, into `root`. The value is read as TOML, else taken as
+/// text; tables on the way are made, list entries must exist.
 pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
     let (path, value) = assignment.split_once('=').ok_or_else(|| {
         Error::new(

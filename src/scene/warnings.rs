@@ -11,8 +11,9 @@ const BRIGHT: f32 = 16.0;
 const CROWD: usize = 1000;
 
 impl Scene {
-    /// What looks unintended in a picture of `width x height` pixels, a sentence each, with its key: a field of view that looks like
-    /// radians, colours above 1, what the profiles' pictures [warn of](crate::profile::Profile::warnings), shadows of a crowd, nothing in view.
+    /// What looks unintended in a picture of `width x height` pixels, a sentence each, with its
+    /// key: a field of view that looks like radians, colours above 1, what the profiles' pictures
+    /// [warn of](crate::profile::Profile::warnings), shadows of a crowd, nothing in view.
     #[must_use]
     pub fn warnings(&self, width: u32, height: u32) -> Vec<String> {
         let mut found = Vec::new();

@@ -4,13 +4,14 @@ use std::str::FromStr;
 
 /// Allowed error of silhouettes and depths, in pixels of the view that is drawn.
 ///
-/// Surfaces are fitted at several **levels**, each with a proven bound on how far it lies from the exact surface. An object takes
-/// the coarsest level whose bound, seen at the object's nearest point, is at most a sixteenth of the tolerance. So a silhouette
-/// moves by at most a sixteenth of it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
+/// Surfaces are fitted at several **levels**, each with a proven bound on how far it lies from the
+/// exact surface. An object takes the coarsest level whose bound, seen at the object's nearest
+/// point, is at most a sixteenth of the tolerance. So a silhouette moves by at most a sixteenth of
+/// it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
 /// 99.9 % of the pixels stay within the tolerance (measured: `revmap bench --budget`).
 ///
-/// Searches on patches ([`Solver::Hull`](super::Solver::Hull), [`Solver::Quadric`](super::Solver::Quadric)) follow it; all
-/// others ignore it.
+/// Searches on patches ([`Solver::Hull`](super::Solver::Hull),
+/// [`Solver::Quadric`](super::Solver::Quadric)) follow it; all others ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Tolerance(f64);
 

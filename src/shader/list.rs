@@ -1,5 +1,6 @@
-//! The list of SPIR-V modules: every entry file with every set of macros that some pipeline needs. `build.rs` compiles this list, and
-//! pipelines look modules up in it; so it names GLSL macros, and depends on nothing.
+//! The list of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
+//! `build.rs` compiles this list, and pipelines look modules up in it; so it names GLSL macros, and
+//! depends on nothing.
 
 /// An entry file of `shaders-glsl/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -71,7 +72,8 @@ pub enum Search {
     Linear,
     /// The same on the papers' texture.
     LinearRgba8,
-    /// Patches of quadrics in a tree. Fragments of proxy hulls solve theirs without it, and shadows on them with it.
+    /// Patches of quadrics in a tree. Fragments of proxy hulls solve theirs without it, and shadows
+    /// on them with it.
     Quadric,
     /// The same, in tables that do not fit into a uniform buffer.
     QuadricLarge,
@@ -86,7 +88,8 @@ pub enum Search {
 }
 
 impl Search {
-    /// The search that does this one's work and more: with a bevel, of tables of any size. `live` and `quadric` stay what they are.
+    /// The search that does this one's work and more: with a bevel, of tables of any size. `live`
+    /// and `quadric` stay what they are.
     #[must_use]
     pub const fn general(self) -> Self {
         match self {
@@ -112,7 +115,8 @@ impl Search {
         }
     }
 
-    /// Whether it is the search for live parameters on a map of signed distances, to which convex hulls belong.
+    /// Whether it is the search for live parameters on a map of signed distances, to which convex
+    /// hulls belong.
     #[must_use]
     pub const fn is_live(self) -> bool {
         matches!(self, Self::Live | Self::LiveBeveled)
@@ -190,7 +194,8 @@ impl Module {
         }
     }
 
-    /// The module of the list that does what this one would, with as little else as possible; `listed` says what is in the list.
+    /// The module of the list that does what this one would, with as little else as possible;
+    /// `listed` says what is in the list.
     #[must_use]
     pub fn covered_by(self, listed: impl Fn(&Self) -> bool) -> Option<Self> {
         [Features::Plain, Features::Textured, Features::Full]
@@ -224,7 +229,8 @@ impl Module {
         }
     }
 
-    /// The macros that the GLSL is compiled with; what is left out is 0 there. `build.rs` alone asks.
+    /// The macros that the GLSL is compiled with; what is left out is 0 there. `build.rs` alone
+    /// asks.
     #[must_use]
     #[allow(dead_code)]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
@@ -326,8 +332,8 @@ const SEARCHES: [Search; 15] = [
     Search::RelaxedLarge,
 ];
 
-/// Whether boxes and the compute stage have a module of these. Searches that are there to be compared with, and rare cases, are drawn
-/// by more general modules where they are not drawn plain.
+/// Whether boxes and the compute stage have a module of these. Searches that are there to be
+/// compared with, and rare cases, are drawn by more general modules where they are not drawn plain.
 fn has(search: Search, features: Features, output: Output, dispatch: Dispatch) -> bool {
     use Search as S;
     let main = matches!(search, S::Live | S::LiveBeveled | S::Quadric);

@@ -23,7 +23,8 @@ fn places() -> &'static HashMap<Module, Range<usize>> {
     })
 }
 
-/// The module of [`modules`] that stands for this one: itself, or the least general one that does its work.
+/// The module of [`modules`] that stands for this one: itself, or the least general one that does
+/// its work.
 #[must_use]
 pub fn listed(module: &Module) -> Option<Module> {
     module.covered_by(|m| places().contains_key(m))
@@ -35,7 +36,8 @@ pub fn words(module: &Module) -> Option<Vec<u32>> {
     unpacked(ARCHIVE.get(places().get(&listed(module)?)?.clone())?)
 }
 
-/// Words from what `build.rs` has packed: deflated; seven bits a byte, the least first, the eighth says that more follow.
+/// Words from what `build.rs` has packed: deflated; seven bits a byte, the least first, the eighth
+/// says that more follow.
 #[must_use]
 pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
     let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
@@ -52,8 +54,8 @@ pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
     Some(words)
 }
 
-/// A module's words for reversed depth: fragments that promise to lie no nearer than their triangle promise so where depth falls
-/// away from the eye.
+/// A module's words for reversed depth: fragments that promise to lie no nearer than their triangle
+/// promise so where depth falls away from the eye.
 #[must_use]
 pub fn depth_less(words: &[u32]) -> Vec<u32> {
     const HEADER: usize = 5;

@@ -1,7 +1,9 @@
-//! The variant: everything a pipeline is made for, so that it holds one search and nothing that it does not use.
+//! The variant: everything a pipeline is made for, so that it holds one search and nothing that it
+//! does not use.
 //!
-//! What a parameter moves is data: no value of an offset, a light, a camera or a bound on steps makes another variant. What is left
-//! depends on an object's technique, and [`Variant::reachable`] lists all that can follow from it.
+//! What a parameter moves is data: no value of an offset, a light, a camera or a bound on steps
+//! makes another variant. What is left depends on an object's technique, and [`Variant::reachable`]
+//! lists all that can follow from it.
 
 use super::generated as g;
 use super::list::{Dispatch, Entry, Features, Module, Output, Search};
@@ -95,8 +97,9 @@ impl Variant {
         list_length: 0,
     };
 
-    /// The variant that draws `object` by the search `solver`, which is that of the settings or stands in for it. Tables are taken to
-    /// fit into a uniform buffer; in compute the object is the only one and has one copy.
+    /// The variant that draws `object` by the search `solver`, which is that of the settings or
+    /// stands in for it. Tables are taken to fit into a uniform buffer; in compute the object is
+    /// the only one and has one copy.
     #[must_use]
     pub fn new(
         settings: &SearchSettings,
@@ -170,7 +173,8 @@ impl Variant {
         }
     }
 
-    /// The same in compute: how pixels are gone through, and whether depths are compared, as there are several dispatches.
+    /// The same in compute: how pixels are gone through, and whether depths are compared, as there
+    /// are several dispatches.
     #[must_use]
     pub fn dispatched(self, dispatch: Dispatch, several: bool) -> Self {
         Self {
@@ -234,9 +238,10 @@ impl Variant {
         self.search.takes_beams() && matches!(self.output, Output::Color | Output::Planes)
     }
 
-    /// Every pipeline that an object drawn by this variant may come to be drawn by when parameters, lights, camera or placements
-    /// move; the one that it most likely is drawn by comes first. `copies`: whether it has several. `compute`: none in a pass; else
-    /// whether there are several dispatches. `fallback`: what stands in where a contour does not close.
+    /// Every pipeline that an object drawn by this variant may come to be drawn by when parameters,
+    /// lights, camera or placements move; the one that it most likely is drawn by comes first.
+    /// `copies`: whether it has several. `compute`: none in a pass; else whether there are several
+    /// dispatches. `fallback`: what stands in where a contour does not close.
     #[must_use]
     pub fn reachable(
         self,

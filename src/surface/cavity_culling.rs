@@ -2,17 +2,21 @@
 //!
 //! # Tubes
 //!
-//! Patches that have nothing but emptiness between themselves and the axis, one after the other along their chain, line a **tube**
-//! `r < f(z)`, whatever `f` is: level faces between them close its jumps, so a ray that is in the tube at one height and at another is in it at all
-//! heights between, or it meets the solid. A tube is closed at an end where its chain ends on the axis.
+//! Patches that have nothing but emptiness between themselves and the axis, one after the other
+//! along their chain, line a **tube** `r < f(z)`, whatever `f` is: level faces between them close
+//! its jumps, so a ray that is in the tube at one height and at another is in it at all heights
+//! between, or it meets the solid. A tube is closed at an end where its chain ends on the axis.
 //!
 //! # What is hidden
 //!
-//! A ray that first meets the solid at a point `p` of a tube's lining, from an eye outside the tube, was in the tube at all heights from `p` to
-//! the end of the tube that it came in by; that end is open, and the eye is beyond it. In particular it passed the disc within each **rim**
-//! `(r_o, z_o)` on its way. Seen from the eye at `(R, z_e)` such a disc, thrown onto the height `z` of `p`, has its middle at distance
-//! `R |z_o - z| / |z_e - z_o|` beyond the axis and the radius `r_o |z_e - z| / |z_e - z_o|`; where the circle of radius `r` at that height
-//! lies wholly outside it, or around it, `p` is hidden. Both bounds are linear in `z`: it is enough to look at a cell's ends.
+//! A ray that first meets the solid at a point `p` of a tube's lining, from an eye outside the
+//! tube, was in the tube at all heights from `p` to the end of the tube that it came in by; that
+//! end is open, and the eye is beyond it. In particular it passed the disc within each **rim**
+//! `(r_o, z_o)` on its way. Seen from the eye at `(R, z_e)` such a disc, thrown onto the height `z`
+//! of `p`, has its middle at distance `R |z_o - z| / |z_e - z_o|` beyond the axis and the radius
+//! `r_o |z_e - z| / |z_e - z_o|`; where the circle of radius `r` at that height lies wholly outside
+//! it, or around it, `p` is hidden. Both bounds are linear in `z`: it is enough to look at a cell's
+//! ends.
 
 use super::QuadricPatch;
 use glam::DVec2;
@@ -114,7 +118,8 @@ impl Tube {
 }
 
 impl Place {
-    /// Whether the disc within `rim` shows nothing of the cell to an eye above (`up` 1) or below (-1) both.
+    /// Whether the disc within `rim` shows nothing of the cell to an eye above (`up` 1) or below
+    /// (-1) both.
     fn behind(&self, rim: DVec2, eye: DVec2, up: f64) -> bool {
         let ends = [up * self.z[0], up * self.z[1]];
         let (z_o, z_e) = (up * rim.y, up * eye.y);
@@ -163,7 +168,8 @@ fn run_from(patches: &[QuadricPatch], at: usize) -> Range<usize> {
     if lines { run } else { end..end }
 }
 
-/// Whether nothing lies between a patch and the axis. Patches do not cross: who is nearer at one height is at all that both have.
+/// Whether nothing lies between a patch and the axis. Patches do not cross: who is nearer at one
+/// height is at all that both have.
 fn is_exposed(patches: &[QuadricPatch], patch: &QuadricPatch) -> bool {
     if patch.quadric[0] >= 0.0 {
         return false;

@@ -5,7 +5,8 @@ use glam::DVec2;
 /// A curve of the boundary, solid on its left: closed, or from the axis to the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chain {
-    /// Its points `(r, z)`, object units; corners of the surface are among them. A closed chain does not repeat its first point.
+    /// Its points `(r, z)`, object units; corners of the surface are among them. A closed chain
+    /// does not repeat its first point.
     pub points: Vec<DVec2>,
     /// Whether the last point joins the first; else both ends lie on the axis.
     pub closed: bool,
@@ -58,14 +59,16 @@ impl Segments {
 
     /// Joins all parts; `None` if one of them leads nowhere, or nothing leads to it.
     ///
-    /// Where several go on from one point (loops that touch) any choice closes: as many parts leave a point as reach it.
+    /// Where several go on from one point (loops that touch) any choice closes: as many parts leave
+    /// a point as reach it.
     pub fn join(&self) -> Option<Vec<Chain>> {
         let mut order: Vec<u32> = (0..self.len() as u32).collect();
         let start = |k: u32| self.points[self.starts[k as usize] as usize];
         order.sort_unstable_by(|&j, &k| start(j).x.total_cmp(&start(k).x).then(j.cmp(&k)));
         let mut used = vec![false; self.len()];
         let mut chains = Vec::new();
-        // Those that begin on the axis first, so that no walk that begins elsewhere can run into their middle.
+        // Those that begin on the axis first, so that no walk that begins elsewhere can run into
+        // their middle.
         for on_axis in [true, false] {
             for &first in &order {
                 let begins_on_axis = start(first).x <= JOINT;

@@ -1,23 +1,27 @@
 //! Cone maps of solids that are single-valued in z: `r <= f(z)`, solid all the way to the axis.
 //!
-//! Such a solid is a height field over the axis: `z` is the place, `r` the height. Cone step mapping (Dummer 2006) keeps, for
-//! each place, the widest cone that stands on the surface there and has nothing of the solid in it; a ray above the surface may go on to
-//! where it leaves that cone. Turned about the axis a cone's two flanks are cones of revolution, and where a ray leaves one is a quadratic.
-//! A ray moves along the axis one way only, so each flank has a slope of its own.
+//! Such a solid is a height field over the axis: `z` is the place, `r` the height. Cone step
+//! mapping (Dummer 2006) keeps, for each place, the widest cone that stands on the surface there
+//! and has nothing of the solid in it; a ray above the surface may go on to where it leaves that
+//! cone. Turned about the axis a cone's two flanks are cones of revolution, and where a ray leaves
+//! one is a quadratic. A ray moves along the axis one way only, so each flank has a slope of its
+//! own.
 //!
 //! # Layout
 //!
 //! Row `i` of `N` is `i / N <= z <= (i + 1) / N`.
 //!
-//! * `[g, g', k_up, k_down]`: `g` and `g'` are the radius at the row's lower and upper border, linear in between. From any point of the
-//!   row, `(z, g(z))`, nothing of the solid at `z' > z` lies beyond `g(z) + k_up (z' - z)`, and nothing at `z' < z` beyond
-//!   `g(z) + k_down (z - z')`.
-//! * `[g, g', h, -1 - 4096 p - q]`, where that is closer to the surface: a level face at the height `(i + p / 2047) / N` splits the row. Below
-//!   it the radius goes from `g` to `h`, above it from `q / 4095` of the largest radius to `g'`. Such rows have no cones.
+//! * `[g, g', k_up, k_down]`: `g` and `g'` are the radius at the row's lower and upper border,
+//!   linear in between. From any point of the row, `(z, g(z))`, nothing of the solid at `z' > z`
+//!   lies beyond `g(z) + k_up (z' - z)`, and nothing at `z' < z` beyond `g(z) + k_down (z - z')`.
+//! * `[g, g', h, -1 - 4096 p - q]`, where that is closer to the surface: a level face at the height
+//!   `(i + p / 2047) / N` splits the row. Below it the radius goes from `g` to `h`, above it from
+//!   `q / 4095` of the largest radius to `g'`. Such rows have no cones.
 //!
-//! The slopes are those of the borders: with `k` the steepest way from the row's lower end to any point of the surface above (0 if all of
-//! them lead down), and `k'` the same from its upper end, the row has `max(k, k')`. From a point between two ends the way to
-//! a third is the mediant of theirs, so it is no steeper than the steeper of both.
+//! The slopes are those of the borders: with `k` the steepest way from the row's lower end to any
+//! point of the surface above (0 if all of them lead down), and `k'` the same from its upper end,
+//! the row has `max(k, k')`. From a point between two ends the way to a third is the mediant of
+//! theirs, so it is no steeper than the steeper of both.
 
 mod surface;
 
@@ -39,17 +43,20 @@ pub struct Cones {
 const STEEPEST: f64 = 1e6;
 
 impl Cones {
-    /// The cone map of a contour in `rows` rows. What is thinner in z than a row may be lost, or filled.
+    /// The cone map of a contour in `rows` rows. What is thinner in z than a row may be lost, or
+    /// filled.
     ///
     /// # Errors
-    /// [`Stage::Profile`](crate::error::Stage::Profile) where going outwards from the axis one leaves the solid more than once, or starts outside of it, at two
-    /// neighbouring borders of rows.
+    /// [`Stage::Profile`](crate::error::Stage::Profile) where going outwards from the axis one
+    /// leaves the solid more than once, or starts outside of it, at two neighbouring borders of
+    /// rows.
     pub fn new(contour: &Contour, rows: u32) -> Result<Self> {
         Self::with(contour, rows, slopes)
     }
 
-    /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of the half-plane that comes in from the largest
-    /// radius leaves the solid, where it has entered it, no sooner than the cone. Takes time as the square of `rows`.
+    /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of
+    /// the half-plane that comes in from the largest radius leaves the solid, where it has entered
+    /// it, no sooner than the cone. Takes time as the square of `rows`.
     ///
     /// # Errors
     /// As [`Cones::new`].
@@ -87,7 +94,8 @@ impl Cones {
     }
 }
 
-/// From each point of a surface the steepest way `dr / dz` to one farther up (they stand in order); 0 where all lead down.
+/// From each point of a surface the steepest way `dr / dz` to one farther up (they stand in order);
+/// 0 where all lead down.
 fn slopes(points: &[DVec2]) -> Vec<f64> {
     let slope = |i: usize, j: usize| {
         let way = points[j] - points[i];
@@ -100,7 +108,8 @@ fn slopes(points: &[DVec2]) -> Vec<f64> {
         }
     };
     let mut all = vec![0.0; points.len()];
-    // The upper hull of the points after `i`, nearest last: the steepest way leads to its first corner.
+    // The upper hull of the points after `i`, nearest last: the steepest way leads to its first
+    // corner.
     let mut hull: Vec<usize> = Vec::new();
     for i in (0..points.len()).rev() {
         while let [.., far, near] = hull[..]
@@ -116,8 +125,9 @@ fn slopes(points: &[DVec2]) -> Vec<f64> {
     all
 }
 
-/// From each point of a surface the steepest way to one farther up where a ray can come out that has entered in between: one steeper there than
-/// the surface, from the largest radius over the point; 0 where all lead down.
+/// From each point of a surface the steepest way to one farther up where a ray can come out that
+/// has entered in between: one steeper there than the surface, from the largest radius over the
+/// point; 0 where all lead down.
 fn relaxed_slopes(points: &[DVec2]) -> Vec<f64> {
     let top = points.iter().fold(0.0, |m: f64, p| m.max(p.x));
     let of = |(i, from): (usize, &DVec2)| {

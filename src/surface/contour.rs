@@ -8,9 +8,11 @@ use crate::profile::{Outline, Segment};
 use crate::scene::Offset;
 use glam::DVec2;
 
-/// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and where the box's floor and ceiling cut it.
+/// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and where the
+/// box's floor and ceiling cut it.
 ///
-/// The side faces of the box are not part of it (they are not turned): whoever draws clips the ray there.
+/// The side faces of the box are not part of it (they are not turned): whoever draws clips the ray
+/// there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contour {
     /// Curves that do not cross, solid on the left.
@@ -22,7 +24,8 @@ pub struct Contour {
 pub struct ContourSource {
     /// The surface: all but what lies on the axis, each loop in its order.
     segments: Vec<Segment>,
-    /// The corner before each segment, where a curve begins with it on the axis, and the one after it.
+    /// The corner before each segment, where a curve begins with it on the axis, and the one after
+    /// it.
     corners: Vec<[Option<Corner>; 2]>,
     tree: Tree,
 }
@@ -76,10 +79,12 @@ impl ContourSource {
         })
     }
 
-    /// The contour of the profile under an offset. It has no chain where nothing is left of the solid within the box.
+    /// The contour of the profile under an offset. It has no chain where nothing is left of the
+    /// solid within the box.
     ///
     /// # Errors
-    /// [`Stage::Profile`] when the contour cannot be closed: loops that cross, or numbers that are not finite.
+    /// [`Stage::Profile`] when the contour cannot be closed: loops that cross, or numbers that are
+    /// not finite.
     pub fn contour(&self, offset: &Offset) -> Result<Contour> {
         let Offset {
             extend,
@@ -87,7 +92,8 @@ impl ContourSource {
             chamfer,
         } = *offset;
         let plain = extend == 0.0 && (bevel == 0.0 || chamfer <= 0.0);
-        // Curves that touch without crossing have no use for an exact offset: one that is wrong by a few ten-thousandths of a texel will do.
+        // Curves that touch without crossing have no use for an exact offset: one that is wrong by
+        // a few ten-thousandths of a texel will do.
         let trials = [0.0, 1e-7, -1e-7, 3e-7, -3e-7, 1e-6, -1e-6];
         let finite = extend.is_finite() && bevel.is_finite() && chamfer.is_finite();
         let found = if plain {
@@ -179,7 +185,8 @@ fn corner(point: DVec2, before: DVec2, after: DVec2) -> Option<Corner> {
     })
 }
 
-/// The part of a segment between floor and ceiling; none where it lies in one of them: there the face is made anew.
+/// The part of a segment between floor and ceiling; none where it lies in one of them: there the
+/// face is made anew.
 fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
     let (low, high) = (s.a.y.min(s.b.y), s.a.y.max(s.b.y));
     if high <= 0.0 || low >= 1.0 {
@@ -203,8 +210,9 @@ fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
 
 /// Closes the solid by the box's floor and ceiling.
 ///
-/// Where a part ends on the floor the solid begins, seen from the axis, and where one starts it ends; on the ceiling the other way round.
-/// Counting from the axis outwards tells where the face is solid. `None` when the count does not come out.
+/// Where a part ends on the floor the solid begins, seen from the axis, and where one starts it
+/// ends; on the ceiling the other way round. Counting from the axis outwards tells where the face
+/// is solid. `None` when the count does not come out.
 fn faces(parts: &mut Segments) -> Option<()> {
     for face in [0.0, 1.0] {
         // Change of the count, seen from the axis.

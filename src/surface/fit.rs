@@ -1,16 +1,18 @@
 //! Chains cut into the longest quadrics that stay within a tolerance.
 //!
-//! Over a stretch on which `z` is monotone the boundary is a function `r^2(z)`. The quadrics with `a = ±1` are the parabolas
-//! `r^2 = p(z)`; those that pass through both ends of the stretch are one family,
+//! Over a stretch on which `z` is monotone the boundary is a function `r^2(z)`. The quadrics with
+//! `a = ±1` are the parabolas `r^2 = p(z)`; those that pass through both ends of the stretch are
+//! one family,
 //!
 //! ```text
 //! p(z) = L(z) + q (z - za)(z - zb),   L linear with L(za) = ra^2, L(zb) = rb^2.
 //! ```
 //!
-//! A sample `(r, z)` of the boundary, whose direction there is `dr/dz = k`, is met within the tolerance `tau` (measured along the
-//! normal) when `sqrt(p)` is within `tau sqrt(1 + k^2)` of `r`. That is an interval of `p`, so one of `q`; the stretch can be one patch
-//! when the intervals of all samples have a common point. On a straight segment `r^2` is itself such a parabola, so between two
-//! corners the deviation is a parabola too, and corners and middles are samples enough.
+//! A sample `(r, z)` of the boundary, whose direction there is `dr/dz = k`, is met within the
+//! tolerance `tau` (measured along the normal) when `sqrt(p)` is within `tau sqrt(1 + k^2)` of `r`.
+//! That is an interval of `p`, so one of `q`; the stretch can be one patch when the intervals of
+//! all samples have a common point. On a straight segment `r^2` is itself such a parabola, so
+//! between two corners the deviation is a parabola too, and corners and middles are samples enough.
 //!
 //! Stretches grow greedily: as neighbours share their ends exactly, nothing is lost at the joints.
 
@@ -25,8 +27,8 @@ pub struct FitOptions {
 }
 
 impl Default for FitOptions {
-    /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much, and the 99th percentile of all
-    /// rays stays below a fiftieth.
+    /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much,
+    /// and the 99th percentile of all rays stays below a fiftieth.
     fn default() -> Self {
         Self {
             tolerance: 0.0035 / 512.0,
@@ -36,19 +38,23 @@ impl Default for FitOptions {
 
 /// Rounding unit of the arithmetic that will solve the quadrics.
 const EPSILON: f64 = (f32::EPSILON / 2.0) as f64;
-/// Least by which guards reach past a patch's ends, object units: a few roundings of coordinates of size 1.
+/// Least by which guards reach past a patch's ends, object units: a few roundings of coordinates of
+/// size 1.
 const OVERLAP: f64 = 1e-6;
 /// Steepest `|dr/dz|` at the end of a patch that is told from its neighbours by `z` alone.
 const STEEP: f64 = 4.0;
-/// Above this `|dr/dz|` a patch is the flattest paraboloid that will do: where `r^2` is all but linear in `z` the quadric has no other sheet
-/// near, the guard can go by `r`, and nothing is divided by small differences.
+/// Above this `|dr/dz|` a patch is the flattest paraboloid that will do: where `r^2` is all but
+/// linear in `z` the quadric has no other sheet near, the guard can go by `r`, and nothing is
+/// divided by small differences.
 const FLAT: f64 = 8.0;
-/// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute rounding error.
+/// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute
+/// rounding error.
 const SMALL: f64 = 0.05;
 /// Segments that climb less than this are horizontal.
 const LEVEL: f64 = 1e-9;
 
-/// Cuts all chains of a contour, each in its own order; patches of a chain stand one after the other.
+/// Cuts all chains of a contour, each in its own order; patches of a chain stand one after the
+/// other.
 #[must_use]
 pub fn fit_patches(contour: &Contour, options: &FitOptions) -> Vec<QuadricPatch> {
     let mut patches = Vec::new();
@@ -128,8 +134,8 @@ impl Cutter {
         }
     }
 
-    /// Appends a point. What is all but horizontal becomes so, and what is so flat that a cone through it could not be
-    /// solved in 32 bits is divided into bands low enough for paraboloids.
+    /// Appends a point. What is all but horizontal becomes so, and what is so flat that a cone
+    /// through it could not be solved in 32 bits is divided into bands low enough for paraboloids.
     fn push(&mut self, mut p: DVec2) {
         let Some(&q) = self.points.last() else {
             self.points.push(p);
@@ -152,8 +158,8 @@ impl Cutter {
         self.points.push(p);
     }
 
-    /// The largest `|q|` that floats bear: the terms of `G`, up to `|q|` in size, are rounded, and the error must stay below half
-    /// of the tolerance times `|grad G|`.
+    /// The largest `|q|` that floats bear: the terms of `G`, up to `|q|` in size, are rounded, and
+    /// the error must stay below half of the tolerance times `|grad G|`.
     fn largest_bend(&self, r: f64, slope: f64) -> f64 {
         0.5 * self.tolerance / EPSILON * (2.0 * r).hypot(slope)
     }
@@ -208,7 +214,8 @@ impl Cutter {
         best
     }
 
-    /// `q` of the patch along a single segment: the cone, as far as floats bear it; of a flat one the least that will do.
+    /// `q` of the patch along a single segment: the cone, as far as floats bear it; of a flat one
+    /// the least that will do.
     fn single(&self, i: usize) -> f64 {
         let (a, b) = (self.points[i], self.points[i + 1]);
         let slope = (b.x - a.x) / (b.y - a.y);
@@ -248,7 +255,8 @@ impl Cutter {
         } else {
             0.5 * (low + high)
         };
-        // Told from its neighbours by its length along the boundary, if r is monotone; else by z, if its ends are steep.
+        // Told from its neighbours by its length along the boundary, if r is monotone; else by z,
+        // if its ends are steep.
         let climb = b.y - a.y;
         let ends = [(a.x, linear - q * climb), (b.x, linear + q * climb)];
         let monotone = ends[0].1 * ends[1].1 >= 0.0;
@@ -322,7 +330,8 @@ impl Cutter {
         }
     }
 
-    /// `bend`: the size of the coefficients over that of the gradient, which is what their rounding is multiplied by.
+    /// `bend`: the size of the coefficients over that of the gradient, which is what their rounding
+    /// is multiplied by.
     fn guard(&self, cz: f64, cr: f64, a: DVec2, b: DVec2, bend: f64) -> [f64; 4] {
         let place = |p: DVec2| cz * p.y + cr * p.x * p.x;
         let (from, to) = (place(a), place(b));
@@ -331,10 +340,12 @@ impl Cutter {
     }
 }
 
-/// The largest weight of `r^2` in a guard with which the quadric's other sheet fails it everywhere in the box.
+/// The largest weight of `r^2` in a guard with which the quadric's other sheet fails it everywhere
+/// in the box.
 ///
-/// On `r^2 = p(z)` the guard's value `z + w p(z)` (for a rising `p`) is a parabola in `z`. It turns `1 / (2 |q| w)` beyond where `p`
-/// itself turns, and takes the patch's values again as far on the other side: that has to lie beyond floor or ceiling.
+/// On `r^2 = p(z)` the guard's value `z + w p(z)` (for a rising `p`) is a parabola in `z`. It turns
+/// `1 / (2 |q| w)` beyond where `p` itself turns, and takes the patch's values again as far on the
+/// other side: that has to lie beyond floor or ceiling.
 fn unambiguous([_, p1, q]: [f64; 3], [low, high]: [f64; 2]) -> f64 {
     const BEYOND: f64 = 0.01;
     if q == 0.0 {

@@ -1,4 +1,5 @@
-//! The shell of one cell: frusta along its surface, walls at its ends ([`hull`](super::hull) says what for).
+//! The shell of one cell: frusta along its surface, walls at its ends ([`hull`](super::hull) says
+//! what for).
 
 use super::{ProxyHullOptions, QuadricPatch};
 use glam::DVec2;
@@ -6,7 +7,8 @@ use glam::DVec2;
 /// Walls reach at least this far into the solid, object units.
 const ROOT: f64 = 1e-4;
 
-/// A part of a cell's surface on one patch, from one height to another (of a plane: from one radius to another).
+/// A part of a cell's surface on one patch, from one height to another (of a plane: from one radius
+/// to another).
 #[derive(Clone, Copy, Debug)]
 struct Span {
     from: DVec2,
@@ -23,7 +25,8 @@ pub(super) struct FrustaBuilder<'a> {
 impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
     ///
-    /// Patches shorter than the margin have no direction to build on, and no need: what wraps their neighbours wraps them.
+    /// Patches shorter than the margin have no direction to build on, and no need: what wraps their
+    /// neighbours wraps them.
     pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
         let long = |p: &&QuadricPatch| p.start.distance(p.end) > self.options.margin;
         let kept: Vec<QuadricPatch> = cell.iter().filter(long).copied().collect();
@@ -159,8 +162,9 @@ impl FrustaBuilder<'_> {
         }
     }
 
-    /// Where a wall ends that comes from `top`: through the joint, or rather through a polygon that keeps the joint's circle on the
-    /// wall's inner side all round, and as far beyond as that polygon departs from the circle, so that no ray passes under the foot.
+    /// Where a wall ends that comes from `top`: through the joint, or rather through a polygon that
+    /// keeps the joint's circle on the wall's inner side all round, and as far beyond as that
+    /// polygon departs from the circle, so that no ray passes under the foot.
     ///
     /// A plane's rims are beyond its circles already: there walls stand upright.
     fn foot(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
@@ -180,8 +184,9 @@ fn outward(a: DVec2, b: DVec2) -> DVec2 {
     -(b - a).perp().normalize_or_zero()
 }
 
-/// Where on a span the height over the line through `a` is extreme: heights and places, besides the ends those points at which the
-/// meridian `r = sqrt(p(z))` runs along the line: `p'^2 nr^2 = 4 nz^2 p`.
+/// Where on a span the height over the line through `a` is extreme: heights and places, besides the
+/// ends those points at which the meridian `r = sqrt(p(z))` runs along the line: `p'^2 nr^2 = 4
+/// nz^2 p`.
 fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(f64, DVec2)> {
     let height = |p: DVec2| (p - a).dot(normal);
     let mut found = vec![(height(span.from), span.from), (height(span.to), span.to)];
@@ -206,7 +211,8 @@ fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(
     found
 }
 
-/// Joins frusta end to start: at bulges at the intersection of their lines, in hollows where they cross, else by a frustum more.
+/// Joins frusta end to start: at bulges at the intersection of their lines, in hollows where they
+/// cross, else by a frustum more.
 fn joined(frusta: Vec<[DVec2; 2]>) -> Vec<[DVec2; 2]> {
     let mut out: Vec<[DVec2; 2]> = Vec::with_capacity(frusta.len());
     for mut frustum in frusta {

@@ -2,36 +2,44 @@
 //!
 //! # Cells
 //!
-//! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**. Around its surface, on the empty side, lies a shell: frusta along
-//! it, and walls at its two ends, from the frusta down to the surface and a little into the solid. FrustaBuilder and surface enclose the cell's part
-//! of the empty space. A ray from outside that first meets the solid on one of the cell's patches was in that part just before; it came
-//! in through the shell (through the surface it would have come out of the solid, which it then had met before). So
+//! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**.
+//! Around its surface, on the empty side, lies a shell: frusta along it, and walls at its two ends,
+//! from the frusta down to the surface and a little into the solid. FrustaBuilder and surface
+//! enclose the cell's part of the empty space. A ray from outside that first meets the solid on one
+//! of the cell's patches was in that part just before; it came in through the shell (through the
+//! surface it would have come out of the solid, which it then had met before). So
 //!
 //! > a fragment of a front-facing triangle tests the patches of its own cell, no others, and the nearest fragment is the first hit.
 //!
-//! No ray is lost however flat it glides along the surface, whichever way the profile folds: chains, undercuts and cavities
-//! need no care, and what a fragment finds is a true point of the boundary in every case. It holds for eyes outside all shells
-//! ([`ProxyHull::clear_of`]) and solids that the box's side faces do not cut.
+//! No ray is lost however flat it glides along the surface, whichever way the profile folds:
+//! chains, undercuts and cavities need no care, and what a fragment finds is a true point of the
+//! boundary in every case. It holds for eyes outside all shells ([`ProxyHull::clear_of`]) and
+//! solids that the box's side faces do not cut.
 //!
-//! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]): beyond it another sheet of a quadric can
-//! pass the guard.
+//! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]):
+//! beyond it another sheet of a quadric can pass the guard.
 //!
 //! # Frusta
 //!
-//! The shell of a cell is a polyline in the half-plane; each of its parts, turned about the axis in `n` steps, is a **frustum** of `2 n`
-//! triangles. A frustum is as long as the surface stays within [`ProxyHullOptions::gap`] of it: it lies along the surface's chord, moved outwards to
-//! touch it (the support line; the extremes of a quadric's meridian above a line are the roots of a quadratic). Where two frusta meet
-//! at a bulge they are prolonged to their intersection, in a hollow cut at it, else joined by a third.
+//! The shell of a cell is a polyline in the half-plane; each of its parts, turned about the axis in
+//! `n` steps, is a **frustum** of `2 n` triangles. A frustum is as long as the surface stays within
+//! [`ProxyHullOptions::gap`] of it: it lies along the surface's chord, moved outwards to touch it
+//! (the support line; the extremes of a quadric's meridian above a line are the roots of a
+//! quadratic). Where two frusta meet at a bulge they are prolonged to their intersection, in a
+//! hollow cut at it, else joined by a third.
 //!
-//! A regular polygon of `n` corners at radius `f r` contains the circle of radius `r` with `f = 1 / cos(pi / n)`, and lies in it with
-//! `f = 1`. Walls that look away from the axis take the first, walls that look towards it the second, planes the one at their outer rim and
-//! the other at the inner. The radii of [`Frustum`] are those of the corners.
+//! A regular polygon of `n` corners at radius `f r` contains the circle of radius `r` with `f = 1 /
+//! cos(pi / n)`, and lies in it with `f = 1`. Walls that look away from the axis take the first,
+//! walls that look towards it the second, planes the one at their outer rim and the other at the
+//! inner. The radii of [`Frustum`] are those of the corners.
 //!
 //! # Growing it in a vertex shader
 //!
-//! `6 n` corners for each frustum (a vertex shader makes the `2 n` different ones from their number, an index buffer repeats them). Of corner `v`: `frustum = v / (6 n)`, `side = v % (6 n) / 6`, and by `v % 6` the corners
-//! `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth
-//! `2 pi s / n`. Counter-clockwise is front. [`ProxyHull::trace`] does the same on the CPU.
+//! `6 n` corners for each frustum (a vertex shader makes the `2 n` different ones from their
+//! number, an index buffer repeats them). Of corner `v`: `frustum = v / (6 n)`, `side = v % (6 n) /
+//! 6`, and by `v % 6` the corners `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where
+//! ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth `2 pi s / n`.
+//! Counter-clockwise is front. [`ProxyHull::trace`] does the same on the CPU.
 
 use super::cavity_culling::CavityCulling;
 use super::frusta::FrustaBuilder;
@@ -50,12 +58,14 @@ pub struct ProxyHullOptions {
     pub patches_per_cell: u32,
     /// How far the surface may lie below a frustum before it is divided, object units.
     pub gap: f64,
-    /// By how much frusta are moved outwards beyond what touches, object units: a rasteriser moves corners by fractions of a pixel.
+    /// By how much frusta are moved outwards beyond what touches, object units: a rasteriser moves
+    /// corners by fractions of a pixel.
     pub margin: f64,
 }
 
 impl Default for ProxyHullOptions {
-    /// What charted best (docs/searches.md): few triangles, at the price of fragments that meet nothing.
+    /// What charted best (docs/searches.md): few triangles, at the price of fragments that meet
+    /// nothing.
     fn default() -> Self {
         Self {
             sides: 12,
@@ -93,11 +103,13 @@ pub struct ProxyHull {
     sight: CavityCulling,
 }
 
-/// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less than what guards tell apart.
+/// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less
+/// than what guards tell apart.
 pub const FLOOR: f32 = 1e-3;
 
 impl Frustum {
-    /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the ring.
+    /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the
+    /// ring.
     fn place(&self, corner: u32) -> (u32, [f32; 2]) {
         let (side, which) = (corner / 6, corner % 6);
         let step = side + u32::from(matches!(which, 1 | 2 | 4));
@@ -137,7 +149,8 @@ impl ProxyHull {
         hull
     }
 
-    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to the other: a cell without patches.
+    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to
+    /// the other: a cell without patches.
     #[must_use]
     pub(crate) fn convex(points: &[DVec2], sides: u32) -> Self {
         let sides = sides.max(3);
@@ -155,8 +168,8 @@ impl ProxyHull {
         hull
     }
 
-    /// Runs of frusta that eyes at these `(r, z)` may see: cells in cavities that none of them looks into are left out, whose shells would
-    /// be drawn in vain.
+    /// Runs of frusta that eyes at these `(r, z)` may see: cells in cavities that none of them
+    /// looks into are left out, whose shells would be drawn in vain.
     #[must_use]
     pub fn seen_from(&self, eyes: &[DVec2]) -> Vec<Range<u32>> {
         let hidden = |cell: u32| eyes.iter().all(|&eye| self.sight.hides(cell as usize, eye));
@@ -210,7 +223,8 @@ impl ProxyHull {
         self.frusta.len() as u32 * 6 * self.sides
     }
 
-    /// Whether an eye at `(r, z)` is outside all shells by at least `margin`; if not, front faces may be behind it.
+    /// Whether an eye at `(r, z)` is outside all shells by at least `margin`; if not, front faces
+    /// may be behind it.
     #[must_use]
     pub fn clear_of(&self, eye: DVec2, margin: f64) -> bool {
         self.extents.iter().all(|e| {
@@ -221,7 +235,8 @@ impl ProxyHull {
         })
     }
 
-    /// What rasteriser and fragments make of a ray `o + t v` about the axis, from an eye outside: its nearest fragment.
+    /// What rasteriser and fragments make of a ray `o + t v` about the axis, from an eye outside:
+    /// its nearest fragment.
     #[must_use]
     pub fn trace(&self, records: &[GpuPatch], o: DVec3, v: DVec3) -> Walk {
         let mut walk = Walk::default();

@@ -1,22 +1,26 @@
-//! From a profile and an offset to a few quadrics of revolution, and to the tables that a shader walks.
+//! From a profile and an offset to a few quadrics of revolution, and to the tables that a shader
+//! walks.
 //!
-//! The surface `F(r, z) = d(r, z) - w(z) = 0` of a solid is a handful of closed curves of the half-plane. They are found
-//! exactly ([`ContourSource`]), cut into the longest patches that a quadric
+//! The surface `F(r, z) = d(r, z) - w(z) = 0` of a solid is a handful of closed curves of the
+//! half-plane. They are found exactly ([`ContourSource`]), cut into the longest patches that a
+//! quadric
 //!
 //! ```text
 //! G(r, z) = a r^2 + k0 + k1 z + k2 z^2,   a in {-1, 0, 1},   G < 0 in the solid
 //! ```
 //!
-//! follows within a tolerance ([`fit_patches`]), and dealt out to rows of equal height ([`Tables`]). In `(z, r^2)` a ray is a parabola and
-//! a patch a parabola or a horizontal line: their meeting is one quadratic in `t`, the same for cylinders, cones, spheres,
-//! paraboloids, hyperboloids and planes.
+//! follows within a tolerance ([`fit_patches`]), and dealt out to rows of equal height
+//! ([`Tables`]). In `(z, r^2)` a ray is a parabola and a patch a parabola or a horizontal line:
+//! their meeting is one quadratic in `t`, the same for cylinders, cones, spheres, paraboloids,
+//! hyperboloids and planes.
 //!
 //! For solids that are single-valued in z a row of empty cones does as well ([`Cones`]).
 //!
 //! For the rasteriser the patches are wrapped in shells ([`hull`]).
 //!
-//! Data flows one way: outline → contour → patches → rows and hull. All of it is cheap enough to be made anew whenever the
-//! offset moves; what depends on the outline alone is prepared once, in the [`ContourSource`].
+//! Data flows one way: outline → contour → patches → rows and hull. All of it is cheap enough to be
+//! made anew whenever the offset moves; what depends on the outline alone is prepared once, in the
+//! [`ContourSource`].
 
 mod cavity_culling;
 mod chain;
@@ -40,13 +44,15 @@ pub use walk::{PatchHit, Walk, entering_root, trace_patches};
 
 use glam::DVec2;
 
-/// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its left.
+/// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its
+/// left.
 ///
 /// All lengths are object units. Neighbours share their end points to the last bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricPatch {
-    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`: negative in the solid, `grad G = (2 a r, k1 + 2 k2 z)`
-    /// outward. `a` is 1 where the solid lies towards the axis, -1 where it lies away from it, 0 for planes `z = const`.
+    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`: negative in the solid, `grad G = (2 a
+    /// r, k1 + 2 k2 z)` outward. `a` is 1 where the solid lies towards the axis, -1 where it lies
+    /// away from it, 0 for planes `z = const`.
     pub quadric: [f64; 4],
     /// Where the chain enters it, `(r, z)`.
     pub start: DVec2,
@@ -56,11 +62,13 @@ pub struct QuadricPatch {
     pub z: [f64; 2],
     /// Least and largest `r`.
     pub r: [f64; 2],
-    /// `[cz, cr, low, high]`: a point of the quadric belongs to the patch where `low <= cz z + cr r^2 <= high`.
+    /// `[cz, cr, low, high]`: a point of the quadric belongs to the patch where `low <= cz z + cr
+    /// r^2 <= high`.
     ///
-    /// A range of `z` alone would not do: on a flat patch a rounding of `z` moves `r` far. The left side grows along
-    /// the patch about as its length does, whichever way it runs; the ends are moved outwards by what the rounding of 32-bit
-    /// floats can amount to, so that neighbours overlap and no ray passes between them.
+    /// A range of `z` alone would not do: on a flat patch a rounding of `z` moves `r` far. The left
+    /// side grows along the patch about as its length does, whichever way it runs; the ends are
+    /// moved outwards by what the rounding of 32-bit floats can amount to, so that neighbours
+    /// overlap and no ray passes between them.
     pub guard: [f64; 4],
     /// Number of its chain in the [`Contour`].
     pub chain: u32,

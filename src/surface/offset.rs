@@ -1,22 +1,28 @@
-//! The offset contour `d = w(z)`: all curves it can be made of, cut where they meet, those parts kept that nothing is nearer to.
+//! The offset contour `d = w(z)`: all curves it can be made of, cut where they meet, those parts
+//! kept that nothing is nearer to.
 //!
-//! `w` is linear in `z`, `w = alpha + beta z`, in one or two layers of height. Let `n` be a unit vector away from the solid and `f` a point of the
-//! surface. The point `q = f + omega n` whose own offset is `omega` solves `omega = alpha + beta (f.z + omega n.z)`:
+//! `w` is linear in `z`, `w = alpha + beta z`, in one or two layers of height. Let `n` be a unit
+//! vector away from the solid and `f` a point of the surface. The point `q = f + omega n` whose own
+//! offset is `omega` solves `omega = alpha + beta (f.z + omega n.z)`:
 //!
 //! ```text
 //! omega = (alpha + beta f.z) / (1 - beta n.z).
 //! ```
 //!
 //! * Over a segment `n` is fixed and `f` runs: `q` runs along a straight line.
-//! * About a corner `f` is fixed and `n` turns between the normals of its segments: `q` runs along a conic with a focus in the corner
-//!   (a circle where `beta = 0`), its eccentricity `|beta|`. It is outside (`omega > 0`) at a convex corner, inside at a reflex one.
+//! * About a corner `f` is fixed and `n` turns between the normals of its segments: `q` runs along
+//!   a conic with a focus in the corner (a circle where `beta = 0`), its eccentricity `|beta|`. It
+//!   is outside (`omega > 0`) at a convex corner, inside at a reflex one.
 //!
-//! Where `1 - beta n.z` is negative (bevels steeper than 1 below the solid) `F` falls away from the surface: the curve runs backwards.
+//! Where `1 - beta n.z` is negative (bevels steeper than 1 below the solid) `F` falls away from the
+//! surface: the curve runs backwards.
 //!
-//! Every point of the contour lies on such a curve, and a point of a curve lies on the contour if no other part of the surface is nearer than
-//! `|omega|`. This can change only where two curves meet: two lines, a line and a conic, or two conics, whose meetings lie on
-//! the line midway between their foci. All three are solved in closed form; both curves take the very same point, so that their
-//! parts join exactly. A feature's line and the conics of its own ends never meet but at their joints.
+//! Every point of the contour lies on such a curve, and a point of a curve lies on the contour if
+//! no other part of the surface is nearer than `|omega|`. This can change only where two curves
+//! meet: two lines, a line and a conic, or two conics, whose meetings lie on the line midway
+//! between their foci. All three are solved in closed form; both curves take the very same point,
+//! so that their parts join exactly. A feature's line and the conics of its own ends never meet but
+//! at their joints.
 
 mod curve;
 
@@ -107,7 +113,8 @@ impl Trimmer {
         self.candidates.clear();
         for (k, (s, [before, after])) in segments.iter().zip(corners).enumerate() {
             let feature = 2 * k as u32 + 1;
-            // The corner before a segment that has none after its predecessor: where a curve begins on the axis.
+            // The corner before a segment that has none after its predecessor: where a curve begins
+            // on the axis.
             if let Some(corner) = before {
                 self.conic(&layer, corner, feature - 1);
             }
@@ -150,7 +157,8 @@ impl Trimmer {
         let focus = corner.point;
         let size = layer.offset(focus.y);
         let (from, to) = (corner.angle, corner.angle + corner.turn);
-        // Where it can begin or end: borders of layer and half-plane, and where the divisor changes its sign.
+        // Where it can begin or end: borders of layer and half-plane, and where the divisor changes
+        // its sign.
         let mut ends = vec![from, to];
         let mut cut = |x: f64| ends.extend(within(x, from, to));
         for z in [layer.low, layer.high] {
@@ -292,8 +300,8 @@ impl Trimmer {
     }
 }
 
-/// The part of a line within a layer and the half-plane; none where it lies in the box's floor or ceiling, or in the upper border of a
-/// lower layer's neighbour (there the lower one has it).
+/// The part of a line within a layer and the half-plane; none where it lies in the box's floor or
+/// ceiling, or in the upper border of a lower layer's neighbour (there the lower one has it).
 fn clip_line(a: DVec2, b: DVec2, layer: &Layer) -> Option<(DVec2, DVec2)> {
     let level = |z: f64| (a.y - z).abs() < SHORT && (b.y - z).abs() < SHORT;
     if level(layer.low) || (level(layer.high) && layer.high >= 1.0) {

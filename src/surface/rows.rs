@@ -1,23 +1,28 @@
-//! The tables of the search: patches dealt out to rows of equal height, and a tree of the rows' extents.
+//! The tables of the search: patches dealt out to rows of equal height, and a tree of the rows'
+//! extents.
 //!
 //! # Layout
 //!
 //! `N` rows: row `i` is `i / N <= z <= (i + 1) / N`.
 //!
-//! * `records`: the patches, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, patch, 0]`: the quadric, the guard, and
-//!   what only questions off the main path need: the patch's range of `z`, and its number. They stand row by row (a
-//!   patch that touches several rows stands there several times, unless these rows hold the same patches: then they share), so
-//!   that a row's patches are one run.
+//! * `records`: the patches, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, patch,
+//!   0]`: the quadric, the guard, and what only questions off the main path need: the patch's range
+//!   of `z`, and its number. They stand row by row (a patch that touches several rows stands there
+//!   several times, unless these rows hold the same patches: then they share), so that a row's
+//!   patches are one run.
 //! * `rows[i] = first << 12 | count`: that run.
-//! * `nodes`: `[min r^2, max r^2]` of the boundary, first of each row (level 0), then of each 4 rows (level 1), of each 16, and so on;
-//!   `levels[l]` is where level `l` begins. An empty node is `[+inf, -inf]`. The topmost level has at most 4 nodes.
+//! * `nodes`: `[min r^2, max r^2]` of the boundary, first of each row (level 0), then of each 4
+//!   rows (level 1), of each 16, and so on; `levels[l]` is where level `l` begins. An empty node is
+//!   `[+inf, -inf]`. The topmost level has at most 4 nodes.
 //!
-//! All extents are a little too large rather than too small (by a millionth). [`trace_patches`](super::trace_patches) says how to walk it.
+//! All extents are a little too large rather than too small (by a millionth).
+//! [`trace_patches`](super::trace_patches) says how to walk it.
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
 
-/// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's order): roundings of 32 bits.
+/// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's
+/// order): roundings of 32 bits.
 pub(super) const MARGIN: f64 = 1e-6;
 
 /// A patch, as shaders read it: three vectors of four 32-bit floats.
@@ -56,11 +61,13 @@ pub struct Tables {
     pub levels: Vec<u32>,
     /// Patches, row by row.
     pub records: Vec<GpuPatch>,
-    /// Largest `r` of the boundary: where it exceeds the reach of the box's sides the box cuts the solid.
+    /// Largest `r` of the boundary: where it exceeds the reach of the box's sides the box cuts the
+    /// solid.
     pub reach: f32,
 }
 
-/// Rows that the shaders draw with: a power of 4, which fills the tree. Fewer are made in less time.
+/// Rows that the shaders draw with: a power of 4, which fills the tree. Fewer are made in less
+/// time.
 pub const ROWS: u32 = 256;
 
 impl Tables {

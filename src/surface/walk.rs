@@ -2,31 +2,35 @@
 //!
 //! # The walk
 //!
-//! The ray is `o + t v`, about the axis, `z` from the box's floor, `t` from where it enters the box (so that coordinates are small). With
-//! `a = vx^2 + vy^2`, `b = ox vx + oy vy`, `c = ox^2 + oy^2`: `r^2(t) = c + t (2 b + t a)`, least at `-b / a`; rows are passed in the
-//! order of `t`.
+//! The ray is `o + t v`, about the axis, `z` from the box's floor, `t` from where it enters the box
+//! (so that coordinates are small). With `a = vx^2 + vy^2`, `b = ox vx + oy vy`, `c = ox^2 + oy^2`:
+//! `r^2(t) = c + t (2 b + t a)`, least at `-b / a`; rows are passed in the order of `t`.
 //!
 //! 1. Begin at the top level of the tree, in the row of the ray's first point.
-//! 2. The node of that row at the present level ends at a row's border; there the ray is at `t_out`. Between the present `t` and
-//!    `t_out` it takes the `r^2` from `min` (at an end, or at `-b / a`) to `max` (at an end).
+//! 2. The node of that row at the present level ends at a row's border; there the ray is at
+//!    `t_out`. Between the present `t` and `t_out` it takes the `r^2` from `min` (at an end, or at
+//!    `-b / a`) to `max` (at an end).
 //! 3. If these meet the node's extent, go down a level; in a row, try its patches.
-//! 4. Else (or then) go on to the border: `t = t_out`, next row; as many levels up as the border's number of rows divides by 4. Stop where the ray
-//!    leaves the box, or where the best hit so far lies before `t`.
+//! 4. Else (or then) go on to the border: `t = t_out`, next row; as many levels up as the border's
+//!    number of rows divides by 4. Stop where the ray leaves the box, or where the best hit so far
+//!    lies before `t`.
 //!
-//! A patch's root may lie beyond the row in which it was tried: it is kept as the best so far, and rows up to there are still walked.
+//! A patch's root may lie beyond the row in which it was tried: it is kept as the best so far, and
+//! rows up to there are still walked.
 //!
 //! # The patch
 //!
-//! `G` along the ray is `al t^2 + 2 be t + ga`. It falls, from out to in, at one root only:
-//! `t = (-be - s) / al`, `s^2 = be^2 - al ga`, which is `be <= 0 ? ga / (s - be) : -(be + s) / al` without cancellation, nor division
-//! by an `al` of zero (a plane with `be > 0` gives an infinity, and no hit). A ray that starts inside the solid looks for the way out:
-//! the same with `-G`.
+//! `G` along the ray is `al t^2 + 2 be t + ga`. It falls, from out to in, at one root only: `t =
+//! (-be - s) / al`, `s^2 = be^2 - al ga`, which is `be <= 0 ? ga / (s - be) : -(be + s) / al`
+//! without cancellation, nor division by an `al` of zero (a plane with `be > 0` gives an infinity,
+//! and no hit). A ray that starts inside the solid looks for the way out: the same with `-G`.
 
 use super::rows::GpuPatch;
 use super::{QuadricPatch, Tables};
 use glam::{DVec2, DVec3, Vec3};
 
-/// By how much a hit may lie before or behind the part of the ray within the box, in lengths of 1: roundings of `t`.
+/// By how much a hit may lie before or behind the part of the ray within the box, in lengths of 1:
+/// roundings of `t`.
 const SLACK: f32 = 4e-6;
 
 /// A meeting of ray and solid.
@@ -51,8 +55,9 @@ pub struct Walk {
     pub patches: u32,
 }
 
-/// The ray against one quadric: `t` of the root at which it goes from out to in (`side` 1), or from in to out (-1); NaN, or a number that
-/// fails the guard, where there is none. `(a, b, c)` as above.
+/// The ray against one quadric: `t` of the root at which it goes from out to in (`side` 1), or from
+/// in to out (-1); NaN, or a number that fails the guard, where there is none. `(a, b, c)` as
+/// above.
 #[must_use]
 pub fn entering_root(quadric: [f32; 4], side: f32, [a, b, c]: [f32; 3], [oz, vz]: [f32; 2]) -> f32 {
     let [ka, k0, k1, k2] = quadric;
@@ -68,8 +73,8 @@ pub fn entering_root(quadric: [f32; 4], side: f32, [a, b, c]: [f32; 3], [oz, vz]
 }
 
 impl Tables {
-    /// The first hit of `o + t v` for `0 <= t <= end`, about the axis, `z` from the floor. `side` is 1 where the ray starts outside the
-    /// solid, -1 inside.
+    /// The first hit of `o + t v` for `0 <= t <= end`, about the axis, `z` from the floor. `side`
+    /// is 1 where the ray starts outside the solid, -1 inside.
     #[must_use]
     pub fn walk(&self, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
         let mut walk = Walk::default();
@@ -152,11 +157,13 @@ impl Tables {
     }
 }
 
-/// The first boundary point at `t >= 0` of a solid in its box `[-radius, radius]^2 x [0, 1]`, its axis at `axis` (object units, 0 in
-/// the middle), along `origin + t direction`: what a shader does, in its precision.
+/// The first boundary point at `t >= 0` of a solid in its box `[-radius, radius]^2 x [0, 1]`, its
+/// axis at `axis` (object units, 0 in the middle), along `origin + t direction`: what a shader
+/// does, in its precision.
 ///
-/// The box's floor and ceiling are patches. Where the ray enters the box through a side face inside the solid, that face is hit; where it
-/// starts inside the solid and meets no patch before it leaves the box, the face it leaves through.
+/// The box's floor and ceiling are patches. Where the ray enters the box through a side face inside
+/// the solid, that face is hit; where it starts inside the solid and meets no patch before it
+/// leaves the box, the face it leaves through.
 #[must_use]
 pub fn trace_patches(
     tables: &Tables,

@@ -1,4 +1,5 @@
-//! What GPU tests share: one validated device, scenes, and drawing with any message of the layers a failure.
+//! What GPU tests share: one validated device, scenes, and drawing with any message of the layers a
+//! failure.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod passing;
@@ -52,7 +53,8 @@ pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     scene
 }
 
-/// Where a camera stands that looks at the middle of a box of height 1 from `distance`, `elevation` degrees up.
+/// Where a camera stands that looks at the middle of a box of height 1 from `distance`, `elevation`
+/// degrees up.
 pub fn eye(elevation: f64, distance: f64) -> DVec3 {
     let (s, c) = elevation.to_radians().sin_cos();
     DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)

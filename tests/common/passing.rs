@@ -1,4 +1,5 @@
-//! Whether a picture's hits are the first there are: what a search has passed by more than a texel, and what it has made up.
+//! Whether a picture's hits are the first there are: what a search has passed by more than a texel,
+//! and what it has made up.
 
 use super::{device, reference};
 use rayon::prelude::*;
@@ -36,12 +37,13 @@ impl Sum for Count {
     }
 }
 
-/// Compares a drawn frame with the reference's, pixel by pixel; `texel` in object units, for solids of scale 1, and eyes outside
-/// of them.
+/// Compares a drawn frame with the reference's, pixel by pixel; `texel` in object units, for solids
+/// of scale 1, and eyes outside of them.
 pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
     let solids = Reference::new(scene).unwrap();
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height).unwrap();
-    // Along a ray F changes by at most 1 + b for a unit of length, b below 3 here, times the cells that a box is divided into.
+    // Along a ray F changes by at most 1 + b for a unit of length, b below 3 here, times the cells
+    // that a box is divided into.
     let cells = scene
         .objects
         .iter()
@@ -80,7 +82,8 @@ pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
         .sum()
 }
 
-/// Scenes that differ in parameters alone, each drawn by each of the settings from maps made once, for the first.
+/// Scenes that differ in parameters alone, each drawn by each of the settings from maps made once,
+/// for the first.
 pub fn counts<const N: usize>(
     scenes: &[Scene],
     settings: [&Settings; N],

@@ -1,4 +1,5 @@
-//! What tests that send rays one by one share: numbers by chance, and the solids that the rays are sent at.
+//! What tests that send rays one by one share: numbers by chance, and the solids that the rays are
+//! sent at.
 
 use super::shapes;
 use revmap::profile::{Profile, ProfileAxis};
@@ -17,7 +18,8 @@ impl Random {
     }
 }
 
-/// Profiles by name: those of [`shapes`], and the drawings of chess pieces; by the environment variable `ONLY` one of them.
+/// Profiles by name: those of [`shapes`], and the drawings of chess pieces; by the environment
+/// variable `ONLY` one of them.
 pub fn profiles() -> Vec<(String, Profile)> {
     let mut all: Vec<(String, Profile)> = shapes::all()
         .into_iter()

@@ -15,7 +15,8 @@ pub type Ways<'a> = [&'a [DrawPath]; 2];
 pub const WRAPPED: Ways<'static> = [&[DrawPath::Hull], &[DrawPath::Beams]];
 pub const BOXED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Rectangle]];
 
-/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart than half a texel of 512 rows.
+/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart
+/// than half a texel of 512 rows.
 pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     let both = || a.distance.iter().zip(&b.distance);
     let hits = both().filter(|(a, _)| a.is_finite()).count();
@@ -28,7 +29,8 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     (hits, edge, far)
 }
 
-/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box would be right too, and say nothing.
+/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box
+/// would be right too, and say nothing.
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
     let drawn = gpu::draw(device(), scene, settings).unwrap();

@@ -13,7 +13,8 @@ fn turns(contour: &Contour, q: DVec2) -> f64 {
     for chain in &contour.chains {
         let n = chain.points.len();
         for k in 0..n {
-            // From the last point of an open chain straight down the axis to its first: that is its mirror's side.
+            // From the last point of an open chain straight down the axis to its first: that is its
+            // mirror's side.
             let (a, b) = (chain.points[k] - q, chain.points[(k + 1) % n] - q);
             sum += a.perp_dot(b).atan2(a.dot(b));
         }

@@ -1,5 +1,5 @@
-//! Files that are noise, or sound files with random faults: every reader takes them or refuses them in words that name the file.
-//! None panics. What is taken is used: profiles are baked.
+//! Files that are noise, or sound files with random faults: every reader takes them or refuses them
+//! in words that name the file. None panics. What is taken is used: profiles are baked.
 
 use proptest::prelude::*;
 use revmap::error::Error;

@@ -1,4 +1,5 @@
-//! Hulls as a CPU walks them, ray by ray: none is lost between their layers, and nothing that they leave out can be seen.
+//! Hulls as a CPU walks them, ray by ray: none is lost between their layers, and nothing that they
+//! leave out can be seen.
 
 use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
@@ -10,7 +11,8 @@ use revmap::surface::{
     trace_patches,
 };
 
-/// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no other.
+/// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no
+/// other.
 #[test]
 fn hulls_lose_no_ray() {
     let count = count(600);
@@ -69,7 +71,8 @@ fn hulls_lose_no_ray() {
                     f64::from(wasted) / (count - hits) as f64,
                 );
                 println!("{words}");
-                // The two round their rays differently: at silhouettes one of a thousand may part ways.
+                // The two round their rays differently: at silhouettes one of a thousand may part
+                // ways.
                 if lost as f64 > 1.0 + 1e-3 * hits as f64 {
                     failures.push(words);
                 }
@@ -149,7 +152,8 @@ fn vessels() -> Vec<(&'static str, Vec<[f64; 2]>, bool)> {
     ]
 }
 
-/// Points of cells that a hull leaves out for an eye: what lies between them and the eye hides every one.
+/// Points of cells that a hull leaves out for an eye: what lies between them and the eye hides
+/// every one.
 #[test]
 fn what_a_hull_leaves_out_no_ray_meets() {
     let mut random = Random(5);

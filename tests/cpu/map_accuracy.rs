@@ -1,4 +1,5 @@
-//! The three sources of distance, measured on a disc at 512 rows: no worse than what `docs/maps.md` says of them.
+//! The three sources of distance, measured on a disc at 512 rows: no worse than what `docs/maps.md`
+//! says of them.
 
 use revmap::maps::accuracy::{Disc, MapErrors};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
@@ -12,7 +13,8 @@ fn errors(source: MapSource, rows: u32) -> MapErrors {
 #[test]
 fn binary_is_what_the_papers_have() {
     let e = errors(MapSource::Binary, 512);
-    // To pixel centres: never nearer than the truth by more than rounding, never farther than a pixel's diagonal.
+    // To pixel centres: never nearer than the truth by more than rounding, never farther than a
+    // pixel's diagonal.
     assert!(e.mean > 0.0 && e.mean <= 0.36 && e.rms <= 0.41 && e.max <= 1.0);
     assert!((8.0..=10.1).contains(&e.stored_gradient_rms), "{e:?}");
     assert!(e.stored_gradient_max <= 40.0);
@@ -40,7 +42,8 @@ fn exact_is_exact() {
     let e = errors(MapSource::Exact, 512);
     // The polygon of 65536 corners is off by 1e-9, 32 bits by 1e-5 texel, and always downwards.
     assert!(e.mean <= 0.0 && e.rms <= 1e-4 && e.max <= 1e-4, "{e:?}");
-    // Within a cell of a curved field the bilinear derivative turns by half a texel over the radius: 0.15 degrees here.
+    // Within a cell of a curved field the bilinear derivative turns by half a texel over the
+    // radius: 0.15 degrees here.
     assert!(e.gradient_rms <= 0.08 && e.gradient_max <= 0.2, "{e:?}");
 }
 
@@ -57,7 +60,8 @@ fn planted_errors_are_found() {
     }
     let e = disc.measure(&shifted);
     assert!((e.mean - clean.mean - 0.25).abs() < 1e-4 && (e.rms - 0.25).abs() < 1e-2);
-    // A field that leans to the right by s turns gradients by s sin(phi): s / sqrt(2) in the mean square.
+    // A field that leans to the right by s turns gradients by s sin(phi): s / sqrt(2) in the mean
+    // square.
     let mut leaning = good.clone();
     let lean = 4f64.to_radians();
     for (k, d) in leaning.distance.iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! The scenes that come with the program: each reads, is drawn inside its frame, and its patches stand on their board.
+//! The scenes that come with the program: each reads, is drawn inside its frame, and its patches
+//! stand on their board.
 
 use glam::{DVec2, DVec3};
 use revmap::scene::{CameraFrame, Scene, file};
@@ -57,7 +58,8 @@ fn solids_fill_their_picture() {
         let forward = (scene.camera.target - scene.camera.eye).normalize();
         let right = forward.cross(scene.camera.up).normalize();
         let up = right.cross(forward);
-        // The picture's half height at distance 1, from the ray through the middle of its upper edge.
+        // The picture's half height at distance 1, from the ray through the middle of its upper
+        // edge.
         let edge = camera.direction(400.0, 0.0);
         let half = edge.dot(up) / edge.dot(forward);
         let fill = rims(&scene)

@@ -168,7 +168,8 @@ fn patches_meet_the_reference() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// The RBM baseline on the picture: distances to the nearest solid pixel's centre, in 8 bits, 20 steps, a hit below half a texel.
+/// The RBM baseline on the picture: distances to the nearest solid pixel's centre, in 8 bits, 20
+/// steps, a hit below half a texel.
 fn papers(profile: &Profile, picture: &Profile, count: usize) -> Tally {
     let map = ShapeMap::bake(picture, &BakeOptions::new(MapSource::Binary, 512)).unwrap();
     let texel = 1.0 / 512.0;
@@ -217,8 +218,9 @@ fn clip(radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     (to > from).then_some((from, to))
 }
 
-/// Pictures of 512 rows, binary and anti-aliased, against the drawings they came from: at most half of what the RBM baseline on the binary
-/// picture has of wrong rays; of depth (p99) half of it with anti-aliasing.
+/// Pictures of 512 rows, binary and anti-aliased, against the drawings they came from: at most half
+/// of what the RBM baseline on the binary picture has of wrong rays; of depth (p99) half of it with
+/// anti-aliasing.
 #[test]
 fn pictures_are_twice_as_good_as_the_rbm_baseline() {
     let count = count(3_000);
@@ -257,9 +259,11 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
                 quantile(&tally.normal, 0.99)
             );
             println!("{words}");
-            // Binary pixels do not say where within a texel a level face lies, and along flat rays that is most of the depth; and the
-            // RBM baseline loses the rays that would be its worst, so its own p99 is a mild one (tests/bitmaps.rs has pixels in place
-            // of random rays). The column is all ridges: a ray that passes one by a hair meets the next, twenty texels on.
+            // Binary pixels do not say where within a texel a level face lies, and along flat rays
+            // that is most of the depth; and the RBM baseline loses the rays that would be its
+            // worst, so its own p99 is a mild one (tests/bitmaps.rs has pixels in place of random
+            // rays). The column is all ridges: a ray that passes one by a hair meets the next,
+            // twenty texels on.
             let depth = match (kind, name.as_str()) {
                 ("grey", "column") => 2.3,
                 ("grey", _) => 1.0,

@@ -18,9 +18,10 @@ fn precise() -> Settings {
     }
 }
 
-/// Wrong pixels, depth p99 in texels, normals in degrees rms that a shape may have at most. The goal is 0.5 %, 0.5 and 2. Where a
-/// shape has more, creases and tips are why: within a texel of them a bilinear map rounds the surface, and a column of ridges or
-/// a stack of discs is little else. Those limits are measured (llvmpipe 22.3.6).
+/// Wrong pixels, depth p99 in texels, normals in degrees rms that a shape may have at most. The
+/// goal is 0.5 %, 0.5 and 2. Where a shape has more, creases and tips are why: within a texel of
+/// them a bilinear map rounds the surface, and a column of ridges or a stack of discs is little
+/// else. Those limits are measured (llvmpipe 22.3.6).
 const LIMITS: [(&str, f64, f64, f64); 8] = [
     ("sphere", 0.005, 0.5, 2.0),
     ("cone", 0.005, 0.5, 2.6),
@@ -32,7 +33,8 @@ const LIMITS: [(&str, f64, f64, f64); 8] = [
     ("jewel", 0.005, 0.5, 2.0),
 ];
 
-/// Circle tracing with enough steps on an exact map, from the side, oblique and steep, stretched and not.
+/// Circle tracing with enough steps on an exact map, from the side, oblique and steep, stretched
+/// and not.
 #[test]
 fn circle_tracing_on_an_exact_map_is_accurate() {
     let mut failures = Vec::new();
@@ -146,7 +148,8 @@ fn strange_viewpoints_give_right_pictures() {
             );
             // Rays in the planes of discs graze them: a texel there (measured, llvmpipe 22.3.6).
             assert!(depth.p99 <= 1.0, "{name}: depth p99 {}", depth.p99);
-            // Straight down on a glass, or edge on to discs, much of what is seen lies at a crease (measured, llvmpipe 22.3.6).
+            // Straight down on a glass, or edge on to discs, much of what is seen lies at a crease
+            // (measured, llvmpipe 22.3.6).
             assert!(normal.rms <= 7.0, "{name}: normals {}", normal.rms);
         }
     }

@@ -7,7 +7,8 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use std::sync::Arc;
 
-/// Ten scenes with different cameras, transforms, maps; several overlap, one is looked at from within.
+/// Ten scenes with different cameras, transforms, maps; several overlap, one is looked at from
+/// within.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut all = vec![
         ("side", scene_of(shapes::vase(), eye(0.0, 1.8))),
@@ -72,9 +73,11 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 fn fragment_and_compute_agree_bit_for_bit() {
     let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     let all: Vec<_> = scenes().into_iter().enumerate().collect();
-    // Every search once over all, so that each scene meets two or more; the patches meet every scene.
+    // Every search once over all, so that each scene meets two or more; the patches meet every
+    // scene.
     let pairs = all.iter().flat_map(|(n, scene)| {
-        // Cone maps hold only some of these solids, and a hull is drawn by two different methods: both have tests of their own.
+        // Cone maps hold only some of these solids, and a hull is drawn by two different methods:
+        // both have tests of their own.
         let others: Vec<_> = Solver::ALL
             .into_iter()
             .filter(|s| !s.is_of_cones() && *s != Solver::Hull)
@@ -104,7 +107,8 @@ fn fragment_and_compute_agree_bit_for_bit() {
         let hits = fragment.distance.iter().filter(|d| d.is_finite()).count();
         assert!(hits > 200, "{name}: only {hits} pixels are hit");
         if *name == "crowd" {
-            // In compute the depths of other objects end a search of copies, in fragments the depth test comes after it.
+            // In compute the depths of other objects end a search of copies, in fragments the depth
+            // test comes after it.
             fragment.steps.fill(0.0);
             compute.steps.fill(0.0);
         }

@@ -1,4 +1,5 @@
-//! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside the RBM baseline on the same pixels.
+//! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside
+//! the RBM baseline on the same pixels.
 
 use crate::common::{draw, errors, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
@@ -22,8 +23,8 @@ fn binary(profile: &Profile) -> Profile {
     }
 }
 
-/// The drawing as it would be known at best from those pixels: exact, but for level and upright faces, which binary pixels place
-/// no better than on their own edges.
+/// The drawing as it would be known at best from those pixels: exact, but for level and upright
+/// faces, which binary pixels place no better than on their own edges.
 fn known_at_best(profile: &Profile) -> Profile {
     let mut outline = profile.outline.clone();
     let snap = |v: f64| (v * f64::from(ROWS)).round() / f64::from(ROWS);
@@ -48,10 +49,11 @@ fn known_at_best(profile: &Profile) -> Profile {
     Profile::new(outline, profile.radius)
 }
 
-/// Every view has at most half the wrong pixels. Errors of depth are another matter: where a level or an upright face lies within its
-/// texel binary pixels do not say, and seen at a slant that is most of the error. Were everything else known exactly, the 99th percentile
-/// would be half of the RBM baseline's in the middle of these views, and more in eleven of the twenty; what is drawn is held to
-/// that, and to the loop itself.
+/// Every view has at most half the wrong pixels. Errors of depth are another matter: where a level
+/// or an upright face lies within its texel binary pixels do not say, and seen at a slant that is
+/// most of the error. Were everything else known exactly, the 99th percentile would be half of the
+/// RBM baseline's in the middle of these views, and more in eleven of the twenty; what is drawn is
+/// held to that, and to the loop itself.
 #[test]
 fn pictures_are_better_than_by_the_rbm_baseline() {
     let ours = Settings {

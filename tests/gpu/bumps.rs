@@ -46,7 +46,8 @@ fn coordinates(projection: Projection, arc: &ArcLength, p: DVec3) -> [f64; 2] {
     }
 }
 
-/// The normal of `q = p + a H N` where `p` is the cone's point at azimuth `phi` and height `z`: by differences of `q` itself.
+/// The normal of `q = p + a H N` where `p` is the cone's point at azimuth `phi` and height `z`: by
+/// differences of `q` itself.
 fn displaced_normal(projection: Projection, arc: &ArcLength, a: f64, phi: f64, z: f64) -> DVec3 {
     let [low, high] = RIMS.map(DVec2::from);
     let side = high - low;
@@ -63,7 +64,8 @@ fn displaced_normal(projection: Projection, arc: &ArcLength, a: f64, phi: f64, z
     around.cross(up).normalize()
 }
 
-/// Rms angle, radians, between what was shaded and the displaced surface's normal, and by how much bumps turn normals at all.
+/// Rms angle, radians, between what was shaded and the displaced surface's normal, and by how much
+/// bumps turn normals at all.
 fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize) {
     let object = &scene.objects[0];
     let place = object.placement;

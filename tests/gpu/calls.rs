@@ -1,13 +1,15 @@
-//! A layer of our own between the renderer and Vulkan: calls of a borrowed device that can be made to fail, and answers about a
-//! physical device that can be poorer than the truth. The renderer knows nothing of it.
+//! A layer of our own between the renderer and Vulkan: calls of a borrowed device that can be made
+//! to fail, and answers about a physical device that can be poorer than the truth. The renderer
+//! knows nothing of it.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-/// One machine word: a handle, a pointer or a number. Each wrapped function takes up to six, which every 64-bit calling convention
-/// hands over in the same places whatever they are (on Windows from the fifth on the stack, in order).
+/// One machine word: a handle, a pointer or a number. Each wrapped function takes up to six, which
+/// every 64-bit calling convention hands over in the same places whatever they are (on Windows from
+/// the fifth on the stack, in order).
 type Word = usize;
 type Wrapped = unsafe extern "system" fn(Word, Word, Word, Word, Word, Word) -> vk::Result;
 
@@ -95,7 +97,8 @@ unsafe extern "system" fn call<const N: usize>(
     if lost && N == SUBMIT {
         return vk::Result::ERROR_DEVICE_LOST;
     }
-    // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not looked at.
+    // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not looked
+    // at.
     let result = unsafe {
         let real: Wrapped = std::mem::transmute(REAL[N].load(Ordering::SeqCst));
         real(a, b, c, d, e, f)

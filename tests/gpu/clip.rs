@@ -1,5 +1,5 @@
-//! Boxes that grow with the offset (`clip = "none"`), against the reference, which moves the box's faces and nothing else; and
-//! boxes that cut (`clip = "box"`).
+//! Boxes that grow with the offset (`clip = "none"`), against the reference, which moves the box's
+//! faces and nothing else; and boxes that cut (`clip = "box"`).
 
 use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
@@ -89,7 +89,8 @@ fn searches_agree_with_the_reference() {
                         c.depth.unwrap().p99
                     );
                     println!("{what}");
-                    // The exact searches by the bounds of those in boxes that cut; `live` by its own.
+                    // The exact searches by the bounds of those in boxes that cut; `live` by its
+                    // own.
                     let (most, p99) = match solver {
                         Solver::Live => (c.hits / 500, 0.5),
                         _ => (2, 0.02),
@@ -136,7 +137,8 @@ fn textures_stay_where_they_are() {
     }
 }
 
-/// A box that cuts does so at its faces; one that grows goes on by the offset, in steps, and not where the offset stays within.
+/// A box that cuts does so at its faces; one that grows goes on by the offset, in steps, and not
+/// where the offset stays within.
 #[test]
 fn boxes_grow_by_what_offsets_need() {
     let rod = [[0.0, 0.0], [0.3, 0.0], [0.3, 1.0], [0.0, 1.0]];

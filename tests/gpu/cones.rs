@@ -1,4 +1,5 @@
-//! Cone maps: what the reference hits is never missed by more than a texel, in either stage; what has no cone map is told.
+//! Cone maps: what the reference hits is never missed by more than a texel, in either stage; what
+//! has no cone map is told.
 
 use crate::common::passing::{Count, count};
 use crate::common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
@@ -87,7 +88,8 @@ fn cones_miss_nothing_by_more_than_a_texel() {
     assert!((all.missed + all.ghost) * 100 < all.hits, "{all:?}");
 }
 
-/// Seen level a sphere is whole; from above relaxed cones pass a ninth of it: the counterexample of docs/searches.md.
+/// Seen level a sphere is whole; from above relaxed cones pass a ninth of it: the counterexample of
+/// docs/searches.md.
 #[test]
 fn relaxed_cones_pass_surfaces() {
     let relaxed = Settings {
@@ -114,7 +116,8 @@ fn relaxed_cones_pass_surfaces() {
     assert!(20 * oblique.passed > oblique.hits, "{oblique:?}");
 }
 
-/// Eyes within the box and within the solid, replicas, boxes that cut, turned and stretched solids, shadows.
+/// Eyes within the box and within the solid, replicas, boxes that cut, turned and stretched solids,
+/// shadows.
 #[test]
 fn cones_draw_what_quadrics_draw() {
     let mut cases = vec![

@@ -85,7 +85,8 @@ fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
     assert_eq!(differs.count(), 0, "{what}");
 }
 
-/// From within, from above, from straight above and from afar, where most copies are less than a pixel.
+/// From within, from above, from straight above and from afar, where most copies are less than a
+/// pixel.
 const VIEWS: [(&str, DVec3, DVec3); 4] = [
     (
         "within",
@@ -127,7 +128,8 @@ fn culled_copies_are_not_missed() {
         {
             assert_same_bits(&frames[0], frame, &format!("{name}: {what}"));
         }
-        // The nearest hits stop later copies from being searched, and those proven hidden are not even listed.
+        // The nearest hits stop later copies from being searched, and those proven hidden are not
+        // even listed.
         let steps = |frame: &Frame| frame.steps.iter().map(|s| f64::from(*s)).sum::<f64>();
         assert!(steps(&frames[0]) <= steps(&frames[1]), "{name}");
     }
@@ -163,7 +165,8 @@ fn a_crowd_is_as_many_single_objects() {
     device().check().unwrap();
 }
 
-/// What is hidden from the eye may still throw a shadow; and copies that come into view are there in the first frame.
+/// What is hidden from the eye may still throw a shadow; and copies that come into view are there
+/// in the first frame.
 #[test]
 fn hidden_copies_throw_shadows_and_come_back() {
     for stage in STAGES {

@@ -1,5 +1,5 @@
-//! The renderer in a host that owns device, pass, depth buffer and frames in flight: the one of `examples/engine`, with the
-//! validation layers' synchronization checks.
+//! The renderer in a host that owns device, pass, depth buffer and frames in flight: the one of
+//! `examples/engine`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
 #[path = "../../examples/engine/host/mod.rs"]
@@ -187,7 +187,8 @@ fn alone_it_draws_the_off_screen_frame() {
         };
         let one = drawn(&host, &device, options, &scene, &view).0;
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
-        // Of four samples all go by the ray through the pixel's centre: away from silhouettes nothing differs.
+        // Of four samples all go by the ray through the pixel's centre: away from silhouettes
+        // nothing differs.
         let samples = 4;
         let four = drawn(
             &host,
@@ -217,7 +218,8 @@ fn kind(pixel: &[u8]) -> u8 {
     }
 }
 
-/// The host's sphere stands in a cylinder of ours. Where one passes through the other is known exactly.
+/// The host's sphere stands in a cylinder of ours. Where one passes through the other is known
+/// exactly.
 #[test]
 fn meshes_meet_solids_where_they_should() {
     let host = open();
@@ -362,7 +364,8 @@ fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
     object
 }
 
-/// A thousand objects come and go over 500 frames, two in flight; what is left is drawn as if nothing else had ever been.
+/// A thousand objects come and go over 500 frames, two in flight; what is left is drawn as if
+/// nothing else had ever been.
 #[test]
 fn objects_come_and_go_between_frames() {
     let host = open();
@@ -428,7 +431,8 @@ fn objects_come_and_go_between_frames() {
     assert_silent(&host);
 }
 
-/// Device memory after ten thousand frames is what it was after a hundred, although surfaces are made in every one.
+/// Device memory after ten thousand frames is what it was after a hundred, although surfaces are
+/// made in every one.
 #[test]
 fn memory_stays_flat() {
     let host = open();

@@ -1,4 +1,5 @@
-//! What a host may have drawn besides a colour picture with depth: depth alone for its shadow maps, and compute into its own buffer.
+//! What a host may have drawn besides a colour picture with depth: depth alone for its shadow maps,
+//! and compute into its own buffer.
 #![allow(unsafe_code)]
 
 use crate::common::{scene_of, shapes};
@@ -112,7 +113,8 @@ fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bo
     };
     type Layout = vk::ImageLayout;
     once(host, |cmd| {
-        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass is of the output's formats.
+        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass is of the
+        // output's formats.
         unsafe {
             renderer.prepare(cmd, 0, view).unwrap();
             to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
@@ -165,7 +167,8 @@ fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bo
     bytemuck::pod_collect_to_vec(&read.bytes())
 }
 
-/// A light's view: depth alone is the depth of a colour picture bit for bit, along parallel rays it is the analytic one.
+/// A light's view: depth alone is the depth of a colour picture bit for bit, along parallel rays it
+/// is the analytic one.
 #[test]
 fn depth_alone_is_a_pictures_depth() {
     let host = open();
@@ -219,7 +222,8 @@ fn depth_alone_is_a_pictures_depth() {
     assert_silent(&host);
 }
 
-/// Compute into a host's buffer: where it is cleared the off-screen picture, where it holds nearer things they stay.
+/// Compute into a host's buffer: where it is cleared the off-screen picture, where it holds nearer
+/// things they stay.
 #[test]
 fn compute_writes_to_a_hosts_buffer() {
     let host = open();

@@ -1,4 +1,5 @@
-//! Places, distances and sizes that 32-bit world coordinates cannot hold; outlines and boxes that hulls cannot.
+//! Places, distances and sizes that 32-bit world coordinates cannot hold; outlines and boxes that
+//! hulls cannot.
 
 use crate::common::{
     assert_sound, device, draw, errors, eye, placement, reference, scene_of, shapes,
@@ -22,7 +23,8 @@ fn settings(stage: DrawStage, solver: Solver) -> Settings {
     }
 }
 
-/// Pixels that only one of both hits are at most `most`; the 99th percentile of depth is at most `p99` texels of 512 rows.
+/// Pixels that only one of both hits are at most `most`; the 99th percentile of depth is at most
+/// `p99` texels of 512 rows.
 fn check(truth: &Frame, frame: &Frame, (most, p99): (usize, f64), what: &str) {
     assert_sound(frame, what);
     let found = errors(truth, frame, 512);

@@ -80,7 +80,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     device().check().unwrap();
 }
 
-/// A line on the axis has no surface to follow, and encloses nothing. Searches on the map draw nothing of it, others say that they cannot.
+/// A line on the axis has no surface to follow, and encloses nothing. Searches on the map draw
+/// nothing of it, others say that they cannot.
 #[test]
 fn what_has_no_surface_is_drawn_from_the_map() {
     let line = [0.1, 0.5, 0.9].map(|z| DVec2::new(0.0, z)).to_vec();

@@ -1,4 +1,5 @@
-//! The gallery's scenes: each has its picture and its place in the documentation, and maps no larger than the papers claim.
+//! The gallery's scenes: each has its picture and its place in the documentation, and maps no
+//! larger than the papers claim.
 
 use crate::common::device;
 use revmap::gpu::Offscreen;
@@ -43,7 +44,8 @@ fn every_scene_has_its_picture_and_its_words() {
     assert!(bytes < 4_000_000, "pictures take {bytes} bytes");
 }
 
-/// Article of 2025: at most 10 MB for shapes, 4 MB for a displacement map. What a scene's solids share is there once.
+/// Article of 2025: at most 10 MB for shapes, 4 MB for a displacement map. What a scene's solids
+/// share is there once.
 #[test]
 fn maps_are_as_small_as_the_papers_claim() {
     let settings = Settings {

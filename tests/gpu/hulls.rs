@@ -1,5 +1,6 @@
-//! Where something tells rays where to begin, or which part of a solid they may meet: hulls in the fragment stage, beams in compute. They
-//! draw what the same search draws from the box's sides, in every case that they take and in every case that they leave to the box.
+//! Where something tells rays where to begin, or which part of a solid they may meet: hulls in the
+//! fragment stage, beams in compute. They draw what the same search draws from the box's sides, in
+//! every case that they take and in every case that they leave to the box.
 
 use crate::common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
 use crate::common::{device, draw, errors, eye, placement, scene_of, shapes};
@@ -21,11 +22,12 @@ pub struct Search {
     normals: (fn(&Spread) -> f64, f64),
 }
 
-/// The default: hulls of the exact boundary. What may differ: silhouettes of grazing rays, and at a crease either face's normal is right.
+/// The default: hulls of the exact boundary. What may differ: silhouettes of grazing rays, and at a
+/// crease either face's normal is right.
 ///
-/// Measured on lavapipe 22.3.6, over all views of this file and of `proxy_hulls.rs`: 1 pixel, of 38,661 of the torus from its rim; normals
-/// 0.98 degrees rms on the many creases of the discs from below (fragments), 0.54 elsewhere. The bound on pixels is for other
-/// devices' roundings.
+/// Measured on lavapipe 22.3.6, over all views of this file and of `proxy_hulls.rs`: 1 pixel, of
+/// 38,661 of the torus from its rim; normals 0.98 degrees rms on the many creases of the discs from
+/// below (fragments), 0.54 elsewhere. The bound on pixels is for other devices' roundings.
 pub const EXACT: Search = Search {
     solver: Solver::Hull,
     from_box: Solver::Quadric,
@@ -33,10 +35,11 @@ pub const EXACT: Search = Search {
     normals: (|spread| spread.rms, 1.0),
 };
 
-/// The search for live parameters: convex hulls. Rays that begin elsewhere take other steps, of which each may pass a chord of a texel.
+/// The search for live parameters: convex hulls. Rays that begin elsewhere take other steps, of
+/// which each may pass a chord of a texel.
 ///
-/// Measured on lavapipe 22.3.6, over all views of this file: 2 pixels (`REVMAP_MEASURE=1` prints each view's); normals 0.04 degrees (p99) at
-/// most, on the glass that is thinned.
+/// Measured on lavapipe 22.3.6, over all views of this file: 2 pixels (`REVMAP_MEASURE=1` prints
+/// each view's); normals 0.04 degrees (p99) at most, on the glass that is thinned.
 const LIVE: Search = Search {
     solver: Solver::Live,
     from_box: Solver::Live,
@@ -84,8 +87,8 @@ impl Search {
     }
 }
 
-/// Undercuts, cavities, a torus, ridges: from below, level, above, and from straight above into what is open. Of the convex hull cavities
-/// and undercuts are a part, and searched as ever.
+/// Undercuts, cavities, a torus, ridges: from below, level, above, and from straight above into
+/// what is open. Of the convex hull cavities and undercuts are a part, and searched as ever.
 #[test]
 fn every_shape_from_all_sides() {
     for (name, profile) in shapes::all() {
@@ -98,7 +101,8 @@ fn every_shape_from_all_sides() {
     }
 }
 
-/// A slider: the offset moves from frame to frame. It grows the hull, and may grow the solid past its box, which then cuts it.
+/// A slider: the offset moves from frame to frame. It grows the hull, and may grow the solid past
+/// its box, which then cuts it.
 #[test]
 fn offsets_in_motion() {
     let both = [(-0.02, 0.0, 1.0), (0.03, 0.0, 1.0), (0.01, 0.2, 0.4)];
@@ -111,7 +115,8 @@ fn offsets_in_motion() {
                     bevel,
                     chamfer,
                 };
-                // A cone whose foot is moved out by the whole bevel reaches past a box that cuts, which no hull of patches can.
+                // A cone whose foot is moved out by the whole bevel reaches past a box that cuts,
+                // which no hull of patches can.
                 if (name, bevel) == ("cone", 0.12) {
                     scene.objects[0].clip = Clip::Box;
                 }
@@ -129,8 +134,8 @@ fn offsets_in_motion() {
     }
 }
 
-/// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it. An eye close to a solid, but outside of all its shells, is
-/// none of them; beams of the convex hull take all.
+/// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it. An eye close
+/// to a solid, but outside of all its shells, is none of them; beams of the convex hull take all.
 #[test]
 fn eyes_anywhere() {
     const BEAMED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Beams]];
@@ -161,8 +166,9 @@ fn eyes_anywhere() {
     }
 }
 
-/// From near to far, in compute: tiles whose rays may meet few patches, many, and more than the longest list holds, which the tree is walked
-/// for. Pixels count as steps what they test: a list's length, or what they met of the tree.
+/// From near to far, in compute: tiles whose rays may meet few patches, many, and more than the
+/// longest list holds, which the tree is walked for. Pixels count as steps what they test: a list's
+/// length, or what they met of the tree.
 #[test]
 fn lists_of_every_length() {
     let lengths = [8.0, 16.0, 32.0, 48.0];
@@ -191,8 +197,9 @@ fn lists_of_every_length() {
     );
 }
 
-/// What box and search do as before: a solid cut by its box; turned and flattened ones; copies that pass through one another; coarse
-/// maps, whose texels are as large as their solid's parts; shadows, whose rays begin on the solid.
+/// What box and search do as before: a solid cut by its box; turned and flattened ones; copies that
+/// pass through one another; coarse maps, whose texels are as large as their solid's parts;
+/// shadows, whose rays begin on the solid.
 #[test]
 fn all_that_the_box_draws() {
     let mut cut = scene_of(shapes::vase(), eye(25.0, 2.4));
@@ -227,7 +234,8 @@ fn all_that_the_box_draws() {
         lit.shadow = shadow;
         all.push((name, lit, WRAPPED));
     }
-    // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the hull's margin, too.
+    // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the
+    // hull's margin, too.
     let drum = Profile::polygon(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]], 0.5).unwrap();
     let mut ceiling = scene_of(drum, eye(15.0, 2.2));
     ceiling.objects[0].offset.extend = 0.15;
@@ -281,7 +289,8 @@ fn where_there_is_none() {
     draw_by("small", &small, &small_enough, BOXED);
 }
 
-/// The comparison notices a solid that is a fiftieth larger, and rays that begin a twentieth of the solid's height too late.
+/// The comparison notices a solid that is a fiftieth larger, and rays that begin a twentieth of the
+/// solid's height too late.
 #[test]
 fn a_wrong_solid_is_noticed() {
     let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));

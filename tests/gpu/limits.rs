@@ -1,4 +1,5 @@
-//! Offsets as large as they may be, and larger than a renderer's maps: cut by the box or by the map, never with a hole.
+//! Offsets as large as they may be, and larger than a renderer's maps: cut by the box or by the
+//! map, never with a hole.
 
 use crate::common::passing::count;
 use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
@@ -63,7 +64,8 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
     }
 }
 
-/// Where an offset grows beyond what a map was baked for, a wider one is baked: every search cuts the solid by the box alone.
+/// Where an offset grows beyond what a map was baked for, a wider one is baked: every search cuts
+/// the solid by the box alone.
 #[test]
 fn beyond_its_map_a_solid_gets_a_wider_one() {
     let plain = scene_of(shapes::sphere(), eye(25.0, 2.2));

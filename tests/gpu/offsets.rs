@@ -1,4 +1,5 @@
-//! Extended, beveled and chamfered solids: what the searches miss and make up, and whether normals are right.
+//! Extended, beveled and chamfered solids: what the searches miss and make up, and whether normals
+//! are right.
 
 use crate::common::passing::{Count, counts};
 use crate::common::{device, eye, scene_of, shapes};
@@ -23,7 +24,8 @@ fn offset(extend: f64, bevel: f64, chamfer: f64) -> Offset {
     }
 }
 
-/// The widest first: maps reach as far as the scene that they are made for. Outwards and inwards; bevels gentle, and steep on an inset solid; chamfers, one of them steeper than 45 degrees.
+/// The widest first: maps reach as far as the scene that they are made for. Outwards and inwards;
+/// bevels gentle, and steep on an inset solid; chamfers, one of them steeper than 45 degrees.
 fn settings() -> [(&'static str, Offset); 6] {
     [
         ("e = -0.1, b = 1.6, c = 0.3", offset(-0.1, 1.6, 0.3)),
@@ -99,7 +101,8 @@ fn the_conservative_rule_passes_nothing() {
     assert!(papers.passed > 0, "{papers:?}");
 }
 
-/// Writes the table of docs/offsets.md: `cargo test --release --test gpu write_the_table -- --ignored`.
+/// Writes the table of docs/offsets.md: `cargo test --release --test gpu write_the_table --
+/// --ignored`.
 #[test]
 #[ignore = "draws for minutes; writes the documentation's table"]
 fn write_the_table() {
@@ -136,8 +139,9 @@ fn write_the_table() {
     std::fs::write(file, page).unwrap();
 }
 
-/// Rms angle in degrees between the normals of frame and truth, and over how many pixels: those around which, two texels to eight
-/// sides, the truth's normals turn by less than 8 degrees (facets of the rounder polygons meet at up to 5.6).
+/// Rms angle in degrees between the normals of frame and truth, and over how many pixels: those
+/// around which, two texels to eight sides, the truth's normals turn by less than 8 degrees (facets
+/// of the rounder polygons meet at up to 5.6).
 fn smooth_error(scene: &Scene, frame: &Frame, texel: f64) -> (f64, usize) {
     let solids = Reference::new(scene).unwrap();
     let (width, height) = (frame.width, frame.height);
@@ -177,8 +181,8 @@ fn smooth_error(scene: &Scene, frame: &Frame, texel: f64) -> (f64, usize) {
     )
 }
 
-/// Under every offset normals are right within 2 degrees away from creases. What there is of error comes with 16-bit floats, which
-/// hold far distances in coarser steps.
+/// Under every offset normals are right within 2 degrees away from creases. What there is of error
+/// comes with 16-bit floats, which hold far distances in coarser steps.
 #[test]
 fn normals_follow_bevel_and_chamfer() {
     let mut failures = String::new();

@@ -1,4 +1,5 @@
-//! Hulls of patches and their beams, the default: crowds in one depth buffer, copies, slivers, faces of the box, and the truth itself.
+//! Hulls of patches and their beams, the default: crowds in one depth buffer, copies, slivers,
+//! faces of the box, and the truth itself.
 
 use super::hulls::{EXACT, settings};
 use crate::common::ways::{BOXED, STAGES, WRAPPED, draw_by};
@@ -64,7 +65,8 @@ fn a_crowd_in_one_depth_buffer() {
     EXACT.assert_same("crowd", &crowd, ways.each_ref().map(Vec::as_slice));
 }
 
-/// Copies of the only object of a scene hide one another too, in every frame anew; beyond 64 copies they share bins.
+/// Copies of the only object of a scene hide one another too, in every frame anew; beyond 64 copies
+/// they share bins.
 #[test]
 fn copies_of_a_lone_object() {
     let copies = |count: usize, size: f64| {
@@ -109,8 +111,8 @@ fn copies_of_a_lone_object() {
     device().check().unwrap();
 }
 
-/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100 pixels. Measured: 0.0055 (vase) and 0.0004
-/// (jewel), and no wrong pixel.
+/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100
+/// pixels. Measured: 0.0055 (vase) and 0.0004 (jewel), and no wrong pixel.
 #[test]
 fn the_reference_is_met() {
     for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
@@ -136,8 +138,9 @@ fn slivers() {
     EXACT.assert_same("sliver", &scene, WRAPPED);
 }
 
-/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known worst. Measured: at most 1 wrong pixel. A
-/// walk of the tree without slack for that passes 423 of 36,056, a hull that takes no hit below the floor 276 of 15,044.
+/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known
+/// worst. Measured: at most 1 wrong pixel. A walk of the tree without slack for that passes 423 of
+/// 36,056, a hull that takes no hit below the floor 276 of 15,044.
 #[test]
 fn faces_of_the_box_itself() {
     let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]];

@@ -38,7 +38,8 @@ fn flipped(profile: &Profile) -> Profile {
     Profile::new(Outline { loops }, profile.radius)
 }
 
-/// The box's cells as objects of their own, one for each way of being reflected, an instance for each cell.
+/// The box's cells as objects of their own, one for each way of being reflected, an instance for
+/// each cell.
 fn singles(replicas: &Object) -> Vec<Object> {
     let n = COUNT.map(f64::from);
     let upright = replicas.profile.clone();
@@ -93,7 +94,8 @@ fn singles(replicas: &Object) -> Vec<Object> {
     objects
 }
 
-/// Pixels that differ: in being hit, by more than a texel of depth, by more than 2 degrees of normal.
+/// Pixels that differ: in being hit, by more than a texel of depth, by more than 2 degrees of
+/// normal.
 fn differences(a: &Frame, b: &Frame, texel: f64) -> [usize; 3] {
     let mut found = [0; 3];
     for i in 0..a.pixels() {
@@ -182,7 +184,8 @@ fn replicas_are_as_many_single_solids() {
             let found = differences(&together, &apart, texel / 3.0);
             let what = format!("{name}, {}: {hits} hits; differ: {found:?}", solver.name());
             println!("{what}");
-            // What differs at all, a rounding decides: neither picture is wrong by more than a texel.
+            // What differs at all, a rounding decides: neither picture is wrong by more than a
+            // texel.
             assert!(found.iter().sum::<usize>() <= hits / 500, "{what}");
             if scene.objects[0].placement == Placement::default() {
                 for (frame, which) in [(&together, "together"), (&apart, "apart")] {

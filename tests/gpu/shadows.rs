@@ -1,4 +1,5 @@
-//! Shadows that solids throw on one another: each as its own offset and its own replicas make it, whatever receives it.
+//! Shadows that solids throw on one another: each as its own offset and its own replicas make it,
+//! whatever receives it.
 
 use crate::common::{assert_sound, draw, placement, reference, shapes};
 use glam::DVec3;
@@ -65,8 +66,8 @@ fn cases() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Pixels whose light differs by more than a rounding, of those that both hit at one depth; and those that the light does not reach
-/// in the first.
+/// Pixels whose light differs by more than a rounding, of those that both hit at one depth; and
+/// those that the light does not reach in the first.
 fn otherwise_lit(a: &Frame, b: &Frame) -> (usize, usize) {
     let (mut off, mut dark) = (0, 0);
     for i in 0..a.pixels() {
@@ -97,8 +98,9 @@ fn shadows_are_the_references() {
                 "{name}, {}: {off} pixels lit otherwise, {dark} dark",
                 solver.name()
             );
-            // Edges of shadows fall within a pixel of where they should (rays start a texel and a half off the surface), and
-            // `live` rounds the table's rim. The shadow of a caster without its offset or its replicas differs in a quarter and more.
+            // Edges of shadows fall within a pixel of where they should (rays start a texel and a
+            // half off the surface), and `live` rounds the table's rim. The shadow of a caster
+            // without its offset or its replicas differs in a quarter and more.
             assert!(dark > 1500, "{name}: {dark}");
             assert!(
                 8 * off <= dark,

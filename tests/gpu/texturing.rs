@@ -47,7 +47,8 @@ fn round(d: f64) -> f64 {
     (d - d.round()).abs()
 }
 
-/// From the front, at the seam, down on the upper pole and up at the lower one, near enough to see a pole in many pixels.
+/// From the front, at the seam, down on the upper pole and up at the lower one, near enough to see
+/// a pole in many pixels.
 fn views() -> [DVec3; 5] {
     let middle = DVec3::new(0.0, 0.0, 0.5);
     [
@@ -137,7 +138,8 @@ fn srgb(linear: f32) -> f64 {
     revmap::frame::srgb_from_linear(f64::from(linear))
 }
 
-/// Left and right of the azimuth's jump the colours go on as they do elsewhere, and where the texture repeats so often that small levels are read.
+/// Left and right of the azimuth's jump the colours go on as they do elsewhere, and where the
+/// texture repeats so often that small levels are read.
 #[test]
 fn the_seam_is_not_seen() {
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
@@ -179,7 +181,8 @@ fn the_seam_is_not_seen() {
     }
 }
 
-/// Within a cavity, too, bumps stand the right way up by every projection: lengths along the profile run the other way round there.
+/// Within a cavity, too, bumps stand the right way up by every projection: lengths along the
+/// profile run the other way round there.
 #[test]
 fn bumps_within_a_cavity_are_the_references() {
     let can = [
@@ -228,7 +231,8 @@ fn bumps_within_a_cavity_are_the_references() {
     }
 }
 
-/// Colours, bumped normals and coordinates of a turned and stretched solid are the reference's, by every projection.
+/// Colours, bumped normals and coordinates of a turned and stretched solid are the reference's, by
+/// every projection.
 #[test]
 fn colours_and_bumps_are_the_references() {
     let heights: Vec<f32> = (0..64 * 64)
@@ -241,7 +245,8 @@ fn colours_and_bumps_are_the_references() {
     let slopes = Arc::new(slopes.unwrap());
     for projection in Projection::ALL {
         for (form, bump) in [("surface-gradient", 0.03), ("papers", 0.01)] {
-            // From where the texture is not squeezed into lines: the reference has no smaller levels.
+            // From where the texture is not squeezed into lines: the reference has no smaller
+            // levels.
             let planar = projection == Projection::Planar;
             let mut scene = scene_of(shapes::vase(), eye(if planar { 80.0 } else { 15.0 }, 2.0));
             let object = &mut scene.objects[0];
@@ -285,7 +290,8 @@ fn colours_and_bumps_are_the_references() {
                 angles.len()
             );
             println!("{what}");
-            // Measured (llvmpipe 22.3.6): what is left comes of smaller levels at slanting rims, which the reference has none of.
+            // Measured (llvmpipe 22.3.6): what is left comes of smaller levels at slanting rims,
+            // which the reference has none of.
             assert!(half.0 < 0.15 && half.1 < 0.012, "{what}");
             assert!(most.0 < 0.4 && most.1 < 0.025, "{what}");
         }

@@ -136,7 +136,8 @@ fn a_memory_budget_is_kept() {
     device.check().unwrap();
 }
 
-/// A shadow may fall nearer to the eye than what casts it: all objects take the level of the nearest.
+/// A shadow may fall nearer to the eye than what casts it: all objects take the level of the
+/// nearest.
 #[test]
 fn shadows_share_the_finest_level() {
     let mut scene = scene_of(shapes::vase(), eye(25.0, 2.2));

@@ -1,4 +1,5 @@
-//! Device trouble: no memory, a lost device, poorer devices, several renderers on one device, and many one after another.
+//! Device trouble: no memory, a lost device, poorer devices, several renderers on one device, and
+//! many one after another.
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
@@ -38,7 +39,8 @@ fn borrow(host: &Host, raw: &ash::Device, instance: &ash::Instance) -> revmap::R
     }
 }
 
-/// A solid that is searched by its surface, and one whose map is read; in the second picture something is changed.
+/// A solid that is searched by its surface, and one whose map is read; in the second picture
+/// something is changed.
 fn scenes() -> [Scene; 2] {
     let before = scene_of(shapes::vase(), eye(25.0, 3.0));
     let mut after = before.clone();
@@ -346,7 +348,8 @@ fn renderers_on_one_device_do_not_disturb_each_other() {
     device().check().unwrap();
 }
 
-/// A thousand renderers one after another, the device's part kept: nothing that one has made outlives it.
+/// A thousand renderers one after another, the device's part kept: nothing that one has made
+/// outlives it.
 #[test]
 fn a_thousand_renderers_leave_nothing_behind() {
     let layer = Layer::take();

@@ -1,4 +1,5 @@
-//! A renderer from update to update: what fails leaves nothing half done, and nothing is made again that has not changed.
+//! A renderer from update to update: what fails leaves nothing half done, and nothing is made again
+//! that has not changed.
 
 use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::Stage;
@@ -74,8 +75,8 @@ fn what_is_refused_changes_nothing() {
     device().check().unwrap();
 }
 
-/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows only when it is baked: the frame
-/// before is drawn on.
+/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows
+/// only when it is baked: the frame before is drawn on.
 #[test]
 fn a_map_that_cannot_be_baked_changes_nothing() {
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
@@ -103,7 +104,8 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
     device().check().unwrap();
 }
 
-/// Objects come and go, change their profile and number of copies: the same frame as a new one draws.
+/// Objects come and go, change their profile and number of copies: the same frame as a new one
+/// draws.
 #[test]
 fn other_objects_are_taken_over() {
     type Change = (&'static str, fn(&mut Scene));
@@ -152,7 +154,8 @@ fn three() -> Scene {
     scene
 }
 
-/// Contours are cut for what has changed, once for each profile and offset; and what is kept is drawn like what is new.
+/// Contours are cut for what has changed, once for each profile and offset; and what is kept is
+/// drawn like what is new.
 #[test]
 fn only_what_has_changed_is_cut() {
     for (solver, stage) in [
@@ -219,7 +222,8 @@ fn only_what_has_changed_is_cut() {
     device().check().unwrap();
 }
 
-/// Parameters, lights and the eye move; every pipeline that they lead to was there from the beginning.
+/// Parameters, lights and the eye move; every pipeline that they lead to was there from the
+/// beginning.
 #[test]
 fn no_update_compiles_a_pipeline() {
     // Of its own: other tests compile on theirs.

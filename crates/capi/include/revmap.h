@@ -800,8 +800,8 @@ typedef struct RevmapSearch {
      */
     uint32_t proxy_min_pixels;
     /**
-     * Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches on
-     * patches follow it.
+     * Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
+     * on patches follow it.
      */
     double tolerance;
 } RevmapSearch;

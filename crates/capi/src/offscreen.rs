@@ -94,7 +94,8 @@ impl RevmapPicture {
 
 impl RevmapScene {
     unsafe fn scene(&self) -> Outcome<Scene> {
-        // SAFETY: live structures, whose sizes are looked at; the caller's lights and objects, as many as it says.
+        // SAFETY: live structures, whose sizes are looked at; the caller's lights and objects, as
+        // many as it says.
         unsafe {
             let mut scene = Scene::new(read(&raw const self.camera)?.camera());
             let lighting = read(&raw const self.lighting)?.lighting()?;

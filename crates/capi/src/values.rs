@@ -112,8 +112,8 @@ pub struct RevmapSearch {
     /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
     /// is drawn; below it the box is. UINT32_MAX: boxes alone.
     pub proxy_min_pixels: u32,
-    /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches on
-    /// patches follow it.
+    /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
+    /// on patches follow it.
     pub tolerance: f64,
 }
 

@@ -1,4 +1,5 @@
-//! `revmap animate`: a turntable, or parameters that move, as numbered pictures with the time of every frame.
+//! `revmap animate`: a turntable, or parameters that move, as numbered pictures with the time of
+//! every frame.
 
 use super::options::{Drawing, Tracing};
 use super::output;
@@ -31,8 +32,8 @@ pub struct Animate {
     /// Turns the camera about its target by so many degrees in all
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     turn: Option<f64>,
-    /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or lists of
-    /// numbers; may be given more than once
+    /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or
+    /// lists of numbers; may be given more than once
     #[arg(long, value_name = "KEY=FROM:TO")]
     vary: Vec<String>,
     /// The folder that frame-0000.png and so on go into; it is made if it is not there

@@ -28,7 +28,8 @@ const PROJECTIONS: [(&str, Projection); 4] = [
 pub struct Bake {
     /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
     profile: PathBuf,
-    /// Where the shape map goes: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit floats, without loss)
+    /// Where the shape map goes: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit
+    /// floats, without loss)
     #[arg(long, short, value_name = "MAP")]
     output: PathBuf,
     /// Rows of the shape map
@@ -52,7 +53,8 @@ pub struct Bake {
     /// Puts the projection of textures into the map's file name, as in vase.spherical.png
     #[arg(long, value_name = "NAME", value_parser = named(&PROJECTIONS))]
     projection: Option<Projection>,
-    /// A picture of heights, whose displacement map is written beside the shape map, as vase.displacement.png
+    /// A picture of heights, whose displacement map is written beside the shape map, as
+    /// vase.displacement.png
     #[arg(long, value_name = "FILE")]
     height_map: Option<PathBuf>,
     /// Say nothing but failures
@@ -144,7 +146,8 @@ fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
     }
 }
 
-/// Where the displacement map of a shape map goes: `vase.spherical.exr` and `vase.displacement.png`.
+/// Where the displacement map of a shape map goes: `vase.spherical.exr` and
+/// `vase.displacement.png`.
 fn beside(map: &Path) -> PathBuf {
     let unmarked = match Projection::of_file(map) {
         Some(_) => map.with_extension(""),

@@ -31,11 +31,12 @@ pub struct Bench {
     /// A look within 20 seconds: one solid unless scenes are named
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// The whole suite from three elevations at two sizes, every search, five meshes: takes about an hour on two cores, above two with
-    /// --framing whole,close
+    /// The whole suite from three elevations at two sizes, every search, five meshes: takes about
+    /// an hour on two cores, above two with --framing whole,close
     #[arg(long)]
     full: bool,
-    /// The published tables of frame rates: extended, beveled and chamfered solids at two sizes, rates beside the published ones
+    /// The published tables of frame rates: extended, beveled and chamfered solids at two sizes,
+    /// rates beside the published ones
     #[arg(long, conflicts_with_all = ["full", "scenes", "framing"])]
     tables: bool,
     /// How time grows with pixels, with solids and with rows of the map
@@ -113,7 +114,8 @@ impl Bench {
         })
     }
 
-    /// The published tables. The solid is one that the program carries: the articles do not name theirs.
+    /// The published tables. The solid is one that the program carries: the articles do not name
+    /// theirs.
     fn tables(&self) -> Result<()> {
         let mut plan = Plan::new(
             papers::views()?,
@@ -221,8 +223,8 @@ impl Session {
         })
     }
 
-    /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt ends early and keeps what there is.
-    /// `also` is shown every picture.
+    /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt
+    /// ends early and keeps what there is. `also` is shown every picture.
     pub fn measure(
         &self,
         plan: &Plan,
@@ -254,7 +256,8 @@ impl Session {
         Ok((measured, album))
     }
 
-    /// Says where the results are. A run that was ended early has failed, though its results are kept.
+    /// Says where the results are. A run that was ended early has failed, though its results are
+    /// kept.
     pub fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
         if !self.quiet {
             for view in &plan.views {

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 
 /// Charts speed against accuracy: every search over its budget and its maps
 ///
-/// Steps, rows, sources and formats of maps are swept one at a time; where one of their lists is given, every combination of the lists is
-/// measured instead.
+/// Steps, rows, sources and formats of maps are swept one at a time; where one of their lists is
+/// given, every combination of the lists is measured instead.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap chart --quick --out out/chart\n  \

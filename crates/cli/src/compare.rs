@@ -22,7 +22,8 @@ pub struct Compare {
     /// A sheet of heat maps, one for each measure
     #[arg(long, value_name = "FILE.png")]
     heat: Option<PathBuf>,
-    /// Length of a texel of the shape map in world units, in which errors of depth are told [default: 1/512]
+    /// Length of a texel of the shape map in world units, in which errors of depth are told
+    /// [default: 1/512]
     #[arg(long, value_name = "LENGTH", value_parser = positive)]
     texel: Option<f64>,
     /// Fail unless the frames agree in every bit of every channel

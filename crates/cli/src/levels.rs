@@ -6,7 +6,8 @@ use revmap::scene::{Scene, Shadow};
 /// The coarsest level that has a colour of its own.
 const COARSEST: f32 = 12.0;
 
-/// The scene with nothing but colours, those of the levels that its objects were drawn by. What has no levels is grey.
+/// The scene with nothing but colours, those of the levels that its objects were drawn by. What has
+/// no levels is grey.
 pub fn painted(scene: &Scene, costs: &[ObjectCost]) -> Scene {
     let mut painted = scene.clone();
     painted.lights.clear();

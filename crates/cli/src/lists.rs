@@ -54,21 +54,25 @@ pub struct Lists {
     /// How distances are stored on the device [default: r32]
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&FORMATS))]
     pub map_format: Vec<MapFormat>,
-    /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact [default: 0]
+    /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact
+    /// [default: 0]
     #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', value_parser = tolerance)]
     pub tolerance: Vec<Tolerance>,
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
-    /// How much of the picture is solid: whole as the camera stands (the program's own solids fill 9 to 23 % of it); close: the field of view
-    /// narrowed until the solid's box is a quarter larger than a picture of 4:3 (30 to 80 %), views named so; a close picture takes two to four
+    /// How much of the picture is solid: whole as the camera stands (the program's own solids fill
+    /// 9 to 23 % of it); close: the field of view narrowed until the solid's box is a quarter
+    /// larger than a picture of 4:3 (30 to 80 %), views named so; a close picture takes two to four
     /// times as long [default: whole]
     #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&FRAMINGS))]
     pub framing: Vec<Framing>,
-    /// How many of the solids that the program carries: one, three or all eight [default: three; one with --quick, all with --full]
+    /// How many of the solids that the program carries: one, three or all eight [default: three;
+    /// one with --quick, all with --full]
     #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
     pub suite: Option<Extent>,
-    /// Passes over all pictures, each with everything made anew: intervals are Student's over them [default: as time allows, 4 or more, but 2 or more on drivers that compile slowly]
+    /// Passes over all pictures, each with everything made anew: intervals are Student's over them
+    /// [default: as time allows, 4 or more, but 2 or more on drivers that compile slowly]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=100))]
     pub passes: Option<u16>,
     /// Frames of each row in a pass [default: as time allows, at least 2]
@@ -77,7 +81,8 @@ pub struct Lists {
     /// Any key of the scenes, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", requires = "scenes")]
     pub set: Vec<String>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     pub device: Option<String>,
     /// The folder for results [default: results/DATE-DEVICE, made anew]
@@ -129,7 +134,8 @@ impl Lists {
         }
     }
 
-    /// The scenes named, or the suite's; from each elevation named, or `elevations` of the suite; in each framing named.
+    /// The scenes named, or the suite's; from each elevation named, or `elevations` of the suite;
+    /// in each framing named.
     ///
     /// # Errors
     /// Of reading scenes.

@@ -1,7 +1,7 @@
 //! The `revmap` program: solids of revolution drawn from one 2D map.
 //!
-//! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed feature. A failure is one
-//! line on standard error.
+//! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed
+//! feature. A failure is one line on standard error.
 
 mod animate;
 mod bake;

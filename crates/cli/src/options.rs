@@ -59,7 +59,8 @@ pub struct Drawing {
     /// Pixels across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "800x600", value_parser = size)]
     pub size: (u32, u32),
-    /// Where rays are traced: in the fragment shader, in a compute shader, or on the CPU in double precision
+    /// Where rays are traced: in the fragment shader, in a compute shader, or on the CPU in double
+    /// precision
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
     pub stage: Tracing,
     /// How the first hit along a ray is found
@@ -77,13 +78,16 @@ pub struct Drawing {
     /// How distances are stored on the device
     #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&FORMATS))]
     pub map_format: MapFormat,
-    /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an .exr is written]
+    /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an
+    /// .exr is written]
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     pub device: Option<String>,
-    /// The most memory that buffers and pictures may take on the device, MiB [default: as much as it has]
+    /// The most memory that buffers and pictures may take on the device, MiB [default: as much as
+    /// it has]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
     pub memory_budget: Option<u64>,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once

@@ -36,8 +36,8 @@ fn flat(text: &str) -> String {
         .collect()
 }
 
-/// Looks at the output files that `option` names before any work: their endings are among `endings`, none is named twice, none is one of
-/// the `inputs`, and each can be written.
+/// Looks at the output files that `option` names before any work: their endings are among
+/// `endings`, none is named twice, none is one of the `inputs`, and each can be written.
 ///
 /// # Errors
 /// [`Stage::Usage`] for the names, [`Stage::Frame`] for what cannot be written.

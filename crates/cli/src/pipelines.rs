@@ -1,5 +1,5 @@
-//! Compiled pipelines kept between runs: one file a driver in the user's cache folder. Whatever goes wrong with it is no failure:
-//! pipelines are compiled anew.
+//! Compiled pipelines kept between runs: one file a driver in the user's cache folder. Whatever
+//! goes wrong with it is no failure: pipelines are compiled anew.
 
 use revmap::error::Result;
 use revmap::gpu::Device;

@@ -27,10 +27,12 @@ use std::time::Instant;
 pub struct Render {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
-    /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than once
+    /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than
+    /// once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
-    /// Also writes a picture of the level of patches that each pixel was drawn by: blue is exact, red the coarsest
+    /// Also writes a picture of the level of patches that each pixel was drawn by: blue is exact,
+    /// red the coarsest
     #[arg(long, value_name = "FILE.png")]
     levels: Option<PathBuf>,
     /// One JSON object on standard output in place of text: all that --verbose says
@@ -186,7 +188,8 @@ impl Render {
         })
     }
 
-    /// What was drawn, on which device, how fast. Said when it is done, so that a failure stays one line.
+    /// What was drawn, on which device, how fast. Said when it is done, so that a failure stays one
+    /// line.
     fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture, spent: [f64; 3]) {
         output::note(&format!(
             "device: {}",

@@ -16,8 +16,8 @@ pub struct Samples {
 const COUNTS: [(&str, u32); 4] = [("1", 1), ("4", 4), ("16", 16), ("64", 64)];
 
 impl Samples {
-    /// Draws the scene through the middle of each pixel by `draw`, then once for each sample, and averages the colours of these, linear
-    /// and weighted by alpha.
+    /// Draws the scene through the middle of each pixel by `draw`, then once for each sample, and
+    /// averages the colours of these, linear and weighted by alpha.
     ///
     /// # Errors
     /// Of `draw`.
@@ -49,8 +49,8 @@ impl Samples {
     }
 }
 
-/// Point `i` of `n`, as pixels from the middle: a Hammersley set. Each of `n` columns and, `n` being a power of two, each of `n` rows holds
-/// one point.
+/// Point `i` of `n`, as pixels from the middle: a Hammersley set. Each of `n` columns and, `n`
+/// being a power of two, each of `n` rows holds one point.
 fn point(i: u32, n: u32) -> [f64; 2] {
     let inverse = f64::from(i.reverse_bits()) / 2f64.powi(32);
     let half = 0.5 / f64::from(n);

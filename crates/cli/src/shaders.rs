@@ -24,10 +24,12 @@ const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
     all
 };
 
-/// Compiles what each stage, search and technique draws with, and prints what the driver's compiler says of it: registers, spills, instructions
+/// Compiles what each stage, search and technique draws with, and prints what the driver's compiler
+/// says of it: registers, spills, instructions
 ///
-/// Nothing is drawn and no memory is allocated. The driver must offer VK_KHR_pipeline_executable_properties. Mesa's RADV needs no GPU for it: the
-/// variable RADV_FORCE_FAMILY names the one to compile for.
+/// Nothing is drawn and no memory is allocated. The driver must offer
+/// VK_KHR_pipeline_executable_properties. Mesa's RADV needs no GPU for it: the variable
+/// RADV_FORCE_FAMILY names the one to compile for.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap shaders --solver hull,live\n  \
@@ -40,7 +42,8 @@ pub struct Shaders {
     /// The searches [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
     solver: Vec<Solver>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     device: Option<String>,
     /// One JSON value on standard output in place of a table
@@ -51,7 +54,8 @@ pub struct Shaders {
     csv: bool,
 }
 
-/// What the table shows of what drivers say, where they say it; all of it where none of this is said.
+/// What the table shows of what drivers say, where they say it; all of it where none of this is
+/// said.
 const SHOWN: [&str; 9] = [
     "Subgroups per SIMD",
     "VGPRs",

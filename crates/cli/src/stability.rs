@@ -17,7 +17,8 @@ use revmap_lab::stability::{cases, random, report};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-/// Draws the cases in which methods fail and holds every search to the reference; fails if the default does
+/// Draws the cases in which methods fail and holds every search to the reference; fails if the
+/// default does
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap stability --quick --out out/stability\n  \
@@ -32,13 +33,15 @@ pub struct Stability {
     /// The first and the last scene of each case, by the RBM baseline and the default alone
     #[arg(long)]
     quick: bool,
-    /// So many random scenes in place of the cases, by the default; a failing one is written as the smallest scene that still fails
+    /// So many random scenes in place of the cases, by the default; a failing one is written as the
+    /// smallest scene that still fails
     #[arg(long, value_name = "N", conflicts_with_all = ["cases", "solver", "quick"])]
     random: Option<u64>,
     /// The first random scene's seed
     #[arg(long, value_name = "S", default_value_t = 1, requires = "random")]
     seed: u64,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     device: Option<String>,
     /// The folder for results [default: results/DATE-DEVICE, made anew]

@@ -1,4 +1,5 @@
-//! Measuring what [`revmap`] draws: how far a picture is from the truth, how long it takes, and reports of both.
+//! Measuring what [`revmap`] draws: how far a picture is from the truth, how long it takes, and
+//! reports of both.
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|

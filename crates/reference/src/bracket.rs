@@ -1,11 +1,13 @@
 //! The first zero of a function of known Lipschitz constant, never stepping over one.
 //!
-//! If `|f(s) - f(t)| <= L |s - t|`, a sample `f(t)` proves that no zero lies nearer to `t` than `|f(t)| / L`; two samples of one
-//! sign at distance `h` prove the whole of the interval between them free when `|f(t)| + |f(t + h)| >= L h`. Steps taken are
-//! of these two kinds, down to values of [`NEAR`]. Nearer than that, steps double from a tenth of it until the sign changes, and
-//! the bracket is narrowed by the Illinois form of the false position, kept honest by halvings.
+//! If `|f(s) - f(t)| <= L |s - t|`, a sample `f(t)` proves that no zero lies nearer to `t` than
+//! `|f(t)| / L`; two samples of one sign at distance `h` prove the whole of the interval between
+//! them free when `|f(t)| + |f(t + h)| >= L h`. Steps taken are of these two kinds, down to values
+//! of [`NEAR`]. Nearer than that, steps double from a tenth of it until the sign changes, and the
+//! bracket is narrowed by the Illinois form of the false position, kept honest by halvings.
 
-/// Below this value of the function steps are no longer proven: features thinner than this may be stepped over.
+/// Below this value of the function steps are no longer proven: features thinner than this may be
+/// stepped over.
 pub(super) const NEAR: f64 = 1e-9;
 /// A value that turns back below this, without a change of sign, marks the ray as grazing.
 pub(super) const GRAZE: f64 = 1e-7;

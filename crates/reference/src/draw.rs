@@ -1,4 +1,5 @@
-//! A whole picture by the reference, rows in parallel; the same bits whatever the number of threads.
+//! A whole picture by the reference, rows in parallel; the same bits whatever the number of
+//! threads.
 
 use super::shade::shade;
 use super::texture::Lengths;
@@ -15,7 +16,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// `progress` is told, from any thread, how many rows are done and how many there are.
 ///
 /// # Errors
-/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and [`ArcLength::new`](revmap::maps::ArcLength::new).
+/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and
+/// [`ArcLength::new`](revmap::maps::ArcLength::new).
 pub fn draw(
     scene: &Scene,
     settings: &Settings,
@@ -46,7 +48,8 @@ pub fn draw(
     Ok(frame)
 }
 
-/// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` where no box was entered.
+/// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` where no box was
+/// entered.
 fn pixel(
     scene: &Scene,
     reference: &Reference,

@@ -1,12 +1,14 @@
 //! Exact signed distance to an outline, in double precision.
 //!
-//! Unsigned distance: the nearest segment, found by a tree of rectangles. Sign: parity of the segments crossed on the way to
-//! `r = +inf`, counted within one of many horizontal slabs; so neither the loops' direction nor their order matters.
+//! Unsigned distance: the nearest segment, found by a tree of rectangles. Sign: parity of the
+//! segments crossed on the way to `r = +inf`, counted within one of many horizontal slabs; so
+//! neither the loops' direction nor their order matters.
 
 use glam::DVec2;
 use revmap::profile::Outline;
 
-/// Points closer to the axis than this lie on it: a segment between two such closes a loop and is no part of the surface.
+/// Points closer to the axis than this lie on it: a segment between two such closes a loop and is
+/// no part of the surface.
 pub(super) const ON_AXIS: f64 = 1e-9;
 
 /// A segment of the surface.
@@ -95,7 +97,8 @@ impl Field {
         Some(field)
     }
 
-    /// The caller's loops should run with the solid on the left; parity does not care, and neither shall the normals.
+    /// The caller's loops should run with the solid on the left; parity does not care, and neither
+    /// shall the normals.
     fn turn_normals_outwards(&mut self) {
         for k in 0..self.segments.len() {
             let s = self.segments[k];
@@ -121,7 +124,8 @@ impl Field {
         parity
     }
 
-    /// Signed distance at `q`. A `hint` (a segment that was nearest to a point close by) makes it faster, never different.
+    /// Signed distance at `q`. A `hint` (a segment that was nearest to a point close by) makes it
+    /// faster, never different.
     pub fn distance(&self, q: DVec2, hint: &mut u32) -> f64 {
         let nearest = self.nearest(q, *hint);
         *hint = nearest.segment;
@@ -221,7 +225,8 @@ impl Node {
 
 const LEAF: usize = 4;
 
-/// Appends the tree over `segments`, which are put in its order; `first` is the place of the slice in the whole.
+/// Appends the tree over `segments`, which are put in its order; `first` is the place of the slice
+/// in the whole.
 fn build(segments: &mut [Segment], first: u32, nodes: &mut Vec<Node>) {
     let min = segments
         .iter()
@@ -292,7 +297,8 @@ impl Slabs {
         }
     }
 
-    /// Segments that may reach the height `z`. The same rounding places segments and points, so none is missed.
+    /// Segments that may reach the height `z`. The same rounding places segments and points, so
+    /// none is missed.
     fn at(&self, z: f64) -> &[u32] {
         let place = (z - self.low) * self.per_unit;
         let count = self.starts.len() - 1;

@@ -1,7 +1,9 @@
-//! Ground truth: the first hit of each pixel's ray in double precision, by methods that share nothing with the shaders.
+//! Ground truth: the first hit of each pixel's ray in double precision, by methods that share
+//! nothing with the shaders.
 //!
-//! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is the exact distance to the
-//! profile's outline; along a ray `F` changes at most by a known factor, so steps can be proven not to pass a surface.
+//! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is
+//! the exact distance to the profile's outline; along a ray `F` changes at most by a known factor,
+//! so steps can be proven not to pass a surface.
 //!
 //! | | [`Reference`] | [`Analytic`] |
 //! |---|---|---|
@@ -10,7 +12,8 @@
 //! | time of a ray | microseconds, hardly growing with the outline | grows with the square of the outline |
 //! | is for | pictures and measurements | checking the first |
 //!
-//! On random solids, offsets and rays the two differ by less than 1e-9 in position, but for rays that either calls grazing.
+//! On random solids, offsets and rays the two differ by less than 1e-9 in position, but for rays
+//! that either calls grazing.
 //!
 //! ```
 //! use glam::{DVec2, DVec3};
@@ -62,7 +65,8 @@ pub struct Ray {
     pub direction: DVec3,
 }
 
-/// Whether these are a ray: finite numbers, and a direction whose length a double can hold. All else hits nothing.
+/// Whether these are a ray: finite numbers, and a direction whose length a double can hold. All
+/// else hits nothing.
 fn is_ray(origin: DVec3, direction: DVec3) -> bool {
     origin.is_finite() && direction.length_squared().is_normal()
 }
@@ -80,7 +84,8 @@ pub struct Hit {
     pub normal: DVec3,
     /// Which part of the boundary.
     pub surface: Surface,
-    /// The point in its replica's cell: x, y from the axis of revolution, z from the floor, object units of the profile.
+    /// The point in its replica's cell: x, y from the axis of revolution, z from the floor, object
+    /// units of the profile.
     pub place: DVec3,
     /// Units of that cell for one object unit, along each axis; negative: the replica is reflected.
     pub cell: DVec3,
@@ -91,7 +96,8 @@ pub struct Hit {
 pub struct Trace {
     /// The first hit at `t >= 0`.
     pub hit: Option<Hit>,
-    /// Whether the ray touches a surface or an edge so closely that a change in the last digits could give another answer.
+    /// Whether the ray touches a surface or an edge so closely that a change in the last digits
+    /// could give another answer.
     pub grazes: bool,
     /// Evaluations of the distance.
     pub evaluations: u32,
@@ -107,8 +113,9 @@ impl Reference {
     /// Prepares all objects of a scene.
     ///
     /// # Errors
-    /// [`Stage::Profile`] when a profile has no surface; [`Stage::Scene`] when a placement is no placement (a scale that is
-    /// not positive, a rotation that is zero, a number that is not finite).
+    /// [`Stage::Profile`] when a profile has no surface; [`Stage::Scene`] when a placement is no
+    /// placement (a scale that is not positive, a rotation that is zero, a number that is not
+    /// finite).
     pub fn new(scene: &Scene) -> Result<Self> {
         let mut fields: Vec<(*const Profile, Arc<Field>)> = Vec::new();
         let mut parts = Vec::new();
@@ -148,7 +155,8 @@ impl Reference {
         })
     }
 
-    /// The first hit along a ray. A ray that is none (no direction, a number that is not finite) hits nothing.
+    /// The first hit along a ray. A ray that is none (no direction, a number that is not finite)
+    /// hits nothing.
     #[must_use]
     pub fn trace(&self, ray: Ray) -> Trace {
         let mut all = Trace::default();
@@ -171,7 +179,8 @@ impl Reference {
                 return f64::INFINITY;
             };
             let (object, instance) = (part.object, part.instance);
-            // Where two are met at once the first in the scene is taken, in whichever order the tree shows them.
+            // Where two are met at once the first in the scene is taken, in whichever order the
+            // tree shows them.
             let first = all.hit.is_none_or(|best| {
                 t < best.t || (t == best.t && (object, instance) < (best.object, best.instance))
             });
@@ -195,19 +204,21 @@ impl Reference {
         all
     }
 
-    /// How deep a ray reaches into the solids (negative), or by how much it misses all of them (positive), in object units
-    /// and to within `tolerance`: the least value along the ray of `max(F, g)`, `g` the distance to the box's faces, negative
-    /// inside.
+    /// How deep a ray reaches into the solids (negative), or by how much it misses all of them
+    /// (positive), in object units and to within `tolerance`: the least value along the ray of
+    /// `max(F, g)`, `g` the distance to the box's faces, negative inside.
     ///
-    /// It tells a pixel that is wrong for a reason from one that a rounding decides: at a silhouette both signs are right
-    /// as long as this is small. A ray that is none comes near nothing: `+inf`.
+    /// It tells a pixel that is wrong for a reason from one that a rounding decides: at a
+    /// silhouette both signs are right as long as this is small. A ray that is none comes near
+    /// nothing: `+inf`.
     #[must_use]
     pub fn clearance(&self, ray: Ray, tolerance: f64) -> f64 {
         self.clearance_within(ray, [0.0, f64::INFINITY], tolerance)
     }
 
-    /// The same for a part of the ray, between two values of `t`: at one point where they are equal, which tells how far from the
-    /// surface a drawn hit lies; up to a drawn hit, whether the drawing has passed something on its way.
+    /// The same for a part of the ray, between two values of `t`: at one point where they are
+    /// equal, which tells how far from the surface a drawn hit lies; up to a drawn hit, whether the
+    /// drawing has passed something on its way.
     #[must_use]
     pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
         if !is_ray(ray.origin, ray.direction) {
@@ -224,8 +235,9 @@ impl Reference {
         })
     }
 
-    /// Whether a part of a ray, between two values of `t`, goes deeper into a solid than `depth`, object units, to within `tolerance`. Much
-    /// faster than [`Reference::clearance_within`], which finds how deep.
+    /// Whether a part of a ray, between two values of `t`, goes deeper into a solid than `depth`,
+    /// object units, to within `tolerance`. Much faster than [`Reference::clearance_within`], which
+    /// finds how deep.
     #[must_use]
     pub fn goes_deeper(&self, ray: Ray, part: [f64; 2], depth: f64, tolerance: f64) -> bool {
         if !is_ray(ray.origin, ray.direction) {

@@ -70,7 +70,8 @@ impl Parts {
         Self { list, nodes }
     }
 
-    /// Shows `visit` every part whose box the ray may enter before `nearest`; it returns the new nearest `t`.
+    /// Shows `visit` every part whose box the ray may enter before `nearest`; it returns the new
+    /// nearest `t`.
     pub fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(&Part) -> f64) {
         if self.nodes.is_empty() {
             return;
@@ -114,7 +115,8 @@ impl Node {
         let (a, b) = ((self.min - origin) * inverse, (self.max - origin) * inverse);
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for axis in 0..3 {
-            // 0 times infinity, a ray within the wall's own plane, sets no bound: `max` and `min` pass over a NaN.
+            // 0 times infinity, a ray within the wall's own plane, sets no bound: `max` and `min`
+            // pass over a NaN.
             enter = enter.max(a[axis].min(b[axis]));
             leave = leave.min(a[axis].max(b[axis]));
         }

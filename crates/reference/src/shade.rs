@@ -1,4 +1,5 @@
-//! Colour of a hit: texture and bump, Blinn-Phong under the scene's lights, linear (Blinn 1977, 1978), hard shadows.
+//! Colour of a hit: texture and bump, Blinn-Phong under the scene's lights, linear (Blinn 1977,
+//! 1978), hard shadows.
 
 use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
@@ -13,15 +14,17 @@ pub(super) struct Shaded {
     pub uv: [f64; 2],
 }
 
-/// How far off a surface the way to a light begins, of the hit's distance from the eye: within it the surface would shade itself.
+/// How far off a surface the way to a light begins, of the hit's distance from the eye: within it
+/// the surface would shade itself.
 const LIFT: f64 = 1e-6;
 
 /// Shades a hit that is seen along `ray`; `None` where it is of no object of the scene.
 ///
-/// `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength * (n.l > 0 ? max(0, n.h)^shininess : 0))`,
-/// `l` towards the light, `h` half way between `l` and the viewer; `n`, tilted by the bumps, is turned to the viewer's side where
-/// the surface looks away. A light that something stands before gives nothing; soft shadows are drawn as hard ones, for they are
-/// an estimate with no truth to it.
+/// `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength * (n.l > 0 ?
+/// max(0, n.h)^shininess : 0))`, `l` towards the light, `h` half way between `l` and the viewer;
+/// `n`, tilted by the bumps, is turned to the viewer's side where the surface looks away. A light
+/// that something stands before gives nothing; soft shadows are drawn as hard ones, for they are an
+/// estimate with no truth to it.
 pub(super) fn shade(
     scene: &Scene,
     reference: &Reference,
@@ -80,7 +83,8 @@ pub(super) fn shade(
     })
 }
 
-/// The outward normal tilted by the height's slope, in the world; `None` where the object has no bumps.
+/// The outward normal tilted by the height's slope, in the world; `None` where the object has no
+/// bumps.
 fn bumped(scene: &Scene, lengths: &Lengths, hit: &Hit) -> Option<DVec3> {
     let object = scene.objects.get(hit.object)?;
     let depth = object.texturing.bump;
@@ -138,7 +142,8 @@ mod tests {
 
     #[test]
     fn colours_are_the_formulas() {
-        // Albedo 0.8 0.6 0.4, ambient 0.1, strength 0.3, shininess 40. Light, normal and viewer in one line: all of it.
+        // Albedo 0.8 0.6 0.4, ambient 0.1, strength 0.3, shininess 40. Light, normal and viewer in
+        // one line: all of it.
         let full = [0.8 * 1.1 + 0.3, 0.6 * 1.1 + 0.3, 0.4 * 1.1 + 0.3];
         assert_color(
             &look([0.0, 0.0, 1.0], [0.0, 0.0, -5.0], [0.0, 0.0, -2.0]),

@@ -1,4 +1,5 @@
-//! One solid in its own box: extension, bevel, chamfer, the axis anywhere, replicas, closed by the box.
+//! One solid in its own box: extension, bevel, chamfer, the axis anywhere, replicas, closed by the
+//! box.
 
 use super::bracket::{Search, first_zero};
 use super::field::{Field, Nearest};
@@ -12,7 +13,8 @@ use std::sync::Arc;
 pub enum Surface {
     /// The turned surface, `F = 0`.
     Turned,
-    /// The cut at a face of the shape box, or at the border of a replica's cell, square to this axis (0 x, 1 y, 2 z).
+    /// The cut at a face of the shape box, or at the border of a replica's cell, square to this
+    /// axis (0 x, 1 y, 2 z).
     Cut(usize),
 }
 
@@ -86,8 +88,8 @@ impl Solid {
 
     /// The first meeting at `t >= 0` of the ray `origin + t direction`, object space.
     ///
-    /// The boundary of the solid is where the ray's state (in or out) changes: within a cell by a zero of `F`, at a cell's
-    /// border by the states of the two sides. Outside the box is out.
+    /// The boundary of the solid is where the ray's state (in or out) changes: within a cell by a
+    /// zero of `F`, at a cell's border by the states of the two sides. Outside the box is out.
     pub fn trace(&self, origin: DVec3, direction: DVec3) -> LocalTrace {
         let mut trace = LocalTrace::default();
         // In the space of a very large or very small solid a ray's numbers may overflow.
@@ -146,8 +148,8 @@ impl Solid {
         trace
     }
 
-    /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of box and cell, to within
-    /// `tolerance`.
+    /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of
+    /// box and cell, to within `tolerance`.
     pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
         self.lowest(origin, direction, last, tolerance, None)
     }
@@ -164,7 +166,8 @@ impl Solid {
         self.lowest(origin, direction, last, tolerance, Some(floor)) < floor
     }
 
-    /// The least value; values above `floor` count as `floor`, and the first below it ends the search.
+    /// The least value; values above `floor` count as `floor`, and the first below it ends the
+    /// search.
     fn lowest(
         &self,
         origin: DVec3,
@@ -219,7 +222,8 @@ impl Solid {
         lowest
     }
 
-    /// The hit at the border of a cell; the outward normal looks along the ray (`side` 1) or against it (-1).
+    /// The hit at the border of a cell; the outward normal looks along the ray (`side` 1) or
+    /// against it (-1).
     fn cut(
         &self,
         start: DVec3,
@@ -241,7 +245,8 @@ impl Solid {
         }
     }
 
-    /// Where the ray passes from cell to cell, ends of the box included: `(t from the start, axis of the plane)`, in order.
+    /// Where the ray passes from cell to cell, ends of the box included: `(t from the start, axis
+    /// of the plane)`, in order.
     fn cuts(&self, start: DVec3, direction: DVec3, clip: Clip) -> Vec<(f64, usize)> {
         let length = clip.t[1] - clip.t[0];
         let mut cuts = vec![(0.0, clip.axis[0])];
@@ -270,8 +275,8 @@ impl LocalTrace {
     }
 }
 
-/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high allows pass none lower. The first value
-/// below `floor` ends it.
+/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high
+/// allows pass none lower. The first value below `floor` ends it.
 fn least(
     mut f: impl FnMut(f64) -> f64,
     (mut t, end): (f64, f64),
@@ -395,7 +400,8 @@ impl<'a> Cell<'a> {
             - w
     }
 
-    /// How fast `F` can change along the ray: `d` by the length of the way, `w` by its slope times the climb.
+    /// How fast `F` can change along the ray: `d` by the length of the way, `w` by its slope times
+    /// the climb.
     fn lipschitz(&self) -> f64 {
         self.direction.length() + (self.solid.offset.bevel * self.direction.z).abs()
     }

@@ -1,4 +1,5 @@
-//! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here is revmap's.
+//! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here
+//! is revmap's.
 
 pub mod memory;
 mod mesh;
@@ -189,8 +190,8 @@ impl Drop for Host {
     }
 }
 
-/// A host's matrices: looking along -z from `eye` to `target`, z up in the world, clip space with Vulkan's y downwards. Reversed
-/// depth reaches to infinity.
+/// A host's matrices: looking along -z from `eye` to `target`, z up in the world, clip space with
+/// Vulkan's y downwards. Reversed depth reaches to infinity.
 pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMat4; 2] {
     let forward = (target - eye).normalize();
     let right = forward.cross(DVec3::Z).normalize();

@@ -238,8 +238,8 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
-    /// Draws one frame: `before` records outside of the pass, `within` after the host's meshes. Waits for the frame before the last
-    /// alone.
+    /// Draws one frame: `before` records outside of the pass, `within` after the host's meshes.
+    /// Waits for the frame before the last alone.
     pub fn frame(
         &mut self,
         clip_from_world: DMat4,

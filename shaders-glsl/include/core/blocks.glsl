@@ -26,12 +26,14 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
     Frame frame_block;
 };
 
-// What is traced and seen at present. Software drivers read a uniform buffer lane by lane in fragments and wherever lanes may
-// have left, and only at a compute shader's very beginning all at once. So entry files take over its members, one by one,
-// before anything else; those that nothing reads cost nothing. What fragments need most comes to them in flat varyings.
+// What is traced and seen at present. Software drivers read a uniform buffer lane by lane in fragments and wherever
+// lanes may have left, and only at a compute shader's very beginning all at once. So entry files take over its members,
+// one by one, before anything else; those that nothing reads cost nothing. What fragments need most comes to them in
+// flat varyings.
 Frame frame; // without the lights
 
-// As the eye sees it: found in double precision for each view, so that no rounding grows with the distance from the origin or the eye.
+// As the eye sees it: found in double precision for each view, so that no rounding grows with the distance from the
+// origin or the eye.
 struct Instance {
     vec4 position_sx; // of the middle of the box's lower face, from the eye, world axes; scale along x
     vec4 rotation;    // unit quaternion, x y z w

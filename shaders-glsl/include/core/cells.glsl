@@ -1,6 +1,6 @@
-// Repetition: the box holds nx x ny x nz cells, each a replica of the whole solid, shrunk to its cell and cut by it. The ray is
-// taken from cell to cell in the order in which it meets them, and in each the one solid is traced: as safe as that, next to
-// any neighbour, mirrored or not.
+// Repetition: the box holds nx x ny x nz cells, each a replica of the whole solid, shrunk to its cell and cut by it.
+// The ray is taken from cell to cell in the order in which it meets them, and in each the one solid is traced: as safe
+// as that, next to any neighbour, mirrored or not.
 #ifndef CELLS_GLSL
 #define CELLS_GLSL
 #include "core/trace.glsl"
@@ -72,7 +72,8 @@ bool trace_cells(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
         bool last = CELLS == 0u || any(lessThan(beyond, vec3(0.0))) || any(greaterThanEqual(beyond, count));
-        // Between two replicas that are solid at the border nothing is seen. A rounding must not ask the cell that the ray leaves.
+        // Between two replicas that are solid at the border nothing is seen. A rounding must not ask the cell that the
+        // ray leaves.
         vec3 border = clamp(o + t * d, beyond + 1e-5, beyond + (1.0 - 1e-5));
         inside = CELLS != 0u && met && hit.at_border && !last && is_solid(in_cell(border, beyond), hit.steps);
         if (met && !inside) {

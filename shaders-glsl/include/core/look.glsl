@@ -1,5 +1,5 @@
-// What shading needs of the instance and of the first two lights, in the instance's turned space: object axes, world lengths.
-// There normals need no rotation.
+// What shading needs of the instance and of the first two lights, in the instance's turned space: object axes, world
+// lengths. There normals need no rotation.
 #ifndef LOOK_GLSL
 #define LOOK_GLSL
 #include "core/placement.glsl"

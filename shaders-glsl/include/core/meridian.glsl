@@ -1,5 +1,5 @@
-// The ray seen in the half-plane: with the axis as origin, r(s)^2 = a s^2 + 2 b s + c and z(s) = z0 + s vz, a branch of a
-// hyperbola. `s` counts from where the ray enters what is searched, which keeps the cancellation in r^2 small.
+// The ray seen in the half-plane: with the axis as origin, r(s)^2 = a s^2 + 2 b s + c and z(s) = z0 + s vz, a branch of
+// a hyperbola. `s` counts from where the ray enters what is searched, which keeps the cancellation in r^2 small.
 #ifndef MERIDIAN_GLSL
 #define MERIDIAN_GLSL
 #include "core/blocks.glsl"
@@ -28,8 +28,9 @@ vec2 point_rz(Meridian m, float s)
     return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
 }
 
-// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder about it. False: it meets none of that. One way out: software
-// drivers run both sides of a branch, and a return costs them a mask of lanes from there on.
+// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder about it. False: it meets none
+// of that. One way out: software drivers run both sides of a branch, and a return costs them a mask of lanes from there
+// on.
 bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
 {
     float R = solid.bounds.x;

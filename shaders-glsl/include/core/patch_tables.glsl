@@ -1,6 +1,7 @@
 // Where patches of quadrics are kept. Of a solid's tables, in this order:
-// - words, four to a vector: PATCH_NODES nodes of the tree, level by level, each the least r^2 (rounded down, low half) and the largest
-//   (rounded up, high half) in units of solid.patches.w; then the runs of the rows, first << RUN_BITS | count;
+// - words, four to a vector: PATCH_NODES nodes of the tree, level by level, each the least r^2 (rounded down, low half)
+//   and the largest (rounded up, high half) in units of solid.patches.w; then the runs of the rows, first << RUN_BITS |
+//   count;
 // - records, two vectors each, from solid.patches.y on: a patch's quadric, its guard;
 // - from solid.patches.z on, a vector a record: the range of z.
 // Of the envelope of a map BEAM_NODES nodes alone. Frusta of hulls stand by themselves (frusta.glsl).

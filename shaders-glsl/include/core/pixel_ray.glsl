@@ -1,9 +1,10 @@
-// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so that `t` is the
-// depth along the camera's forward axis in every space.
+// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so
+// that `t` is the depth along the camera's forward axis in every space.
 //
-// Rays do not begin at the eye but in the plane of the depth `base`, which goes through the box's middle (or through the eye, where the
-// middle is behind it): from a far eye the roundings of a direction would grow to more than a pixel on the way. Where pixel (0, 0) meets
-// that plane is found in double precision. `t` counts from there; the eye is at -base.
+// Rays do not begin at the eye but in the plane of the depth `base`, which goes through the box's middle (or through
+// the eye, where the middle is behind it): from a far eye the roundings of a direction would grow to more than a pixel
+// on the way. Where pixel (0, 0) meets that plane is found in double precision. `t` counts from there; the eye is at
+// -base.
 #ifndef PIXEL_RAY_GLSL
 #define PIXEL_RAY_GLSL
 #include "core/placement.glsl"

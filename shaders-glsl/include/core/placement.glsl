@@ -1,5 +1,5 @@
-// From world axes to object space and back: way in the world = rotate(q, scale * way in object space). Places are counted from the eye or
-// from an instance, never from the world's origin.
+// From world axes to object space and back: way in the world = rotate(q, scale * way in object space). Places are
+// counted from the eye or from an instance, never from the world's origin.
 #ifndef PLACEMENT_GLSL
 #define PLACEMENT_GLSL
 #include "core/blocks.glsl"
@@ -38,8 +38,8 @@ vec4 clip_of(Instance i, vec3 p)
     return vec4(xy, z, parallel ? 1.0 : depth);
 }
 
-// Of a point that is given from the place of some instance; the result is relative to the axis of revolution at z = 0. The difference of
-// the places comes first: of the instance's own it is nothing, and exact.
+// Of a point that is given from the place of some instance; the result is relative to the axis of revolution at z = 0.
+// The difference of the places comes first: of the instance's own it is nothing, and exact.
 vec3 point_to_axis(Instance i, vec3 place, vec3 p)
 {
     return rotate(conjugate(i.rotation), (place - i.position_sx.xyz) + p) / scale_of(i) - vec3(solid.axis.xy, 0.0);

@@ -96,15 +96,16 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 color = s.albedo * look.ambient;
     vec3 point = vec3(0.0); // from the instance's place, world axes
 #if SHADOWED
-    // A shadow's ray starts off the surface, or it would meet the surface itself: off the exact one by a few roundings, off that of a map
-    // by a texel and a half. Lengths are of object space, which a scale does not shrink alike along all axes.
+    // A shadow's ray starts off the surface, or it would meet the surface itself: off the exact one by a few roundings,
+    // off that of a map by a texel and a half. Lengths are of object space, which a scale does not shrink alike along
+    // all axes.
     float off = SEARCH == SEARCH_QUADRIC && SHADOW == SHADOW_HARD ? 5e-5 : 1.5 * solid.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
     vec3 place = ray_origin(rays, pixel) + vec3(solid.axis.xy, 0.0) + hit.t * v;
     point = rotate(look.rotation, place * scale + facing * lift * turned);
 #endif
-    // Two in a straight line: a loop costs software drivers a sixth of a frame or more, though none go through it. Shadows are
-    // so long that all lights share one loop.
+    // Two in a straight line: a loop costs software drivers a sixth of a frame or more, though none go through it.
+    // Shadows are so long that all lights share one loop.
     if (SHADOW == SHADOW_OFF) {
         color += blinn_phong(look, look.light_0, lit, view, s.albedo);
         color += blinn_phong(look, look.light_1, lit, view, s.albedo);

@@ -10,8 +10,8 @@ layout(set = 0, binding = 3, std140) uniform ShadowBlock {
     Solid shadow_solids[MAX_SHADOW_BATCHES];
 };
 
-// A soft shadow is cheap: from how close the ray passes a surface, in units of how far along it does (Inigo Quilez' estimate of
-// sphere tracers), about a light of half this angle's tangent.
+// A soft shadow is cheap: from how close the ray passes a surface, in units of how far along it does (Inigo Quilez'
+// estimate of sphere tracers), about a light of half this angle's tangent.
 const float PENUMBRA = 0.06;
 
 // Nearness of the ray to the solid, F / distance along the ray, by the clipped ray's own few look-ups.

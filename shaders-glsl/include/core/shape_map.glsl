@@ -31,8 +31,8 @@ vec4 filter_map(vec2 at)
     return textureLod(shape_map, at, 0.0);
 }
 
-// The four texels around a point and the point's place among them. The gather is aimed at the corner that the four share: no
-// rounding of coordinates can pick others, and the weights stay full floats where a sampler has 8 bits.
+// The four texels around a point and the point's place among them. The gather is aimed at the corner that the four
+// share: no rounding of coordinates can pick others, and the weights stay full floats where a sampler has 8 bits.
 struct Cell {
     vec4 d;     // stored: (i, j+1), (i+1, j+1), (i+1, j), (i, j)
     vec2 place; // 0 to 1; beyond the outermost texels' centres, extrapolated by half a texel
@@ -78,9 +78,9 @@ float map_distance(vec2 rz)
     return cell_distance(shape_cell(rz));
 }
 
-// Where the outline has a corner, a cell blends the directions of both its sides, and the blend is shorter than 1. Then the
-// tangents of both sides are continued from beyond the corner, and `along`, the ray's direction in the half-plane, decides: a
-// convex corner's side is the one entered last, a hollow corner's the one entered first.
+// Where the outline has a corner, a cell blends the directions of both its sides, and the blend is shorter than 1. Then
+// the tangents of both sides are continued from beyond the corner, and `along`, the ray's direction in the half-plane,
+// decides: a convex corner's side is the one entered last, a hollow corner's the one entered first.
 vec2 creased_gradient(vec2 rz, vec2 along)
 {
     vec2 g = cell_gradient(shape_cell(rz));

@@ -1,4 +1,5 @@
-// The surface F = d - w(z) = 0, with w = e + b min(u, c), u = 1 - z (method of the article of 2022, its eqs 8, 9 and 13).
+// The surface F = d - w(z) = 0, with w = e + b min(u, c), u = 1 - z (method of the article of 2022, its eqs 8, 9 and
+// 13).
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
 #include "core/shape_map.glsl"

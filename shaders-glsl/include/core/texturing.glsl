@@ -1,5 +1,5 @@
-// Texture coordinates (xi, eta) and their gradients over the surface, from formulas: neighbouring pixels do not see the jump of
-// the azimuth, and compute has no neighbours. (Article of 2025, eqs 10 to 17, with z up.)
+// Texture coordinates (xi, eta) and their gradients over the surface, from formulas: neighbouring pixels do not see the
+// jump of the azimuth, and compute has no neighbours. (Article of 2025, eqs 10 to 17, with z up.)
 #ifndef TEXTURING_GLSL
 #define TEXTURING_GLSL
 #include "core/blocks.glsl"
@@ -17,8 +17,9 @@ struct Coordinates {
     vec3 grad_eta;
 };
 
-// Length along the outline at its point nearest to (r, z), as a fraction; between texels bilinear. A closed outline's lengths
-// start again from 0 somewhere: there the smaller ones count one more. `rising`: whither it grows, of no particular length.
+// Length along the outline at its point nearest to (r, z), as a fraction; between texels bilinear. A closed outline's
+// lengths start again from 0 somewhere: there the smaller ones count one more. `rising`: whither it grows, of no
+// particular length.
 float arc_length(vec2 rz, out vec2 rising)
 {
     vec2 size = solid.map.xy;
@@ -64,8 +65,9 @@ Coordinates texture_coordinates(vec3 place, vec3 n)
         vec2 rising;
         c.uv.y = arc_length(vec2(length(place.xy), place.z), rising);
         vec3 around = vec3(-p.y, p.x, 0.0) / max(r, 1e-6);
-        // By how much lengths grow along the surface: within a cavity the other way round than outside, and faster where an outline
-        // is shorter. Between the two sides of a thin wall the table says nothing; there the longest outline's rate stands in.
+        // By how much lengths grow along the surface: within a cavity the other way round than outside, and faster
+        // where an outline is shorter. Between the two sides of a thin wall the table says nothing; there the longest
+        // outline's rate stands in.
         vec3 along = cross(n, around);
         float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / solid.map.z;
         c.grad_eta = along * ((abs(rate) < 16.0 * solid.axis.z ? rate : solid.axis.z) / profile_units());
@@ -94,8 +96,8 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 }
 
 #if TEXTURED
-// The normal tilted by the displacement map: the gradient of the height along the surface (Mikkelsen 2010), scaled by `a`; or the
-// papers' form, in which a turn around the axis counts as one unit of length wherever it is.
+// The normal tilted by the displacement map: the gradient of the height along the surface (Mikkelsen 2010), scaled by
+// `a`; or the papers' form, in which a turn around the axis counts as one unit of length wherever it is.
 vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
 {
     vec2 slope = sample_repeated(displacement_map, c, right, down).rg * solid.texturing.xy;

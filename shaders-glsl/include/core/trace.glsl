@@ -17,7 +17,8 @@
 #include "search/relaxed.glsl"
 #endif
 
-// Whether rays are known to meet nothing before and after some t. A stage that knows says so before it includes this file.
+// Whether rays are known to meet nothing before and after some t. A stage that knows says so before it includes this
+// file.
 #ifndef SPANS
 #define SPANS false
 #endif
@@ -58,7 +59,8 @@ bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
 }
 #endif
 
-// Whether the ray begins in the solid, as it does anyhow where it comes from within, `inside`; `f` is F there, of searches on the map.
+// Whether the ray begins in the solid, as it does anyhow where it comes from within, `inside`; `f` is F there, of
+// searches on the map.
 bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 {
     f = 0.0;
@@ -105,7 +107,8 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 
 // Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
 //
-// Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid where it enters. `span`: two t, before and after which nothing of the solid is.
+// Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid
+// where it enters. `span`: two t, before and after which nothing of the solid is.
 bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;

@@ -1,6 +1,6 @@
-// Circle tracing as in the papers (article of 2022, eqs 1, 8 to 10, 13): steps of the distance read, a fixed number of them; under
-// a bevel steps are not shortened, and where one ends within the surface it is halved ten times.
-// Safe where F is 1-Lipschitz, which a bevel breaks: thin parts can be stepped over (docs/searches.md).
+// Circle tracing as in the papers (article of 2022, eqs 1, 8 to 10, 13): steps of the distance read, a fixed number of
+// them; under a bevel steps are not shortened, and where one ends within the surface it is halved ten times. Safe where
+// F is 1-Lipschitz, which a bevel breaks: thin parts can be stepped over (docs/searches.md).
 #ifndef SEARCH_CIRCLE_GLSL
 #define SEARCH_CIRCLE_GLSL
 #include "core/surface.glsl"

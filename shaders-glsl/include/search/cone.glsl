@@ -1,13 +1,15 @@
-// Cone step mapping (Dummer 2006) in the half-plane, of solids r <= f(z): a table of rows of equal height, laid out and proven as
-// src/surface/cones.rs says. From a sample outside, the ray meets in its own row a frustum, exactly; beyond that row nothing before it leaves
-// the row's widest empty cone. Both are cones of revolution about the axis, so both are quadratics in t.
+// Cone step mapping (Dummer 2006) in the half-plane, of solids r <= f(z): a table of rows of equal height, laid out and
+// proven as src/surface/cones.rs says. From a sample outside, the ray meets in its own row a frustum, exactly; beyond
+// that row nothing before it leaves the row's widest empty cone. Both are cones of revolution about the axis, so both
+// are quadratics in t.
 //
 // Never passes the surface, and advances by a row at least.
 #ifndef SEARCH_CONE_GLSL
 #define SEARCH_CONE_GLSL
 #include "search/quadric.glsl"
 
-// Where r^2 - (g + slope u)^2 falls to 0, `u` from a sample with r^2 = rr and half the rate of that; NaN or negative where it does not.
+// Where r^2 - (g + slope u)^2 falls to 0, `u` from a sample with r^2 = rr and half the rate of that; NaN or negative
+// where it does not.
 float cone_root(float a, float half_rate, float rr, float g, float slope, float side)
 {
     float al = side * (a - slope * slope);
@@ -23,7 +25,8 @@ float level_height(vec4 cone, float n)
     return floor((-cone.w - 1.0) / 4096.0) / 2047.0 / n;
 }
 
-// Radius of the surface at a height over the row's lower border, and dr/dz there; beside a level face on its upper or lower side.
+// Radius of the surface at a height over the row's lower border, and dr/dz there; beside a level face on its upper or
+// lower side.
 vec2 row_radius(vec4 cone, float height, float n, bool above)
 {
     float slope = (cone.y - cone.x) * n;

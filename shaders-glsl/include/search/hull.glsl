@@ -1,5 +1,5 @@
-// A fragment of a hull: the patches of its own cell, in a straight line. What a cell is, and why it loses no ray: src/surface/hull.rs,
-// whose `trace` is this file's twin.
+// A fragment of a hull: the patches of its own cell, in a straight line. What a cell is, and why it loses no ray:
+// src/surface/hull.rs, whose `trace` is this file's twin.
 #ifndef HULL_GLSL
 #define HULL_GLSL
 #include "stage/hull_varyings.glsl"

@@ -1,6 +1,6 @@
 // The linear searches of relief mapping: equal steps along the clipped ray until one ends within the surface; then
-// nothing (`linear`), halvings (`relief`, Policarpo et al. 2005) or secants (`secant`, interval mapping, Risser et al. 2006).
-// Not safe: what is thinner than a step is stepped over.
+// nothing (`linear`), halvings (`relief`, Policarpo et al. 2005) or secants (`secant`, interval mapping, Risser et al.
+// 2006). Not safe: what is thinner than a step is stepped over.
 #ifndef SEARCH_LINEAR_GLSL
 #define SEARCH_LINEAR_GLSL
 #include "core/surface.glsl"

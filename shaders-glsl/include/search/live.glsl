@@ -1,10 +1,10 @@
 // The search for live parameters: on the map alone, nothing rebuilt when e, b or c move.
 //
-// Steps that are safe (proof in docs/searches.md): in the half-plane the ray moves away from a sample by at most
-// sigma x + kappa x^2 / 2 after x units of s, and w, being concave along the ray, stays below its tangent; so as long as both
-// together do not use up F, nothing is met. Where the secant of the last two samples shows the surface farther on, a step goes on towards it by
-// a texel at most: what it may pass is a chord of a texel. Near the surface a least step brackets it, and the secant through the
-// bracket is the hit: a ray that only comes near is no hit, however near.
+// Steps that are safe (proof in docs/searches.md): in the half-plane the ray moves away from a sample by at most sigma
+// x + kappa x^2 / 2 after x units of s, and w, being concave along the ray, stays below its tangent; so as long as both
+// together do not use up F, nothing is met. Where the secant of the last two samples shows the surface farther on, a
+// step goes on towards it by a texel at most: what it may pass is a chord of a texel. Near the surface a least step
+// brackets it, and the secant through the bracket is the hit: a ray that only comes near is no hit, however near.
 #ifndef SEARCH_LIVE_GLSL
 #define SEARCH_LIVE_GLSL
 #include "core/surface.glsl"
@@ -25,8 +25,8 @@ float safe_step(Meridian m, RayConstants ray, float side, float s, vec2 rz, floa
     float closest = max(moment >= 0.0 ? r : ray.nearest, r - f);
     float cube = closest * closest * closest;
     if (BEVELED == 0) {
-        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the sample, swept around the axis,
-        // f / sqrt(sigma^2 + kappa f), with one division for all.
+        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the
+        // sample, swept around the axis, f / sqrt(sigma^2 + kappa f), with one division for all.
         float rr = r * r;
         float sigma2_rr = max(ray.speed2 * rr - ray.j2, m.v.z * m.v.z * rr);
         return f * max(m.inverse_speed, sqrt(cube * rr / (cube * sigma2_rr + ray.j2 * f * rr + 1e-30)));
@@ -60,8 +60,8 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     int most = int(solid.offset.w);
     for (int i = 1; i < most && (i == 1 || (f > 0.0 && s < m.s_end)); ++i) {
         float safe = safe_step(m, ray, side, s, rz, f);
-        // A little beyond where the secant meets the surface, so that the next step does not end before it again; of a ray that goes along
-        // the surface the secant says nothing, and a texel is as good.
+        // A little beyond where the secant meets the surface, so that the next step does not end before it again; of a
+        // ray that goes along the surface the secant says nothing, and a texel is as good.
         float beyond = f * (s - before) / (f_before - f) + least;
         beyond = min(beyond, safe + texel);
         float stride = beyond > safe ? beyond : safe;

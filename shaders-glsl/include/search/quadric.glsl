@@ -1,6 +1,6 @@
-// The quadric search: the solid's boundary as patches of quadrics of revolution, dealt out to rows of equal height, under a 4-ary tree
-// of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a patch; rows are met in the order of t. Layout and walk are
-// those of src/surface/rows.rs and walk.rs, which is this file's twin on the CPU.
+// The quadric search: the solid's boundary as patches of quadrics of revolution, dealt out to rows of equal height,
+// under a 4-ary tree of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a patch; rows are met in the
+// order of t. Layout and walk are those of src/surface/rows.rs and walk.rs, which is this file's twin on the CPU.
 //
 // Exact but for rounding: no step, no threshold, nothing to run out of.
 #ifndef SEARCH_QUADRIC_GLSL
@@ -63,7 +63,8 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
-    // The start is known to a few roundings of the way from the ray's origin: a face of the box that is the solid's own must not be passed there.
+    // The start is known to a few roundings of the way from the ray's origin: a face of the box that is the solid's own
+    // must not be passed there.
     float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
     int level = DISPATCH == DISPATCH_BEAMS ? 1 : top;

@@ -1,6 +1,7 @@
-// Relaxed cone stepping (Policarpo and Oliveira 2007) over the rows of cones of search/cone.glsl: cones that are as wide as lets a ray come out
-// of the surface no sooner than it leaves them. So a step may end within, and is halved then. What its cones ask of rays, that they are straight in the
-// half-plane and come from far off the axis, is not so: surfaces are passed (docs/searches.md).
+// Relaxed cone stepping (Policarpo and Oliveira 2007) over the rows of cones of search/cone.glsl: cones that are as
+// wide as lets a ray come out of the surface no sooner than it leaves them. So a step may end within, and is halved
+// then. What its cones ask of rays, that they are straight in the half-plane and come from far off the axis, is not so:
+// surfaces are passed (docs/searches.md).
 #ifndef SEARCH_RELAXED_GLSL
 #define SEARCH_RELAXED_GLSL
 #include "search/cone.glsl"

@@ -12,8 +12,8 @@ struct Nearest {
     bool exhausted; // one of them ran out of steps
 };
 
-// Of equal depths the first stays, as under the depth test. Ends where the next copy begins behind the hit, or behind the depth that `nearest`
-// comes with.
+// Of equal depths the first stays, as under the depth test. Ends where the next copy begins behind the hit, or behind
+// the depth that `nearest` comes with.
 bool nearest_listed(uint first, uint count, uvec2 pixel, inout Nearest nearest)
 {
     bool found = false;

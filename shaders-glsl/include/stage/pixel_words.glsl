@@ -1,5 +1,5 @@
-// Two words a pixel, in two runs: the nearest depth so far, then what the entry file keeps there (a packed colour, or the
-// look-ups of all searches in that pixel, with a bit that tells whether one of them ran out of steps).
+// Two words a pixel, in two runs: the nearest depth so far, then what the entry file keeps there (a packed colour, or
+// the look-ups of all searches in that pixel, with a bit that tells whether one of them ran out of steps).
 #ifndef PIXEL_WORDS_GLSL
 #define PIXEL_WORDS_GLSL
 #include "core/blocks.glsl"

@@ -1,5 +1,5 @@
-// What the vertices of boxes and hulls hand their fragments, the same for a whole instance. Vertex shaders define VARYING as `out`,
-// and are compiled so that they hand over nothing that no fragment takes.
+// What the vertices of boxes and hulls hand their fragments, the same for a whole instance. Vertex shaders define
+// VARYING as `out`, and are compiled so that they hand over nothing that no fragment takes.
 #ifndef VARYINGS_GLSL
 #define VARYINGS_GLSL
 #include "core/look.glsl"

@@ -1,4 +1,5 @@
-//! Pixels that solids are proven to cover, and how deep: squares of 8 x 8 pixels, a bit for each, with one depth.
+//! Pixels that solids are proven to cover, and how deep: squares of 8 x 8 pixels, a bit for each,
+//! with one depth.
 
 use super::inner::{Inner, Piece};
 use super::seen::{MARGIN, SLACK, Spread};
@@ -45,8 +46,8 @@ impl Cover {
         }
     }
 
-    /// Visits the squares in which some of these pixels may show what is not nearer than `near`: the
-    /// square's number and the pixels.
+    /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
+    /// the square's number and the pixels.
     pub fn open(&self, pixels: [u16; 4], near: f32, mut visit: impl FnMut(u32, u64)) {
         let [x0, y0, x1, y1] = pixels.map(u32::from);
         let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));

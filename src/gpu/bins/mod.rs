@@ -1,12 +1,16 @@
-//! Which copies each square of the screen shows, nearest first: what objects of several copies are drawn from, in both stages.
+//! Which copies each square of the screen shows, nearest first: what objects of several copies are
+//! drawn from, in both stages.
 //!
-//! 1. Every copy's rectangle of pixels and nearest depth are found ([`seen`]); copies that no pixel's ray can meet are left out.
+//! 1. Every copy's rectangle of pixels and nearest depth are found ([`seen`]); copies that no
+//!    pixel's ray can meet are left out.
 //! 2. Copies of all objects are sorted, the nearest first.
-//! 3. In this order they are listed in the squares in which they may show. What a copy is sure to hide is marked there
-//!    ([`cover`]), and later copies are not listed for pixels in which all of them lies behind it.
+//! 3. In this order they are listed in the squares in which they may show. What a copy is sure to
+//!    hide is marked there ([`cover`]), and later copies are not listed for pixels in which all of
+//!    them lies behind it.
 //!
-//! A copy is hidden only where solids that it lies behind are proven to be: pictures are those of unculled copies to the last bit.
-//! Nothing is taken from an earlier frame. Bands of the screen are worked on in parallel.
+//! A copy is hidden only where solids that it lies behind are proven to be: pictures are those of
+//! unculled copies to the last bit. Nothing is taken from an earlier frame. Bands of the screen are
+//! worked on in parallel.
 
 mod cover;
 mod inner;
@@ -43,7 +47,8 @@ pub(crate) struct Shown {
     pub copies: Vec<u32>,
 }
 
-/// Bins of all batches and their lists, as the shader's one buffer of words holds them (`bins.glsl`).
+/// Bins of all batches and their lists, as the shader's one buffer of words holds them
+/// (`bins.glsl`).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bins {
     pub words: Vec<u32>,
@@ -84,7 +89,8 @@ const LEAST_PIXELS: u32 = 24;
 const LEAST_SPLIT: usize = 3;
 
 impl Bins {
-    /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as one, by a rectangle.
+    /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as
+    /// one, by a rectangle.
     pub fn new(view: &View, batches: &[Batch], in_runs: bool) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
@@ -267,7 +273,8 @@ impl Part {
         }
     }
 
-    /// A list for each of a square's pixels: first where each begins, from the first word on, and how long it is.
+    /// A list for each of a square's pixels: first where each begins, from the first word on, and
+    /// how long it is.
     fn split<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone) {
         const PIXELS: usize = (SIDE * SIDE) as usize;
         let mut counts = [0u32; PIXELS];
@@ -320,7 +327,8 @@ impl Rectangle {
     }
 }
 
-/// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the picture.
+/// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the
+/// picture.
 pub(crate) fn rectangle(
     view: &View,
     unit: u32,

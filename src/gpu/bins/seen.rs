@@ -41,7 +41,8 @@ pub(super) struct Seen {
     pub near: f32,
 }
 
-/// By how much a rectangle is wider than computed, pixels: more than roundings of 32 bits amount to.
+/// By how much a rectangle is wider than computed, pixels: more than roundings of 32 bits amount
+/// to.
 pub(super) const MARGIN: f64 = 1.0 / 16.0;
 /// By how much depths are moved to the safe side, as a part.
 pub(super) const SLACK: f64 = 1e-5;
@@ -104,7 +105,8 @@ impl Forms {
                     high = high.max((b + root) / a);
                 }
             } else {
-                // Around or beside the eye: everything, unless it lies beyond an edge of the picture.
+                // Around or beside the eye: everything, unless it lies beyond an edge of the
+                // picture.
                 (low, high) = (self.low[i], self.high[i]);
                 let beyond = |edge: f64, sense: f64| {
                     let side = |c: &DVec3| sense * (c[i] - edge * c.z);

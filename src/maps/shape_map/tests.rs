@@ -162,7 +162,8 @@ fn star() -> impl Strategy<Value = Profile> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    // Exact: each texel holds the outline's own distance, never more, less by no more than 32 bits cost.
+    // Exact: each texel holds the outline's own distance, never more, less by no more than 32 bits
+    // cost.
     #[test]
     fn exact_maps_hold_the_outlines_distances(profile in star()) {
         let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();
@@ -174,7 +175,8 @@ proptest! {
         }
     }
 
-    // Between texels bilinear values stay within h / sqrt(2) of the truth, and beyond the map they never exceed it by more.
+    // Between texels bilinear values stay within h / sqrt(2) of the truth, and beyond the map they
+    // never exceed it by more.
     #[test]
     fn reconstruction_is_bounded(profile in star(), r in -1.5f64..1.5, z in -1.0f64..2.0) {
         let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();

@@ -35,7 +35,8 @@ fn a_circle_is_flattened_within_the_tolerance() {
             high = high.max(p.distance(middle));
         }
     }
-    // A circle of four cubics, which is what drawings have, is itself off by 2.7e-4 of its radius at most.
+    // A circle of four cubics, which is what drawings have, is itself off by 2.7e-4 of its radius
+    // at most.
     assert!(
         low > 0.4 - FLATNESS && high < 0.4 * (1.0 + 2.8e-4),
         "{low} {high}"
@@ -99,7 +100,8 @@ fn strokes_with_caps_joins_and_dashes() {
             "<path fill='none' stroke='#000' stroke-width='10' stroke-linejoin='{join}' d='M20,60V20H60'/>"
         ))
     };
-    // Two bars of 40 x 10 share a quarter of the corner; what the join adds is the quarter across from it.
+    // Two bars of 40 x 10 share a quarter of the corner; what the join adds is the quarter across
+    // from it.
     near(angle("miter"), 800.0);
     near(angle("bevel"), 775.0 + 12.5);
     near(angle("round"), 775.0 + PI * 25.0 / 4.0);

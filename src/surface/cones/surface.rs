@@ -1,4 +1,5 @@
-//! The surface of a contour as the rows of a cone map have it: a slope in each, or a level face where that is closer.
+//! The surface of a contour as the rows of a cone map have it: a slope in each, or a level face
+//! where that is closer.
 
 use crate::error::{Error, Result, Stage};
 use crate::surface::Contour;
@@ -153,7 +154,8 @@ fn sides(contour: &Contour) -> impl Iterator<Item = [DVec2; 2]> {
     })
 }
 
-/// Where the boundary is crossed going outwards, just above and just below each height `(i + shift) / rows`.
+/// Where the boundary is crossed going outwards, just above and just below each height `(i + shift)
+/// / rows`.
 fn crossings(contour: &Contour, rows: usize, shift: f64) -> Vec<[Vec<f64>; 2]> {
     let n = rows as f64;
     let mut all: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows + 1];

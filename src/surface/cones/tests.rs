@@ -140,7 +140,8 @@ fn assert_empty(cones: &Cones) -> std::result::Result<(), TestCaseError> {
 }
 
 proptest! {
-    /// A straight ray from the largest radius that has gone into the surface comes out of it again only beyond the cone.
+    /// A straight ray from the largest radius that has gone into the surface comes out of it again
+    /// only beyond the cone.
     #[test]
     fn straight_rays_from_the_top_leave_relaxed_cones_inside(radii in proptest::collection::vec(0.0f64..0.45, 3..20)) {
         let at = |k: usize| DVec2::new(radii[k], k as f64 / radii.len() as f64);

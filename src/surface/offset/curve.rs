@@ -48,8 +48,8 @@ impl Curve {
         }
     }
 
-    /// Parameters at which a conic meets the line `normal . q = offset`, each once, not yet brought into its range:
-    /// `A cos x + B sin x = C`.
+    /// Parameters at which a conic meets the line `normal . q = offset`, each once, not yet brought
+    /// into its range: `A cos x + B sin x = C`.
     pub(super) fn meets_line(
         &self,
         beta: f64,

@@ -642,7 +642,8 @@ fn off_screen_pictures() {
     }
 }
 
-/// Threads that use one renderer at once are refused or served; none is harmed, and what was accepted counts.
+/// Threads that use one renderer at once are refused or served; none is harmed, and what was
+/// accepted counts.
 #[test]
 fn threads_at_once_are_refused_or_served() {
     let (device, profile) = (device(), spindle());

@@ -41,7 +41,8 @@ fn the_header_is_what_the_sources_give() {
     let mut builder = cbindgen::Builder::new().with_config(
         cbindgen::Config::from_file(folder().join("cbindgen.toml").to_str().unwrap()).unwrap(),
     );
-    // The root alone: cbindgen goes from it to every module, and would take a file named here twice.
+    // The root alone: cbindgen goes from it to every module, and would take a file named here
+    // twice.
     builder = builder.with_src(folder().join("src/lib.rs"));
     let mut made = Vec::new();
     builder.generate().unwrap().write(&mut made);

@@ -12,7 +12,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Stops a program at the first byte out of place, freed twice or read uninitialised by its types' rules.
+/// Stops a program at the first byte out of place, freed twice or read uninitialised by its types'
+/// rules.
 pub const SANITIZED: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
 /// A new folder that is removed with the value.
@@ -20,7 +21,8 @@ pub fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// Runs a command and gives its standard output. If it fails, so does the test, with all that it said.
+/// Runs a command and gives its standard output. If it fails, so does the test, with all that it
+/// said.
 pub fn run(command: &mut Command) -> String {
     let out = command
         .output()

@@ -1,4 +1,5 @@
-//! Recording through the C interface, into a render pass and in compute: what the Rust renderer draws.
+//! Recording through the C interface, into a render pass and in compute: what the Rust renderer
+//! draws.
 
 use crate::host::{Host, Options, Stage};
 use ash::vk;
@@ -189,7 +190,8 @@ fn a_render_pass_shows_what_rust_draws() {
     let mut stage = Stage::new(&host, OPTIONS).unwrap();
     let wanted = drawn(&host, &mut stage);
     let (device, camera) = (lend(&host), camera());
-    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is the renderer's.
+    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
+    // the renderer's.
     unsafe {
         let mut pass: RevmapPass = zeroed();
         pass.size = size_of::<RevmapPass>() as u32;
@@ -383,7 +385,8 @@ fn compute_writes_what_rust_draws() {
     let mut stage = Stage::new(&host, OPTIONS).unwrap();
     let (device, camera, words) = (lend(&host), camera(), Words::new(&host));
     let mut renderer = null_mut();
-    // SAFETY: live values; the stage has waited for a slot before it is prepared; the words live until it is idle.
+    // SAFETY: live values; the stage has waited for a slot before it is prepared; the words live
+    // until it is idle.
     unsafe {
         ok(revmap_renderer_create_compute(
             device,

@@ -19,7 +19,8 @@ use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
-/// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to go nearer; drop a file to see it
+/// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to
+/// go nearer; drop a file to see it
 #[derive(Args)]
 pub struct View {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
@@ -36,7 +37,8 @@ pub struct View {
     /// Allowed error of silhouettes and depths in pixels; 0 is exact
     #[arg(long, value_name = "PIXELS", default_value = "0.25", value_parser = super::options::tolerance)]
     tolerance: Tolerance,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated before virtual before CPU]
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     device: Option<String>,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once

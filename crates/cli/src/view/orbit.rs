@@ -1,4 +1,5 @@
-//! How the pointer moves the camera: left turns it about its target, middle or right shifts both, the wheel goes nearer.
+//! How the pointer moves the camera: left turns it about its target, middle or right shifts both,
+//! the wheel goes nearer.
 
 use glam::{DQuat, DVec3};
 use revmap::scene::Camera;
@@ -23,7 +24,8 @@ pub fn turn(camera: &mut Camera, [right, down]: [f64; 2]) {
     camera.eye = camera.target + turned * from;
 }
 
-/// Shifts the camera and its target so that what is at the target follows the pointer, in a picture of so many pixels in height.
+/// Shifts the camera and its target so that what is at the target follows the pointer, in a picture
+/// of so many pixels in height.
 pub fn shift(camera: &mut Camera, [right, down]: [f64; 2], height: f64) {
     let from = camera.eye - camera.target;
     let forward = -from.normalize_or(DVec3::X);

@@ -113,8 +113,9 @@ impl Stage {
         self.renderer.draw_paths()
     }
 
-    /// Draws a frame: the scene, unless the controls bring a picture of their own, then the controls. None: the window has
-    /// another size. A scene that cannot be drawn is left out, and told to `problem`.
+    /// Draws a frame: the scene, unless the controls bring a picture of their own, then the
+    /// controls. None: the window has another size. A scene that cannot be drawn is left out, and
+    /// told to `problem`.
     pub fn draw(
         &mut self,
         scene: Option<&Scene>,

@@ -410,7 +410,8 @@ impl Swapchain {
         };
     }
 
-    /// Ends the pass, submits and presents; with `keep` the picture is read, too. Gives whether the chain still fits the window.
+    /// Ends the pass, submits and presents; with `keep` the picture is read, too. Gives whether the
+    /// chain still fits the window.
     pub fn finish(&mut self, frame: Recording, keep: bool) -> Result<(bool, Option<Picture>)> {
         use vk::{AccessFlags as A, ImageLayout as L, PipelineStageFlags as S};
         let device = &self.host.device;
@@ -420,7 +421,8 @@ impl Swapchain {
             acquired,
             done,
         } = self.slots[frame.slot];
-        // SAFETY: `cmd` is recording within the pass; what is submitted lives until the fence says that it is done.
+        // SAFETY: `cmd` is recording within the pass; what is submitted lives until the fence says
+        // that it is done.
         unsafe {
             device.cmd_end_rendering(cmd);
             let color = vk::ImageAspectFlags::COLOR;

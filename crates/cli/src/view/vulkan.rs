@@ -53,15 +53,16 @@ unsafe extern "system" fn message(
 }
 
 impl Vulkan {
-    /// Opens the device that `choice` names (its index, or a part of its name), else the first by kind that can show pictures in
-    /// `window`.
+    /// Opens the device that `choice` names (its index, or a part of its name), else the first by
+    /// kind that can show pictures in `window`.
     pub fn open(window: &Window, choice: Option<&str>) -> Result<Self> {
         let validate =
             std::env::var_os(VALIDATION_VARIABLE).is_some_and(|v| v != "0" && !v.is_empty());
         let handle = |e| device_error(format!("the window has no handle: {e}"));
         let display = window.display_handle().map_err(handle)?.as_raw();
         let raw_window = window.window_handle().map_err(handle)?.as_raw();
-        // SAFETY: plain creations in order; what follows a failure is destroyed by the process's end.
+        // SAFETY: plain creations in order; what follows a failure is destroyed by the process's
+        // end.
         unsafe {
             let entry = ash::Entry::load()
                 .map_err(|e| device_error(format!("no Vulkan loader ({e}); install libvulkan1")))?;

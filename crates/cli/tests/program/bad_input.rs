@@ -1,8 +1,10 @@
-//! Whatever is wrong with the files that the program is given: the exit code, one line that says where, and no output file.
+//! Whatever is wrong with the files that the program is given: the exit code, one line that says
+//! where, and no output file.
 
 use crate::run::{Bench, CAMERA, CONE, lines};
 
-/// The reference, which needs no Vulkan: what is wrong here is wrong before any device is looked for.
+/// The reference, which needs no Vulkan: what is wrong here is wrong before any device is looked
+/// for.
 const RENDER: &str = "render scene.toml -o out.png --stage reference --size 16x12";
 
 #[test]

@@ -1,4 +1,5 @@
-//! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On a real device, small and brief.
+//! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On
+//! a real device, small and brief.
 
 use revmap_lab::report::row::COLUMNS;
 use revmap_lab::report::table::Table;
@@ -105,7 +106,8 @@ fn a_brief_run_measures_every_combination() {
         text(&out.stdout)
     );
 
-    // It is there to stay, unless it may be replaced; and a scene within it is no place for results.
+    // It is there to stay, unless it may be replaced; and a scene within it is no place for
+    // results.
     let again = ["bench", SCENE, "--quick", "--size", "64x48", "--out", "a/b"];
     for command in ["bench", "chart"] {
         let out = run(folder.path(), &[&[command], &again[1..]].concat());
@@ -204,7 +206,8 @@ fn close_pictures_are_measured_beside_whole_ones() {
     let mut scenes: Vec<&str> = results.records.iter().map(|r| r[0].as_str()).collect();
     scenes.sort_unstable();
     assert_eq!(scenes, ["sphere", "sphere", "sphere:close", "sphere:close"]);
-    // Whether there are charts, which `report::summary` tests, is the clocks' affair: frames this small are easily timed wrongly.
+    // Whether there are charts, which `report::summary` tests, is the clocks' affair: frames this
+    // small are easily timed wrongly.
     assert!(made.join("pictures/sphere-close.png").exists());
 }
 

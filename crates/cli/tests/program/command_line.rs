@@ -1,4 +1,5 @@
-//! What a command line asks for: made under the names that it gives, or refused by exit code and one line, before any file is written.
+//! What a command line asks for: made under the names that it gives, or refused by exit code and
+//! one line, before any file is written.
 
 use crate::run::{Bench, CAMERA, CONE, lines};
 use std::path::Path;

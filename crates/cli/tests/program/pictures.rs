@@ -1,4 +1,5 @@
-//! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns of and says.
+//! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns
+//! of and says.
 
 use revmap::frame::read_exr;
 use revmap::maps::DisplacementMap;
@@ -73,7 +74,8 @@ fn rays_out_of_steps_are_warned_of() {
     assert!(!default.contains("out of steps"), "{default}");
 }
 
-/// `bake` writes a displacement map that is the height map's; `render --verbose` says what maps take.
+/// `bake` writes a displacement map that is the height map's; `render --verbose` says what maps
+/// take.
 #[test]
 fn maps_are_written_and_weighed() {
     let folder = tempfile::tempdir().unwrap();
@@ -121,7 +123,8 @@ fn maps_are_written_and_weighed() {
     );
 }
 
-/// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other channels are the plain picture's.
+/// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other
+/// channels are the plain picture's.
 #[test]
 fn samples_average_colours_alone() {
     let folder = tempfile::tempdir().unwrap();

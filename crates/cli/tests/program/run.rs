@@ -61,8 +61,8 @@ impl Bench {
         names
     }
 
-    /// Runs and wants `code`, exactly one line on standard error with all of `words`, nothing on standard output, and
-    /// no file made.
+    /// Runs and wants `code`, exactly one line on standard error with all of `words`, nothing on
+    /// standard output, and no file made.
     #[track_caller]
     pub fn refused(&self, arguments: &str, code: i32, words: &[&str]) {
         self.refused_by(&mut self.command(arguments.split(' ')), code, words);

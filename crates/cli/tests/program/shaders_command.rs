@@ -1,4 +1,5 @@
-//! `revmap shaders` on Mesa's RADV, which compiles for RDNA2 without a GPU: what our shaders cost there, held to docs/shaders-navi21.csv.
+//! `revmap shaders` on Mesa's RADV, which compiles for RDNA2 without a GPU: what our shaders cost
+//! there, held to docs/shaders-navi21.csv.
 
 use crate::run::{Bench, lines};
 use std::collections::HashMap;
@@ -10,7 +11,8 @@ const RENEW: &str = "if it must grow, renew docs/shaders-navi21.csv and docs/sha
 /// Cells by column.
 type Row = HashMap<String, String>;
 
-/// The driver's manifest, where the loader looks for them. It belongs to the drivers that the tests run on.
+/// The driver's manifest, where the loader looks for them. It belongs to the drivers that the tests
+/// run on.
 fn manifest() -> PathBuf {
     let home = std::env::var_os("HOME")
         .map(PathBuf::from)
@@ -82,7 +84,8 @@ fn name(row: &Row) -> String {
         .join(", ")
 }
 
-/// Another version of the compiler allots registers otherwise: instructions alone are compared then, and loosely.
+/// Another version of the compiler allots registers otherwise: instructions alone are compared
+/// then, and loosely.
 #[test]
 fn shaders_grow_by_a_tenth_at_most() {
     let kept = rows(include_str!("../../../../docs/shaders-navi21.csv"));

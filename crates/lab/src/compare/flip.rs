@@ -1,9 +1,10 @@
 //! FLIP: how different two pictures look when one flips from one to the other.
 //!
-//! After Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, *FLIP: A Difference Evaluator for Alternating
-//! Images*, Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020 (the LDR form), written from the article. The bindings to its
-//! authors' program need a C++ compiler at build time, which a plain build of this crate does without; a test holds
-//! this code to that program's figures.
+//! After Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, *FLIP: A Difference
+//! Evaluator for Alternating Images*, Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020 (the LDR
+//! form), written from the article. The bindings to its authors' program need a C++ compiler at
+//! build time, which a plain build of this crate does without; a test holds this code to that
+//! program's figures.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -12,14 +13,15 @@ use std::f64::consts::PI;
 
 /// FLIP of every pixel, 0 to 1, row 0 on top.
 ///
-/// Colours are laid over black, clamped to `[0, 1]` (what a PNG would keep, without its rounding) and seen at
-/// `pixels_per_degree`. The frames must be of one size; else the list is empty.
+/// Colours are laid over black, clamped to `[0, 1]` (what a PNG would keep, without its rounding)
+/// and seen at `pixels_per_degree`. The frames must be of one size; else the list is empty.
 #[must_use]
 pub fn flip_map(reference: &Frame, frame: &Frame, pixels_per_degree: f64) -> Vec<f32> {
     Eye::on(reference, pixels_per_degree).flip(frame)
 }
 
-/// An eye on a reference: what it takes in of that is found once, for any number of frames to be flipped to.
+/// An eye on a reference: what it takes in of that is found once, for any number of frames to be
+/// flipped to.
 pub(super) struct Eye {
     colors: Colors,
     sight: Sight,
@@ -167,7 +169,8 @@ impl Sight {
             let n = radius as i64;
             (-n..=n).map(|x| f(x as f64)).collect()
         };
-        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees; the widest sets the radius for all.
+        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees; the widest sets
+        // the radius for all.
         let radius = (3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * ppd).ceil();
         let contrast = [
             vec![(1.0, 0.0047)],
@@ -189,7 +192,8 @@ impl Sight {
             parts.iter_mut().for_each(|(w, _)| *w /= total);
             parts
         });
-        // Edges and points: derivatives of a Gaussian as wide as an edge that the eye takes for one.
+        // Edges and points: derivatives of a Gaussian as wide as an edge that the eye takes for
+        // one.
         let sigma = 0.5 * 0.082 * ppd;
         let radius = (3.0 * sigma).ceil();
         let bell = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();

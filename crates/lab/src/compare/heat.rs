@@ -6,16 +6,20 @@ use super::{
 use revmap::Result;
 use revmap::frame::{Frame, Picture, pixel_count};
 
-/// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in both frames is grey.
+/// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in
+/// both frames is grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heat {
     /// Missed and ghost pixels alone; what both hit is a lighter grey.
     Wrong,
-    /// Depth error, from dark blue at 0.001 texel and below to pale yellow at 10 texels, a decade a step.
+    /// Depth error, from dark blue at 0.001 texel and below to pale yellow at 10 texels, a decade a
+    /// step.
     Depth,
-    /// Angle between the normals, from dark blue at 0.01 degrees and below to pale yellow at 100 degrees.
+    /// Angle between the normals, from dark blue at 0.01 degrees and below to pale yellow at 100
+    /// degrees.
     Normal,
-    /// The pixels of both silhouettes, by their distance to the other's silhouette: from 0 to 8 pixels.
+    /// The pixels of both silhouettes, by their distance to the other's silhouette: from 0 to 8
+    /// pixels.
     Silhouette,
     /// FLIP, from 0 to 1, on every pixel.
     Flip,
@@ -93,11 +97,12 @@ pub fn heat_map(
     })
 }
 
-/// All kinds on one sheet: wrong, depth, normal above; silhouette, FLIP and the drawn frame itself below.
+/// All kinds on one sheet: wrong, depth, normal above; silhouette, FLIP and the drawn frame itself
+/// below.
 ///
 /// # Errors
-/// Those of [`compare`](super::compare()), and [`Stage::Frame`](revmap::error::Stage::Frame) when the sheet, six times
-/// the frame, is too large for a picture.
+/// Those of [`compare`](super::compare()), and [`Stage::Frame`](revmap::error::Stage::Frame) when
+/// the sheet, six times the frame, is too large for a picture.
 pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Picture> {
     check(reference, frame, options)?;
     let (w, h) = (frame.width, frame.height);
@@ -144,7 +149,8 @@ fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
     }
 }
 
-/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour too.
+/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
+/// too.
 pub(crate) fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],

@@ -16,17 +16,19 @@ use rayon::prelude::*;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Frame;
 
-/// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels, seen from 0.7 m.
+/// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels,
+/// seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
 /// What the comparison must know beyond the two frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareOptions {
-    /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the object's scale. Under a
-    /// scale that differs along the axes take the smallest factor: the strictest reading. Default: 1/512.
+    /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the
+    /// object's scale. Under a scale that differs along the axes take the smallest factor: the
+    /// strictest reading. Default: 1/512.
     pub texel: f64,
-    /// Pixels of the display per degree of the viewer's sight, for FLIP. Default: [`PIXELS_PER_DEGREE`], 67.02.
-    /// `None`: no FLIP, which takes longer than all the rest.
+    /// Pixels of the display per degree of the viewer's sight, for FLIP. Default:
+    /// [`PIXELS_PER_DEGREE`], 67.02. `None`: no FLIP, which takes longer than all the rest.
     pub pixels_per_degree: Option<f64>,
 }
 
@@ -107,9 +109,9 @@ impl std::fmt::Display for Comparison {
 
 /// Compares a drawn frame with the reference.
 ///
-/// Depth and normals are compared where both frames hit. A distance that is not finite is no hit; a normal that is none
-/// (zero, NaN) is 180 degrees off. FLIP and the silhouettes are described at [`flip_map`] and
-/// [`silhouette_hausdorff`].
+/// Depth and normals are compared where both frames hit. A distance that is not finite is no hit; a
+/// normal that is none (zero, NaN) is 180 degrees off. FLIP and the silhouettes are described at
+/// [`flip_map`] and [`silhouette_hausdorff`].
 ///
 /// ```
 /// use revmap::frame::Frame;

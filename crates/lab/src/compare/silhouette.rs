@@ -2,10 +2,12 @@
 
 use revmap::frame::Frame;
 
-/// Hausdorff distance of the silhouettes in pixels: the farthest that a pixel of one lies from the nearest of the other.
+/// Hausdorff distance of the silhouettes in pixels: the farthest that a pixel of one lies from the
+/// nearest of the other.
 ///
-/// A silhouette is made of the pixels that hit and have a neighbour (left, right, above, below) that does not; holes
-/// have one too, and beyond the picture nothing hits. 0 when neither frame hits anything, `+inf` when only one does.
+/// A silhouette is made of the pixels that hit and have a neighbour (left, right, above, below)
+/// that does not; holes have one too, and beyond the picture nothing hits. 0 when neither frame
+/// hits anything, `+inf` when only one does.
 #[must_use]
 pub fn silhouette_hausdorff(a: &Frame, b: &Frame) -> f64 {
     let (edge_a, edge_b) = (silhouette(a), silhouette(b));
@@ -42,8 +44,9 @@ pub(super) fn silhouette(frame: &Frame) -> Vec<bool> {
         .collect()
 }
 
-/// Square of the distance of every pixel to the nearest marked one, exact: along columns, then the lower envelope of
-/// parabolas along rows (Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012).
+/// Square of the distance of every pixel to the nearest marked one, exact: along columns, then the
+/// lower envelope of parabolas along rows (Felzenszwalb and Huttenlocher, Distance Transforms of
+/// Sampled Functions, 2012).
 pub(super) fn squares_to(marked: &[bool], width: usize) -> Vec<f64> {
     // Farther than anything in the picture, and finite: differences stay numbers.
     let far = 4.0 * (marked.len() as f64 + 1.0).powi(2);

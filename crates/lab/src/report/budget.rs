@@ -1,4 +1,5 @@
-//! What a tolerance buys and what it costs: measured errors and times of ten scenes at several tolerances.
+//! What a tolerance buys and what it costs: measured errors and times of ten scenes at several
+//! tolerances.
 
 mod scenes;
 
@@ -27,7 +28,8 @@ use std::path::Path;
 /// The tolerances, pixels.
 pub const TOLERANCES: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 2.0];
 
-/// The plan: every scene at every tolerance and exact by the default search, and by the RBM baseline.
+/// The plan: every scene at every tolerance and exact by the default search, and by the RBM
+/// baseline.
 ///
 /// # Errors
 /// Of the solids that the program carries.

@@ -1,4 +1,5 @@
-//! The chapters that pages of every kind share: where and how it was measured, what was drawn, all rows, and what was left out.
+//! The chapters that pages of every kind share: where and how it was measured, what was drawn, all
+//! rows, and what was left out.
 
 use super::folder::excluded;
 use super::glossary;
@@ -29,7 +30,8 @@ pub(super) fn begin(page: &mut Page, machine: &Machine, measured: &Measured) {
     glossary::chapter(page, measured);
 }
 
-/// Which rows are excluded, how times were taken, and what every column means: the end of every page.
+/// Which rows are excluded, how times were taken, and what every column means: the end of every
+/// page.
 pub(super) fn end(page: &mut Page, plan: &Plan, measured: &Measured) {
     let out = excluded(plan, measured);
     page.chapter("Excluded rows");
@@ -79,7 +81,8 @@ pub(super) fn picture_table(page: &mut Page, rows: &[Row]) {
     page.table(&picture_groups::pictures(rows), &[0, 1, 5]);
 }
 
-/// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for paper.
+/// All rows: a table of times and look-ups, and one of errors. One of both would be too wide for
+/// paper.
 pub(super) fn row_table(page: &mut Page, rows: &[Row], styles: &SeriesStyles) {
     let num = |v: Option<f64>| v.map(|v| number(v, 3)).unwrap_or_else(|| "–".into());
     let named = |r: &Row| {

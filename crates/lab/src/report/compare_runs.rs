@@ -24,8 +24,9 @@ pub struct Pair {
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
-    /// The same, each time first put over that of the RBM baseline of the same picture, stage and run: what is left when one run had the
-    /// slower machine. `None` where a run lacks that loop, and for the loop itself.
+    /// The same, each time first put over that of the RBM baseline of the same picture, stage and
+    /// run: what is left when one run had the slower machine. `None` where a run lacks that loop,
+    /// and for the loop itself.
     pub relative: Option<Interval>,
     /// What of the errors has grown.
     pub worse: Vec<Change>,
@@ -76,7 +77,8 @@ pub struct Against {
 /// Reads two folders that `revmap bench` or `revmap chart` wrote.
 ///
 /// # Errors
-/// [`Stage::Report`], naming the file: missing, damaged, of other columns, or with nothing in common.
+/// [`Stage::Report`], naming the file: missing, damaged, of other columns, or with nothing in
+/// common.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
     let key = |record: &[String]| record[..KEY.len()].to_vec();

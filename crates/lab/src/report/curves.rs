@@ -45,8 +45,8 @@ fn budget(s: &MethodSettings) -> Option<String> {
     has_budget(s.method).then(|| steps.to_string())
 }
 
-/// Adds the point of a way of drawing to its line: of its search and stage, or of the RBM baseline. Ways that take no part in the sweep over
-/// budgets have none.
+/// Adds the point of a way of drawing to its line: of its search and stage, or of the RBM baseline.
+/// Ways that take no part in the sweep over budgets have none.
 fn add_swept(
     series: &mut Vec<Series>,
     s: &MethodSettings,
@@ -86,7 +86,8 @@ fn add(series: &mut Vec<Series>, name: &str, style: Style, joined: bool, point: 
     }
 }
 
-/// Error against time of every search swept over its steps, in both stages, with the front over all of them.
+/// Error against time of every search swept over its steps, in both stages, with the front over all
+/// of them.
 #[must_use]
 pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &MethodSettings) -> Figure {
     let mut series = Vec::new();
@@ -146,8 +147,9 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSett
 /// The name of the axis of times.
 const TIME: &str = "time of a frame (ms)";
 
-/// A chart over an axis of times, with the front over all points. Words are for what is on the front, for both ends of each line, and for
-/// what is to `keep`; of all points the chart would drown in them.
+/// A chart over an axis of times, with the front over all points. Words are for what is on the
+/// front, for both ends of each line, and for what is to `keep`; of all points the chart would
+/// drown in them.
 fn against_time(
     title: &str,
     x: Axis,
@@ -181,8 +183,8 @@ fn against_time(
     .figure()
 }
 
-/// Error against rows of the map, by source, of one search with an ample budget; for depth also what the map alone errs, found
-/// without any search.
+/// Error against rows of the map, by source, of one search with an ample budget; for depth also
+/// what the map alone errs, found without any search.
 #[must_use]
 pub fn resolution(
     title: &str,
@@ -242,8 +244,8 @@ pub fn resolution(
     .figure()
 }
 
-/// The search whose drawn pictures are nearest to the truth: what is left of its error is the map's. Of those that read maps of every
-/// source.
+/// The search whose drawn pictures are nearest to the truth: what is left of its error is the
+/// map's. Of those that read maps of every source.
 #[must_use]
 pub fn most_exact(rows: &[&Row]) -> Option<Method> {
     let worst = |method: Method| {

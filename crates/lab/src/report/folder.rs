@@ -1,4 +1,5 @@
-//! The folder of a run: `results.csv`, `raw.csv`, `excluded.csv`, `machine.txt`, and whatever pictures and pages belong to it.
+//! The folder of a run: `results.csv`, `raw.csv`, `excluded.csv`, `machine.txt`, and whatever
+//! pictures and pages belong to it.
 
 use super::chart::Figure;
 use super::chart::pdf::pdf;
@@ -16,7 +17,8 @@ use revmap::frame::atomic_file::write_atomically;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are never overwritten.
+/// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
+/// never overwritten.
 ///
 /// # Errors
 /// [`Stage::Report`] when it cannot be made.
@@ -42,11 +44,12 @@ const FILES: [&str; 5] = [
 /// Folders that a run writes into its own.
 const FOLDERS: [&str; 2] = ["charts", "pictures"];
 
-/// Makes a folder for results. A folder that holds an earlier run is refused, unless `overwrite`: then that run's files are
-/// removed. None of the `inputs` may be a file that the run writes.
+/// Makes a folder for results. A folder that holds an earlier run is refused, unless `overwrite`:
+/// then that run's files are removed. None of the `inputs` may be a file that the run writes.
 ///
 /// # Errors
-/// [`Stage::Usage`] for a folder that holds an earlier run or an input; [`Stage::Report`] when it cannot be made or cleared.
+/// [`Stage::Usage`] for a folder that holds an earlier run or an input; [`Stage::Report`] when it
+/// cannot be made or cleared.
 pub fn claim<'a>(
     folder: &Path,
     overwrite: bool,
@@ -147,7 +150,8 @@ pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
-/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its title.
+/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
+/// title.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -182,7 +186,8 @@ pub fn results(rows: &[Row], machine: &Machine) -> Table {
     Table::new(COLUMNS, rows.iter().map(record).collect())
 }
 
-/// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds count from 1.
+/// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds
+/// count from 1.
 #[must_use]
 pub fn raw(rows: &[Row]) -> Table {
     let header = [
@@ -211,8 +216,8 @@ pub fn raw(rows: &[Row]) -> Table {
     table
 }
 
-/// What is in no summary and why: rows whose clocks disagree (`row` is their number in `results.csv`), and measurements that could not
-/// be made (`row` is empty).
+/// What is in no summary and why: rows whose clocks disagree (`row` is their number in
+/// `results.csv`), and measurements that could not be made (`row` is empty).
 #[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
     let mut table = Table::new(["row", "scene", "stage", "solver", "reason"], Vec::new());

@@ -1,13 +1,15 @@
 //! How much of the picture a view's solids take: whole, or close up.
 //!
-//! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing, storing, ending) weighs much in its time. Close
-//! up the search weighs more; that is how games show solids, and how prototypes were measured. Summaries give both.
+//! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing,
+//! storing, ending) weighs much in its time. Close up the search weighs more; that is how games
+//! show solids, and how prototypes were measured. Summaries give both.
 
 use super::view::{Framing, View};
 use glam::{DQuat, DVec3};
 use revmap::scene::{Camera, Light};
 
-/// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of 4:3, whichever is less.
+/// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of
+/// 4:3, whichever is less.
 pub const OVERFILL: f64 = 1.25;
 
 /// The part of the picture's height that the boxes fill when seen whole.
@@ -16,8 +18,9 @@ const FILLED: f64 = 0.9;
 const NARROWEST: f64 = 4.0 / 3.0;
 
 impl View {
-    /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill nine tenths of the picture's
-    /// height, as the papers' pictures do, and lights them from the front and the side.
+    /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill
+    /// nine tenths of the picture's height, as the papers' pictures do, and lights them from the
+    /// front and the side.
     #[must_use]
     pub fn framed(mut self, elevation: f64) -> Self {
         let corners = self.corners();
@@ -58,8 +61,9 @@ impl View {
         view
     }
 
-    /// The view in a framing. Close up the eye stays, turns to the middle of all boxes and narrows its field of view, which is never made
-    /// wider; the name gets `:close`. An eye between or within the boxes is close already: its field of view stays.
+    /// The view in a framing. Close up the eye stays, turns to the middle of all boxes and narrows
+    /// its field of view, which is never made wider; the name gets `:close`. An eye between or
+    /// within the boxes is close already: its field of view stays.
     #[must_use]
     pub fn in_framing(mut self, framing: Framing) -> Self {
         if framing == Framing::Whole {
@@ -90,8 +94,8 @@ impl View {
         self
     }
 
-    /// The rectangle around all boxes at depth 1: left, right, low, high from the middle of the picture. `None` where a corner is not in front of
-    /// the eye, or there is none.
+    /// The rectangle around all boxes at depth 1: left, right, low, high from the middle of the
+    /// picture. `None` where a corner is not in front of the eye, or there is none.
     fn extent(&self) -> Option<[f64; 4]> {
         let Camera {
             eye, target, up, ..
@@ -138,7 +142,8 @@ mod tests {
     use super::*;
     use revmap::scene::CameraFrame;
 
-    /// How far the boxes reach past the middle of the picture, as parts of half its width and height: the most, and the mean of both sides.
+    /// How far the boxes reach past the middle of the picture, as parts of half its width and
+    /// height: the most, and the mean of both sides.
     fn reach(view: &View) -> [(f64, f64); 2] {
         let frame = CameraFrame::new(&view.scene.camera, 400, 300).unwrap();
         [(frame.right, 200.0), (frame.up, 150.0)].map(|(axis, half)| {

@@ -191,7 +191,8 @@ const COLUMNS: [(&str, &str); 40] = [
     ("device, driver", "Vulkan device and driver"),
 ];
 
-/// The names that occur in these rows, each with its meaning, in the order in which reports list them.
+/// The names that occur in these rows, each with its meaning, in the order in which reports list
+/// them.
 #[must_use]
 pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);

@@ -110,7 +110,8 @@ fn field(text: &str, key: &str, sign: char) -> Option<String> {
 
 /// Seconds since 1970 as `2026-01-31 23:59 UTC`.
 fn date(seconds: u64) -> String {
-    // Days counted from 1 March of the year 0, so that the leap day ends a year (H. Hinnant's civil_from_days).
+    // Days counted from 1 March of the year 0, so that the leap day ends a year (H. Hinnant's
+    // civil_from_days).
     let days = seconds / 86_400 + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;

@@ -1,7 +1,9 @@
-//! What a map errs by itself: the surface of its bilinear distances, found on the CPU without any search of the shaders, against the truth.
+//! What a map errs by itself: the surface of its bilinear distances, found on the CPU without any
+//! search of the shaders, against the truth.
 //!
-//! Along a ray the map's `F = D - w` is read at points close enough to see every change of sign that a pixel shows, and the first
-//! change is halved to the last digit. What a drawn picture errs beyond this is the search's share.
+//! Along a ray the map's `F = D - w` is read at points close enough to see every change of sign
+//! that a pixel shows, and the first change is halved to the last digit. What a drawn picture errs
+//! beyond this is the search's share.
 
 use super::plan::Plan;
 use crate::compare::{CompareOptions, Comparison, compare};
@@ -30,7 +32,8 @@ pub struct MapError {
 /// Samples along a ray are at most this many texels apart where the surface is near.
 const STRIDE: f64 = 0.25;
 
-/// Distances of the reference, kept while a plan is measured: the reference is slow, and no picture is drawn with it twice.
+/// Distances of the reference, kept while a plan is measured: the reference is slow, and no picture
+/// is drawn with it twice.
 #[derive(Clone, Debug, Default)]
 pub struct Truths {
     known: Vec<(usize, (u32, u32), Vec<f32>)>,
@@ -64,8 +67,9 @@ impl Truths {
     }
 }
 
-/// Measures the maps that a plan sweeps over, for views of solids without repetition; the reference is drawn where `truths` has none. Of the
-/// errors depth and wrong pixels count: colours and normals are not compared. `progress` is told what is done and how much there is.
+/// Measures the maps that a plan sweeps over, for views of solids without repetition; the reference
+/// is drawn where `truths` has none. Of the errors depth and wrong pixels count: colours and
+/// normals are not compared. `progress` is told what is done and how much there is.
 ///
 /// # Errors
 /// Of baking and of the reference.
@@ -187,7 +191,8 @@ fn hit(
         let w = offset.extend + offset.bevel * (1.0 - p.z).clamp(0.0, offset.chamfer.max(0.0));
         map.distance_at(p.x.hypot(p.y), p.z) - w
     };
-    // The map's distances change by at most the length of the way and a texel's interpolation; a bevel adds its slope.
+    // The map's distances change by at most the length of the way and a texel's interpolation; a
+    // bevel adds its slope.
     let slope = (std::f64::consts::SQRT_2 + offset.bevel.abs()) * v.length();
     let stride = STRIDE * map.texel() / v.length();
     let mut t = start;
@@ -225,8 +230,9 @@ mod tests {
     use super::super::view::tests::spindle;
     use super::*;
 
-    /// On straight flanks bilinear distances are exact but near edges: an exact map errs by next to nothing, a binary one by about
-    /// a third of a texel, which is two thirds of one at twice the size of texels.
+    /// On straight flanks bilinear distances are exact but near edges: an exact map errs by next to
+    /// nothing, a binary one by about a third of a texel, which is two thirds of one at twice the
+    /// size of texels.
     #[test]
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);

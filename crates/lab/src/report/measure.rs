@@ -1,8 +1,9 @@
 //! Measuring a plan: accuracy once, time in passes and rounds.
 //!
-//! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that slows down slows all of
-//! them. All groups are gone through several times (*passes*), each time with everything built anew: what one placement in memory,
-//! or one bout of work beside ours, does to a time shows as spread between passes (see [`stats`](super::stats)).
+//! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that
+//! slows down slows all of them. All groups are gone through several times (*passes*), each time
+//! with everything built anew: what one placement in memory, or one bout of work beside ours, does
+//! to a time shows as spread between passes (see [`stats`](super::stats)).
 
 use super::plan::{Case, Plan, together};
 use super::row::{Row, Sample, Steps};
@@ -26,12 +27,14 @@ pub trait TimedRenderer {
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// What makes renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark itself.
+/// What makes renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
+/// itself.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
     /// # Errors
-    /// Where this way of drawing does not apply to the view; a failure of the device itself is [`Stage::Device`] and ends the run.
+    /// Where this way of drawing does not apply to the view; a failure of the device itself is
+    /// [`Stage::Device`] and ends the run.
     fn timed_renderer(
         &mut self,
         view: &View,
@@ -96,8 +99,8 @@ type Compared = (Frame, Result<Comparison>);
 /// Measures a plan.
 ///
 /// # Errors
-/// [`Stage::Report`] when nothing could be measured (with the first reason); [`Stage::Device`] when the device fails; those of the picture
-/// callback.
+/// [`Stage::Report`] when nothing could be measured (with the first reason); [`Stage::Device`] when
+/// the device fails; those of the picture callback.
 pub fn measure(
     plan: &Plan,
     bench: &mut dyn Bench,
@@ -229,7 +232,8 @@ impl Run<'_> {
             ..CompareOptions::default()
         };
         let reference = compare::Reference::new(&truth, &options)?;
-        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing is timed meanwhile.
+        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing
+        // is timed meanwhile.
         std::thread::scope(|scope| {
             let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
             for &index in group {
@@ -382,7 +386,8 @@ fn settled(samples: &[Sample], precision: f64) -> bool {
         return false;
     };
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // Of a normal distribution the median's standard error is 1.25 sigma / sqrt n, sigma 1.48 median deviations.
+    // Of a normal distribution the median's standard error is 1.25 sigma / sqrt n, sigma 1.48
+    // median deviations.
     let error =
         1.25 * 1.48 * super::stats::median(&off).unwrap_or(0.0) / (times.len() as f64).sqrt();
     times.len() >= 5 && 1.96 * error <= precision * middle

@@ -1,7 +1,8 @@
 //! Benchmarks: a plan, its measurement, tables and charts of what came out (feature `report`).
 //!
-//! Every time stands beside the error of the picture that was drawn in it: a search that is fast because it misses the surface is seen
-//! to be so. See [`measure`](measure::measure) for how times are taken, [`stats`] for what their intervals mean.
+//! Every time stands beside the error of the picture that was drawn in it: a search that is fast
+//! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
+//! are taken, [`stats`] for what their intervals mean.
 
 pub mod budget;
 mod chapters;

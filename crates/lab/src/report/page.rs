@@ -1,5 +1,5 @@
-//! A page that needs nothing beside itself: text, tables, charts and pictures in one HTML file, without scripts, for screens of any
-//! width and for print.
+//! A page that needs nothing beside itself: text, tables, charts and pictures in one HTML file,
+//! without scripts, for screens of any width and for print.
 
 use super::chart::Figure;
 use super::chart::letters::{FAMILY, FONT};
@@ -18,8 +18,9 @@ pub struct Page {
     figures: usize,
 }
 
-/// Style: one column as wide as a chart reads well; tables that scroll on their own, their first column staying, shadows telling that there is
-/// more; in print nothing cut apart that fits a page, headings with what follows them, two charts side by side.
+/// Style: one column as wide as a chart reads well; tables that scroll on their own, their first
+/// column staying, shadows telling that there is more; in print nothing cut apart that fits a page,
+/// headings with what follows them, two charts side by side.
 const STYLE: &str = "
 :root{color-scheme:light}
 *{box-sizing:border-box}

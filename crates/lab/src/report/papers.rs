@@ -1,5 +1,5 @@
-//! The tables of frame rates that were published (article of 2022, tables 1 to 3), measured again, each method beside the published
-//! figures.
+//! The tables of frame rates that were published (article of 2022, tables 1 to 3), measured again,
+//! each method beside the published figures.
 
 mod chart;
 mod printed;

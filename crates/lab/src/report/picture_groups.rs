@@ -1,4 +1,5 @@
-//! Which pictures a run shows, and the share of each that is solid: where little is hit, what a frame costs anyhow weighs much in its time.
+//! Which pictures a run shows, and the share of each that is solid: where little is hit, what a
+//! frame costs anyhow weighs much in its time.
 
 use super::names::number;
 use super::names::percent;
@@ -16,7 +17,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// What it holds, in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`.
+    /// What it holds, in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are
+    /// hit`.
     #[must_use]
     pub fn title(&self) -> String {
         let rows: Vec<&Row> = self.rows.iter().collect();
@@ -72,7 +74,8 @@ impl Part {
     }
 }
 
-/// All rows, then, where there are several framings, those of each: a summary over both alone would hide what differs between them.
+/// All rows, then, where there are several framings, those of each: a summary over both alone would
+/// hide what differs between them.
 #[must_use]
 pub fn parts(rows: &[Row]) -> Vec<Part> {
     let of = |framing: Framing| Part {

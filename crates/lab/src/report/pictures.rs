@@ -30,7 +30,8 @@ pub const MOST_STEPS: f64 = 128.0;
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
-/// Of more views than this heat maps of the first alone are shown, and of each view a smaller picture.
+/// Of more views than this heat maps of the first alone are shown, and of each view a smaller
+/// picture.
 const MANY_VIEWS: usize = 12;
 /// Pictures of many views are at most this wide.
 const NARROW: u32 = 200;
@@ -64,8 +65,9 @@ impl Album {
         })
     }
 
-    /// Takes what is worth showing of a picture: each view once as it should look, then each way of drawing it at that size, from
-    /// one stage (the stages' pictures are alike): look-ups and errors.
+    /// Takes what is worth showing of a picture: each view once as it should look, then each way of
+    /// drawing it at that size, from one stage (the stages' pictures are alike): look-ups and
+    /// errors.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -6,7 +6,8 @@ use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 
-/// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or the scene.
+/// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or
+/// the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axes {
     /// Where rays are traced.
@@ -105,7 +106,8 @@ pub struct Plan {
     pub views: Vec<View>,
     /// The measurements, none twice.
     pub cases: Vec<Case>,
-    /// Whether views are compared with each other: then all views of one size are drawn in turn, not each view by itself.
+    /// Whether views are compared with each other: then all views of one size are drawn in turn,
+    /// not each view by itself.
     pub mixed: bool,
 }
 
@@ -134,7 +136,8 @@ impl Plan {
         }
     }
 
-    /// Adds, for every view, size and stage of the plan, the RBM baseline, to which speeds are put in proportion.
+    /// Adds, for every view, size and stage of the plan, the RBM baseline, to which speeds are put
+    /// in proportion.
     pub fn add_rbm_baseline(&mut self) {
         for case in self.cases.clone() {
             let papers = rbm_baseline(&self.views[case.view], &case.settings);
@@ -142,7 +145,8 @@ impl Plan {
         }
     }
 
-    /// Adds, for every view and size that is measured in the fragment stage, the rival in these segments and rings.
+    /// Adds, for every view and size that is measured in the fragment stage, the rival in these
+    /// segments and rings.
     pub fn add_meshes(&mut self, meshes: &[(u32, u32)]) {
         for case in self.cases.clone() {
             if case.settings.stage == DrawStage::Fragment {
@@ -154,7 +158,8 @@ impl Plan {
         }
     }
 
-    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size in a mixed plan.
+    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size
+    /// in a mixed plan.
     #[must_use]
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -191,8 +196,9 @@ pub fn together(a: &Case, b: &Case) -> bool {
     key(a) == key(b)
 }
 
-/// The searches that a benchmark takes where none is named: those that somebody may want to choose between. Equal steps are left to the whole
-/// sweep: they cost two to five times as much as the rest and are beaten in time and error at once.
+/// The searches that a benchmark takes where none is named: those that somebody may want to choose
+/// between. Equal steps are left to the whole sweep: they cost two to five times as much as the
+/// rest and are beaten in time and error at once.
 pub const USUAL: [Method; 5] = [
     Method::Search(Solver::Circle),
     Method::Search(Solver::Cone),
@@ -208,8 +214,9 @@ pub const FEW: [Method; 3] = [
     Method::Search(Solver::Hull),
 ];
 
-/// The tessellations that are measured where none is named, segments and rings: one that a game would take, and finer ones up to the errors of
-/// exact patches. Each is a quarter as wrong as the one before.
+/// The tessellations that are measured where none is named, segments and rings: one that a game
+/// would take, and finer ones up to the errors of exact patches. Each is a quarter as wrong as the
+/// one before.
 pub const MESHES: [(u32, u32); 3] = [(128, 256), (256, 512), (512, 1024)];
 
 /// The tessellations of the whole sweep.
@@ -228,8 +235,8 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
     }
 }
 
-/// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a bevel of 25 and 10
-/// halvings, on a binary image's distances in 8 bits.
+/// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
+/// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
 #[must_use]
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
     MethodSettings {
@@ -258,7 +265,8 @@ pub fn variant(settings: &MethodSettings) -> MethodSettings {
     }
 }
 
-/// Names ways of drawing as briefly as tells them apart: what is the same in all of them is left out.
+/// Names ways of drawing as briefly as tells them apart: what is the same in all of them is left
+/// out.
 #[derive(Clone, Debug)]
 pub struct Labels {
     steps: bool,

@@ -1,4 +1,5 @@
-//! Times in proportion to a rival's, over all views: the tables that say which search is faster, and how sure that is.
+//! Times in proportion to a rival's, over all views: the tables that say which search is faster,
+//! and how sure that is.
 
 use super::plan::{is_rbm_baseline, variant};
 use super::row::Row;
@@ -18,8 +19,8 @@ pub struct Ratio {
     pub pictures: usize,
     /// Missed and ghost pixels over the pixels hit, all pictures together.
     pub wrong: f64,
-    /// The 99th percentile of the depth error, texels of a 512-row map: the geometric mean over the pictures, of none less than [`LEAST_DEPTH`];
-    /// `None` where nothing was hit.
+    /// The 99th percentile of the depth error, texels of a 512-row map: the geometric mean over the
+    /// pictures, of none less than [`LEAST_DEPTH`]; `None` where nothing was hit.
     pub depth_p99: Option<f64>,
     /// That of the worst picture.
     pub depth_worst: Option<f64>,
@@ -27,8 +28,8 @@ pub struct Ratio {
     pub normal_rms: Option<f64>,
 }
 
-/// Every way's ratio to the RBM baseline, in the order in which the ways first appear. Rows whose clocks disagree count for
-/// nothing, and neither do pictures of which the rival has no usable row.
+/// Every way's ratio to the RBM baseline, in the order in which the ways first appear. Rows whose
+/// clocks disagree count for nothing, and neither do pictures of which the rival has no usable row.
 #[must_use]
 pub fn over_rbm_baseline(rows: &[Row]) -> Vec<Ratio> {
     let pairs = |way: &MethodSettings| of_way(rows, way, |row| baseline_row(rows, row));
@@ -40,16 +41,18 @@ pub fn over_rbm_baseline(rows: &[Row]) -> Vec<Ratio> {
 pub struct Duel {
     /// The default search in one stage, its errors those in these pictures.
     pub ours: Ratio,
-    /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth, pictures without one left out.
+    /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth,
+    /// pictures without one left out.
     pub mesh: Option<Method>,
     /// The 99th percentile of the mesh's depth error: as [`Ratio::depth_p99`].
     pub mesh_p99: Option<f64>,
-    /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of equals.
+    /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of
+    /// equals.
     pub no_worse: usize,
 }
 
-/// The time of the default search, in each stage, over that of meshes in the fragment stage: of each mesh, then of the coarsest that errs
-/// no more.
+/// The time of the default search, in each stage, over that of meshes in the fragment stage: of
+/// each mesh, then of the coarsest that errs no more.
 #[must_use]
 pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
     let all = ways(rows);
@@ -183,7 +186,8 @@ fn same_picture(a: &Row, b: &Row) -> bool {
     key(a) == key(b)
 }
 
-/// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot be trusted.
+/// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot
+/// be trusted.
 #[must_use]
 pub fn between(a: &Row, b: &Row) -> Option<Interval> {
     a.time().and(b.time())?;
@@ -278,7 +282,8 @@ mod tests {
         assert_eq!(over_rbm_baseline(&[compute, fine]).len(), 1);
     }
 
-    /// A run that was ended in its second pass: the picture that lacks the pass must not shift the mean.
+    /// A run that was ended in its second pass: the picture that lacks the pass must not shift the
+    /// mean.
     #[test]
     fn a_pass_that_was_ended_early_is_left_out() {
         let mut rows = Vec::new();
@@ -296,7 +301,8 @@ mod tests {
         assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
     }
 
-    /// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is not.
+    /// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is
+    /// not.
     #[test]
     fn the_default_search_is_held_against_meshes() {
         let depth = |p99| {
@@ -334,7 +340,8 @@ mod tests {
             ]
         );
         assert!(duels[0].mesh_p99.is_some_and(|p| (p - 0.5).abs() < 1e-12));
-        // Without a mesh that errs no more there is no such ratio, and without the default search none at all.
+        // Without a mesh that errs no more there is no such ratio, and without the default search
+        // none at all.
         assert_eq!(over_meshes(&rows[..2]).len(), 1);
         assert!(over_meshes(&rows[1..]).is_empty());
     }

@@ -11,7 +11,8 @@ use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::Offset;
 
-/// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of the passes' medians.
+/// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of
+/// the passes' medians.
 pub const COLUMNS: [&str; 34] = [
     "scene",
     "technique",
@@ -86,7 +87,8 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any box.
+    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any
+    /// box.
     #[must_use]
     pub fn of(frame: &Frame) -> Self {
         let steps: Vec<f64> = frame
@@ -111,7 +113,8 @@ pub enum Clocks {
     Agree,
     /// The device has no clock of its own; the wall clock stands alone.
     Wall,
-    /// They are further apart than [`CLOCKS_APART`]: at least one is wrong, and the row counts in no summary.
+    /// They are further apart than [`CLOCKS_APART`]: at least one is wrong, and the row counts in
+    /// no summary.
     Disagree {
         /// Median of the device's clock, ms.
         gpu_ms: f64,
@@ -247,7 +250,8 @@ impl Row {
         self.passes.iter().filter_map(median).collect()
     }
 
-    /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was timed.
+    /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was
+    /// timed.
     #[must_use]
     pub fn time(&self) -> Option<Interval> {
         match self.clocks() {
@@ -256,8 +260,8 @@ impl Row {
         }
     }
 
-    /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are empty: a number there
-    /// would be believed.
+    /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are
+    /// empty: a number there would be believed.
     #[must_use]
     pub fn record(&self, device: &str, driver: &str) -> Vec<String> {
         let gpu = match self.clocks() {

@@ -1,4 +1,5 @@
-//! How time grows: with pixels, with solids, with rows of the map; each with the exponent of a power law.
+//! How time grows: with pixels, with solids, with rows of the map; each with the exponent of a
+//! power law.
 
 mod growth;
 mod ranges;

@@ -1,4 +1,5 @@
-//! Which way of drawing looks how: a search has one colour, marker and dash in every chart of every report.
+//! Which way of drawing looks how: a search has one colour, marker and dash in every chart of every
+//! report.
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::names::stage;
@@ -8,7 +9,9 @@ use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::settings::{DrawStage, Solver};
 
-/// How a method looks in the fragment stage, meshes of every fineness alike. The default stands out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one colour.
+/// How a method looks in the fragment stage, meshes of every fineness alike. The default stands
+/// out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one
+/// colour.
 fn search(method: Method) -> Style {
     let (color, marker, dash) = match method {
         Method::Search(Solver::Linear) => (color::RED, Marker::Left, Dash::Dots),
@@ -62,8 +65,8 @@ pub struct SeriesStyles {
 }
 
 impl SeriesStyles {
-    /// The styles of these ways. One search in several ways, by its steps or its maps, keeps its colour and takes the next marker that
-    /// is free; meshes are alike.
+    /// The styles of these ways. One search in several ways, by its steps or its maps, keeps its
+    /// colour and takes the next marker that is free; meshes are alike.
     #[must_use]
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
         let labels = Labels::new(settings.clone());

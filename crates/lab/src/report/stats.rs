@@ -1,8 +1,10 @@
-//! The few statistics that benchmarks need: medians, intervals that are honest about few samples, geometric means, power laws.
+//! The few statistics that benchmarks need: medians, intervals that are honest about few samples,
+//! geometric means, power laws.
 //!
-//! Times on one machine drift and come in bouts: neighbouring samples are alike, so an interval from all of them would be too
-//! narrow. Samples are therefore taken in several *passes*, minutes apart and with everything built anew; the median of a pass is one
-//! observation, and intervals are Student's over these few observations (the method of batch means).
+//! Times on one machine drift and come in bouts: neighbouring samples are alike, so an interval
+//! from all of them would be too narrow. Samples are therefore taken in several *passes*, minutes
+//! apart and with everything built anew; the median of a pass is one observation, and intervals are
+//! Student's over these few observations (the method of batch means).
 
 /// A value with the interval that covers it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +69,9 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, (variance / n).sqrt()))
 }
 
-/// The geometric mean of positive observations with Student's interval of their logarithms. One observation has an
-/// interval that excludes nothing; `None` of nothing, or of what is not positive.
+/// The geometric mean of positive observations with Student's interval of their logarithms. One
+/// observation has an interval that excludes nothing; `None` of nothing, or of what is not
+/// positive.
 #[must_use]
 pub fn geometric(observations: &[f64]) -> Option<Interval> {
     if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
@@ -90,7 +93,8 @@ pub fn geometric(observations: &[f64]) -> Option<Interval> {
     })
 }
 
-/// The mean of observations with Student's interval; a single one has an interval that excludes nothing. `None` of nothing.
+/// The mean of observations with Student's interval; a single one has an interval that excludes
+/// nothing. `None` of nothing.
 #[must_use]
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {
@@ -108,7 +112,8 @@ pub fn mean(observations: &[f64]) -> Option<Interval> {
     })
 }
 
-/// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's interval.
+/// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's
+/// interval.
 #[must_use]
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
@@ -135,7 +140,8 @@ pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     })
 }
 
-/// The factor on the standard error that gives a two-sided 95 % interval with `degrees` of freedom (Student's t).
+/// The factor on the standard error that gives a two-sided 95 % interval with `degrees` of freedom
+/// (Student's t).
 ///
 /// Between the tabled degrees it is interpolated in `1 / degrees`, within 0.5 %.
 #[must_use]

@@ -1,4 +1,5 @@
-//! The solids that are measured when no scene is named: carried within the program, so that it needs no files.
+//! The solids that are measured when no scene is named: carried within the program, so that it
+//! needs no files.
 
 use super::view::View;
 use glam::DVec3;
@@ -15,7 +16,8 @@ enum Source {
     Scene(&'static str),
 }
 
-/// Name, source, colour of every solid of the suite; drawings, an image, and polygons with cavities.
+/// Name, source, colour of every solid of the suite; drawings, an image, and polygons with
+/// cavities.
 fn sources() -> Vec<(&'static str, Source, [f32; 3])> {
     vec![
         (
@@ -72,8 +74,8 @@ pub enum Extent {
     All,
 }
 
-/// The suite's views: each solid upright, filling nine tenths of the picture, from each of the `elevations` (degrees above the
-/// horizon); with more than one, names end in `@elevation`.
+/// The suite's views: each solid upright, filling nine tenths of the picture, from each of the
+/// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
 ///
 /// # Errors
 /// Of reading the profiles that the program carries.

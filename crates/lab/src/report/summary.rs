@@ -1,4 +1,5 @@
-//! The chapters that sum a benchmark up: times over those of the RBM baseline and of meshes, of all pictures and of each framing.
+//! The chapters that sum a benchmark up: times over those of the RBM baseline and of meshes, of all
+//! pictures and of each framing.
 
 use super::chart::Figure;
 use super::chart::axis::Axis;

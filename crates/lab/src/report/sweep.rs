@@ -9,7 +9,8 @@ use revmap::settings::{DrawStage, Solver};
 /// The values that are swept, one axis at a time, the others staying at what drawing takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Where rays are traced. Maps are swept in the first stage alone: they cost and err alike in both.
+    /// Where rays are traced. Maps are swept in the first stage alone: they cost and err alike in
+    /// both.
     pub stages: Vec<DrawStage>,
     /// The searches.
     pub methods: Vec<Method>,
@@ -61,8 +62,8 @@ impl Sweep {
         }
     }
 
-    /// The plan over these views: for each view the sweeps over steps, over rows with every source, and over formats, over meshes, and the
-    /// RBM baseline.
+    /// The plan over these views: for each view the sweeps over steps, over rows with every source,
+    /// and over formats, over meshes, and the RBM baseline.
     #[must_use]
     pub fn plan(&self, views: Vec<View>) -> Plan {
         let mut plan = Plan {
@@ -157,8 +158,8 @@ fn doubled(from: u32, to: u32) -> Vec<(u32, u32)> {
         .collect()
 }
 
-/// The bounds on steps worth trying: a search without a loop has none, one that ends by itself is cut short to see what the cut
-/// costs.
+/// The bounds on steps worth trying: a search without a loop has none, one that ends by itself is
+/// cut short to see what the cut costs.
 #[must_use]
 pub fn budgets(method: Method, steps: &[u32]) -> Vec<Option<u32>> {
     if has_budget(method) {
@@ -174,14 +175,16 @@ pub fn has_budget(method: Method) -> bool {
     method.default_steps(false) > 1
 }
 
-/// Whether a search has a table of as many rows as a map has, made from the boundary itself: these rows are its budget.
+/// Whether a search has a table of as many rows as a map has, made from the boundary itself: these
+/// rows are its budget.
 #[must_use]
 pub fn has_rows(method: Method) -> bool {
     method.is_of_cones()
 }
 
-/// Maps are swept with `circle` and with `live`, the most exact of those that read them, or with what is named in place of both: the
-/// others read the same maps in the same way. The default reads none.
+/// Maps are swept with `circle` and with `live`, the most exact of those that read them, or with
+/// what is named in place of both: the others read the same maps in the same way. The default reads
+/// none.
 fn sweeps_maps(method: Method, all: &[Method]) -> bool {
     let usual = [Method::Search(Solver::Circle), Method::Search(Solver::Live)];
     method.reads_map() && (usual.contains(&method) || !all.iter().any(|s| usual.contains(s)))
@@ -218,7 +221,8 @@ mod tests {
                 .iter()
                 .filter(move |c| c.settings.method == method && !is_rbm_baseline(&c.settings))
         };
-        // Steps in both stages, rows x sources and formats in one; a format that is the default is there already.
+        // Steps in both stages, rows x sources and formats in one; a format that is the default is
+        // there already.
         let circle = of(Method::Search(Solver::Circle)).count();
         assert_eq!(circle, 6 * 2 + 5 * 3 + 2);
         assert!(of(Method::Search(Solver::Quadric)).all(|c| c.settings.max_steps.is_none()));

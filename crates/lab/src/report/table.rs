@@ -1,5 +1,5 @@
-//! The table of all outputs: comma-separated values in files, aligned columns on standard output, rows of a page
-//! ([`Page::table`](super::page::Page::table)).
+//! The table of all outputs: comma-separated values in files, aligned columns on standard output,
+//! rows of a page ([`Page::table`](super::page::Page::table)).
 
 use revmap::error::{Error, Result, Stage};
 use std::path::Path;
@@ -66,7 +66,8 @@ impl Table {
     /// Reads comma-separated values.
     ///
     /// # Errors
-    /// [`Stage::Report`]: no header, a quote that is not closed, a record of another length than the header.
+    /// [`Stage::Report`]: no header, a quote that is not closed, a record of another length than
+    /// the header.
     pub fn parse(text: &str) -> Result<Self> {
         let fault = |message: String| {
             let message = format!("{message}; write the file again with `revmap bench`");

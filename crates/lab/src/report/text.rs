@@ -8,7 +8,8 @@ use super::row::Row;
 use super::stats::Interval;
 use super::table::Table;
 
-/// An interval as `0.42 (0.40 to 0.44)`; only the value where a single observation says nothing about spread.
+/// An interval as `0.42 (0.40 to 0.44)`; only the value where a single observation says nothing
+/// about spread.
 #[must_use]
 pub fn interval(i: &Interval, digits: usize) -> String {
     if i.high.is_finite() {
@@ -99,7 +100,8 @@ pub const AGAINST_MESHES: [&str; 9] = [
     "mesh at least as accurate",
 ];
 
-/// The default search in each stage over each mesh, then over the coarsest that is at least as accurate; none without both.
+/// The default search in each stage over each mesh, then over the coarsest that is at least as
+/// accurate; none without both.
 #[must_use]
 pub fn against_meshes(rows: &[Row]) -> Table {
     let record = |duel: Duel| {
@@ -125,8 +127,8 @@ pub fn against_meshes(rows: &[Row]) -> Table {
     )
 }
 
-/// The tables that sum a run up: over the RBM baseline, and over meshes where there are any, of all pictures and of each framing; then the
-/// pictures themselves.
+/// The tables that sum a run up: over the RBM baseline, and over meshes where there are any, of all
+/// pictures and of each framing; then the pictures themselves.
 #[must_use]
 pub fn summary(rows: &[Row]) -> String {
     let mut out = String::new();

@@ -5,8 +5,9 @@ use std::time::Duration;
 /// How long and how often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeBudget {
-    /// The time that all is meant to take. The least number of rounds is drawn even if that takes longer, and of passes unless it takes
-    /// half as long again: drivers that compile slowly get two.
+    /// The time that all is meant to take. The least number of rounds is drawn even if that takes
+    /// longer, and of passes unless it takes half as long again: drivers that compile slowly get
+    /// two.
     pub time: Duration,
     /// Least and most passes.
     pub passes: (usize, usize),
@@ -22,8 +23,8 @@ pub struct TimeBudget {
 const FEWEST: usize = 2;
 
 impl TimeBudget {
-    /// Whether another pass as long as the `last` would take too long after `gone`, however few the `passes` were. A number of passes
-    /// that was asked for is kept.
+    /// Whether another pass as long as the `last` would take too long after `gone`, however few the
+    /// `passes` were. A number of passes that was asked for is kept.
     pub(super) fn would_overrun(&self, passes: usize, gone: Duration, last: Duration) -> bool {
         let asked_for = self.passes.0 == self.passes.1;
         !asked_for && passes >= FEWEST && gone + last > self.time.mul_f64(1.5)

@@ -17,9 +17,11 @@ pub struct View {
 /// How much of the picture is solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framing {
-    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of its width in a picture of 4:3.
+    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of
+    /// its width in a picture of 4:3.
     Whole,
-    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor [`OVERFILL`](super::framing::OVERFILL); a wider one may show their sides.
+    /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
+    /// [`OVERFILL`](super::framing::OVERFILL); a wider one may show their sides.
     Close,
 }
 
@@ -127,8 +129,9 @@ impl View {
             .sum()
     }
 
-    /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of depth errors. It does not depend
-    /// on the rows of the map that is drawn, so that errors of different maps compare.
+    /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of
+    /// depth errors. It does not depend on the rows of the map that is drawn, so that errors of
+    /// different maps compare.
     #[must_use]
     pub fn texel(&self) -> f64 {
         let placements = self.scene.objects.iter().flat_map(|o| o.placements());
@@ -140,8 +143,8 @@ impl View {
         }
     }
 
-    /// The same scene seen from `degrees` above the horizon: the eye moves on a circle about its target, towards or away from
-    /// the zenith. The name gets `@degrees`.
+    /// The same scene seen from `degrees` above the horizon: the eye moves on a circle about its
+    /// target, towards or away from the zenith. The name gets `@degrees`.
     #[must_use]
     pub fn at_elevation(mut self, degrees: f64) -> Self {
         let camera = &mut self.scene.camera;

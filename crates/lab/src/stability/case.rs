@@ -154,7 +154,8 @@ impl Text {
     }
 }
 
-/// The searches that the catalogue compares: the RBM baseline, the map search, the exact search, the default.
+/// The searches that the catalogue compares: the RBM baseline, the map search, the exact search,
+/// the default.
 pub const SOLVERS: [Solver; 4] = [
     Solver::Circle,
     Solver::Live,

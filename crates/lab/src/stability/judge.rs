@@ -1,19 +1,24 @@
 //! Errors of a frame against the reference, and what of them counts as a fault.
 //!
-//! A pixel is **wrong** when no solid within the tolerance of the true one could have given it: its ray goes deeper into the
-//! solid than the tolerance before the drawn hit (or without one), or the drawn hit is farther from the surface than the
-//! tolerance. At a silhouette both answers are right as long as the ray comes that near to the surface.
+//! A pixel is **wrong** when no solid within the tolerance of the true one could have given it: its
+//! ray goes deeper into the solid than the tolerance before the drawn hit (or without one), or the
+//! drawn hit is farther from the surface than the tolerance. At a silhouette both answers are right
+//! as long as the ray comes that near to the surface.
 //!
 //! The tolerance is derived, in object units:
 //!
 //! - a tenth of a texel of 512 rows: what the maps and the pieces promise;
-//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays are 32-bit numbers;
-//! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's direction, of their product, and of the
-//!   reference's own number. Frames store distances in 32 bits;
-//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes with the place.
+//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays
+//!   are 32-bit numbers;
+//! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's
+//!   direction, of their product, and of the reference's own number. Frames store distances in 32
+//!   bits;
+//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes with
+//!   the place.
 //!
-//! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is outside of what the 3 x 3 pixels about
-//! it have in the reference, by more than [`COLOR`]. A shadow's edge may lie a pixel off, and a texture may be filtered.
+//! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is
+//! outside of what the 3 x 3 pixels about it have in the reference, by more than [`COLOR`]. A
+//! shadow's edge may lie a pixel off, and a texture may be filtered.
 
 use crate::compare::{CompareOptions, compare};
 use glam::DVec3;
@@ -25,8 +30,8 @@ use revmap_reference::{Ray, Reference};
 
 /// A texel of 512 rows, object units.
 pub const TEXEL: f64 = 1.0 / 512.0;
-/// Largest difference of a linear colour channel that is none. Normals of pieces and of maps differ by up to a degree, which
-/// a highlight of shininess 32 shows by so much.
+/// Largest difference of a linear colour channel that is none. Normals of pieces and of maps differ
+/// by up to a degree, which a highlight of shininess 32 shows by so much.
 pub const COLOR: f32 = 0.05;
 /// Half a unit in the last place of a 32-bit float.
 const ROUNDING: f64 = 1.0 / 16_777_216.0;
@@ -86,9 +91,9 @@ pub struct Limits {
 impl Limits {
     /// For a picture of so many pixels: 1 in 10,000, and at least 2.
     ///
-    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is decided by one rounding; both
-    /// happen on lines. A picture of `n` pixels has of the order of `sqrt(n)` pixels on a line, and one of those in
-    /// about a hundred is decided that way.
+    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is
+    /// decided by one rounding; both happen on lines. A picture of `n` pixels has of the order of
+    /// `sqrt(n)` pixels on a line, and one of those in about a hundred is decided that way.
     #[must_use]
     pub fn of(pixels: usize) -> Self {
         Self {
@@ -212,8 +217,9 @@ impl Truth {
         if !hit && !drawn || truth == z {
             return false;
         }
-        // The drawn point is that near to a true one. Where cells or boxes cut a solid, the clearance alone does not tell it: on
-        // the other side of the cut it is that of another solid.
+        // The drawn point is that near to a true one. Where cells or boxes cut a solid, the
+        // clearance alone does not tell it: on the other side of the cut it is that of another
+        // solid.
         if hit && drawn && (z - truth).abs() <= 0.1 * self.texel {
             return false;
         }
@@ -228,14 +234,16 @@ impl Truth {
         let [silhouette, tolerance] = self.tolerance;
         let fine = 0.05 * silhouette;
         if drawn {
-            // A hit on a face between cells may be rounded into the cell beyond, which need not be solid there.
+            // A hit on a face between cells may be rounded into the cell beyond, which need not be
+            // solid there.
             let about = [z * (1.0 - 4.0 * ROUNDING), z * (1.0 + 4.0 * ROUNDING)];
             let there = self.reference.clearance_within(ray, about, fine);
             if there > tolerance {
                 return true;
             }
             if self.inside {
-                // From within all is solid before the hit: what counts is the distance to the true hit's tangent plane.
+                // From within all is solid before the hit: what counts is the distance to the true
+                // hit's tangent plane.
                 let n = DVec3::from(self.frame.normal[k].map(f64::from));
                 let steep = n.dot(ray.direction).abs().max(0.02);
                 return !hit || (z - truth).abs() * steep > 4.0 * tolerance;

@@ -1,4 +1,5 @@
-//! The stability catalogue: the ways in which this family of methods breaks, each as a scene swept over its critical parameter.
+//! The stability catalogue: the ways in which this family of methods breaks, each as a scene swept
+//! over its critical parameter.
 //!
 //! | module | content |
 //! |---|---|
@@ -9,8 +10,8 @@
 //! | [`report`] | the table, `results.csv`, `report.html` |
 //! | [`random`] | random scenes held to the same limits; a failing one is reduced to the smallest that still fails |
 //!
-//! A case passes when no pixel is wrong beyond its limits ([`judge::Limits`]), no number of the frame is NaN or infinite, no ray
-//! runs out of steps, and both stages show one picture.
+//! A case passes when no pixel is wrong beyond its limits ([`judge::Limits`]), no number of the
+//! frame is NaN or infinite, no ray runs out of steps, and both stages show one picture.
 
 pub mod case;
 pub mod cases;

@@ -1,4 +1,5 @@
-//! Random scenes, held to the reference; one that fails is reduced to the smallest that still fails.
+//! Random scenes, held to the reference; one that fails is reduced to the smallest that still
+//! fails.
 
 use super::case::Step;
 use super::judge::{Judged, Limits, Truth};
@@ -321,7 +322,8 @@ impl Draft {
         all
     }
 
-    /// What the default fails in this scene, in either stage; `None` where it passes, or where the scene is refused.
+    /// What the default fails in this scene, in either stage; `None` where it passes, or where the
+    /// scene is refused.
     ///
     /// # Errors
     /// Of files, and of the device's validation.
@@ -379,8 +381,8 @@ fn told(j: &Judged) -> String {
     )
 }
 
-/// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into `folder` as `random-SEED.toml`.
-/// `progress` is told how many are done, and ends it by `false`.
+/// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
+/// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
 ///
 /// # Errors
 /// As [`Draft::fails`].

@@ -226,7 +226,8 @@ fn shot(case: usize, picture: &Picture, caption: String) -> Result<Shot> {
     })
 }
 
-/// A case at a glance: the reference, the search that fails most and where it does, side by side. The default where no other fails.
+/// A case at a glance: the reference, the search that fails most and where it does, side by side.
+/// The default where no other fails.
 fn strip(sheet: &Sheet) -> Picture {
     let [drawn, truth, heat] = &sheet.own;
     let all = match &sheet.other {

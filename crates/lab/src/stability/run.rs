@@ -110,7 +110,8 @@ pub struct Plan<'a> {
 /// Runs the plan. `progress` is told which case, how many pictures are done and how many there are.
 ///
 /// # Errors
-/// Of the catalogue's scenes, of the reference, of files. Errors of drawing are part of the outcome.
+/// Of the catalogue's scenes, of the reference, of files. Errors of drawing are part of the
+/// outcome.
 pub fn run(
     device: &Device,
     plan: &Plan,

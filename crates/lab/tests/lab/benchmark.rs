@@ -1,4 +1,5 @@
-//! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it draws once, and what it keeps.
+//! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it
+//! draws once, and what it keeps.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run};
 use revmap_lab::method::{Method, MethodSettings};
@@ -11,7 +12,8 @@ use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::Labels;
 use std::sync::atomic::AtomicBool;
 
-/// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour; each pass makes all anew.
+/// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour;
+/// each pass makes all anew.
 #[test]
 fn samples_are_interleaved_and_passes_are_built_anew() {
     let mut bench = StandIn::new(Fault::None);
@@ -27,7 +29,8 @@ fn samples_are_interleaved_and_passes_are_built_anew() {
     assert_ne!(rounds[0], rounds[1]);
 }
 
-/// The reference is slow: it draws each view at each size once, whatever the number of ways, passes and views that are measured in turn.
+/// The reference is slow: it draws each view at each size once, whatever the number of ways, passes
+/// and views that are measured in turn.
 #[test]
 fn no_truth_is_drawn_twice() {
     for mixed in [false, true] {
@@ -77,7 +80,8 @@ fn an_interrupt_keeps_what_was_measured() {
     assert!(error.to_string().contains("stopped before"), "{error}");
 }
 
-/// All files of a run; every table parses, the page needs nothing from elsewhere, every row is in it.
+/// All files of a run; every table parses, the page needs nothing from elsewhere, every row is in
+/// it.
 #[test]
 fn a_runs_folder_is_whole() {
     let folder = tempfile::tempdir().unwrap();

@@ -81,7 +81,8 @@ fn a_search_that_sleeps_is_charted_slower() {
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
     }
-    // In the chart its marker stands further right: marks in order of series, the markers of the plot before those of the legend.
+    // In the chart its marker stands further right: marks in order of series, the markers of the
+    // plot before those of the legend.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
     let figure = curves::searches("t", &rows, Measure::Depth, &MethodSettings::default());
     let lefts: Vec<f64> = figure

@@ -1,4 +1,5 @@
-//! The catalogue of cases in which methods fail: what the default passes, what is known, and that the judge can fail.
+//! The catalogue of cases in which methods fail: what the default passes, what is known, and that
+//! the judge can fail.
 
 use glam::DVec3;
 use revmap::frame::Frame;

@@ -7,7 +7,8 @@
 //! from out. Roots that belong to no surface do no harm. Nothing here is shared with the bracketing method but the types of
 //! question and answer.
 //!
-//! The time grows with the square of the number of segments, and replicas are not known here: it is there to check the other.
+//! The time grows with the square of the number of segments, and replicas are not known here: it is
+//! there to check the other.
 
 mod path;
 mod roots;

@@ -89,7 +89,8 @@ impl Path {
                     k * self.c - g0 * g0,
                 );
                 Box::new(found.map(move |s| {
-                    // Squaring made the roots of flat cones nearly double; the cone itself has them single.
+                    // Squaring made the roots of flat cones nearly double; the cone itself has them
+                    // single.
                     roots::polish(s, reach, |s| {
                         let (r, slope) = self.radius(s);
                         (alpha * r - g0 + g1 * s, alpha * slope + g1)

@@ -1,18 +1,21 @@
 //! Real roots of polynomials, without losing any that a sign change shows.
 
-/// Candidates for the roots of `a x^2 + 2 b x + c`: the roots, and where there is none by a rounding's width, the vertex.
+/// Candidates for the roots of `a x^2 + 2 b x + c`: the roots, and where there is none by a
+/// rounding's width, the vertex.
 pub(super) fn quadratic(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
     let mut square = b * b - a * c;
     if square < 0.0 && square > -1e-10 * (b * b + (a * c).abs()) {
         square = 0.0;
     }
-    // Both terms of one sign: nothing cancels. With `a = 0` the second quotient is the root that remains.
+    // Both terms of one sign: nothing cancels. With `a = 0` the second quotient is the root that
+    // remains.
     let q = -(b + square.sqrt().copysign(b));
     [q / a, c / q].into_iter().filter(|x| x.is_finite())
 }
 
-/// Candidates for the roots of a polynomial in `[0, 1]`: every root with a change of sign, exact to rounding, and every
-/// turning point (where a pair of roots may hide). Coefficients from the constant upwards.
+/// Candidates for the roots of a polynomial in `[0, 1]`: every root with a change of sign, exact to
+/// rounding, and every turning point (where a pair of roots may hide). Coefficients from the
+/// constant upwards.
 pub(super) fn in_unit_interval(coefficients: &[f64]) -> Vec<f64> {
     let degree = coefficients.len().saturating_sub(1);
     if degree == 0 {
@@ -50,8 +53,8 @@ fn bisect(value: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     }
 }
 
-/// A few Newton steps on the function itself, given as `(value, slope)`; each must lessen the value, and all together
-/// stay near the start.
+/// A few Newton steps on the function itself, given as `(value, slope)`; each must lessen the
+/// value, and all together stay near the start.
 pub(super) fn polish(start: f64, reach: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut x = start;
     let (mut value, mut slope) = f(x);

@@ -1,4 +1,5 @@
-//! Replicas against single objects, copies, images as profiles, odd places of the camera, clearance.
+//! Replicas against single objects, copies, images as profiles, odd places of the camera,
+//! clearance.
 
 use super::*;
 use revmap::profile::Raster;
@@ -115,7 +116,8 @@ fn replicas_are_as_many_single_objects() {
             (o.repeat, o.mirror, o.axis) = (repeat, mirror, axis);
             let many = Reference::new(&scene(singles(&o))).unwrap();
             let one = Reference::new(&scene(vec![o])).unwrap();
-            // Solids that are cut by their cells touch: from within, single ones still show the joint.
+            // Solids that are cut by their cells touch: from within, single ones still show the
+            // joint.
             let outside =
                 |r: &Ray| axis == [0.5; 2] || (r.origin - DVec3::Z * 0.5).abs().max_element() > 0.5;
             assert_same(&one, &many, rays(2500).filter(outside));
@@ -187,7 +189,8 @@ fn copies_are_as_many_objects_whatever_the_tree() {
 
 #[test]
 fn a_picture_is_its_outline() {
-    // A cylinder of radius 12 pixels and 40 pixels high in an image of 64 rows, one column of it half covered.
+    // A cylinder of radius 12 pixels and 40 pixels high in an image of 64 rows, one column of it
+    // half covered.
     let coverage = |i: u32, j: u32| {
         if (12..52).contains(&j) {
             [1.0, 0.75, 0.0][(i.max(10) - 10).min(2) as usize]

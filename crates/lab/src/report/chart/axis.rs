@@ -9,7 +9,8 @@ pub struct Axis {
     pub label: String,
     /// Whether equal ratios are equally far apart.
     pub log: bool,
-    /// On logarithmic axes: what lies below is drawn here, and the tick says so. Errors of zero have a place this way.
+    /// On logarithmic axes: what lies below is drawn here, and the tick says so. Errors of zero
+    /// have a place this way.
     pub floor: Option<f64>,
     /// Values that must be in sight.
     pub include: Vec<f64>,
@@ -75,7 +76,8 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Fits an axis to values; those that have no place on it (not finite; on a logarithmic axis not positive and no floor) are left out.
+    /// Fits an axis to values; those that have no place on it (not finite; on a logarithmic axis
+    /// not positive and no floor) are left out.
     #[must_use]
     pub fn new(axis: &Axis, values: impl IntoIterator<Item = f64>) -> Self {
         let shown = |v: f64| match axis.floor {
@@ -181,7 +183,8 @@ impl Scale {
         }
     }
 
-    /// The place of a value: 0 at the low end, 1 at the high one. `None` where it has no place on this axis.
+    /// The place of a value: 0 at the low end, 1 at the high one. `None` where it has no place on
+    /// this axis.
     #[must_use]
     pub fn place(&self, value: f64) -> Option<f64> {
         if !self.log {

@@ -1,6 +1,7 @@
 //! The charts' letters: how wide words are, and their outlines where no program draws them for us.
 //!
-//! The font travels with the program (and within each page), so that what is measured here is what is seen everywhere.
+//! The font travels with the program (and within each page), so that what is measured here is what
+//! is seen everywhere.
 
 use ttf_parser::{Face, OutlineBuilder};
 

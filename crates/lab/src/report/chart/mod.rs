@@ -1,8 +1,8 @@
-//! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for papers, and as pixels for
-//! places that show neither.
+//! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
+//! papers, and as pixels for places that show neither.
 //!
-//! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each series has a marker of its own as well, so
-//! that a print in grey still reads.
+//! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each
+//! series has a marker of its own as well, so that a print in grey still reads.
 
 pub mod axis;
 pub mod dots;
@@ -135,7 +135,8 @@ pub fn overlap(a: Bounds, b: Bounds) -> bool {
 }
 
 impl Figure {
-    /// Pairs of words that cover each other, and words that reach past the figure: none in a good figure.
+    /// Pairs of words that cover each other, and words that reach past the figure: none in a good
+    /// figure.
     #[must_use]
     pub fn faults(&self) -> Vec<String> {
         let words: Vec<(&String, Bounds)> = self

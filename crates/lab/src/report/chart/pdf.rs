@@ -1,5 +1,5 @@
-//! Figures as PDF, for papers: curves stay curves, letters are outlines, so that no font is asked for. The title is left out; a paper's
-//! caption takes its place.
+//! Figures as PDF, for papers: curves stay curves, letters are outlines, so that no font is asked
+//! for. The title is left out; a paper's caption takes its place.
 
 use super::letters::{Stroke, outline, width};
 use super::style::Dash;
@@ -191,7 +191,8 @@ mod tests {
             "{file}"
         );
         assert!(file.contains("10 50 m\n90 70 l\nS"), "{file}");
-        // One letter of two stems and four serifs is one contour; the title's five letters are not there.
+        // One letter of two stems and four serifs is one contour; the title's five letters are not
+        // there.
         assert_eq!(file.matches("\nh\n").count(), 1, "{file}");
     }
 }

@@ -1,4 +1,5 @@
-//! Figures as pixels, letters drawn from their outlines: the same on every machine, whatever fonts it has.
+//! Figures as pixels, letters drawn from their outlines: the same on every machine, whatever fonts
+//! it has.
 
 use super::letters::{Stroke, outline, width};
 use super::style::Dash;

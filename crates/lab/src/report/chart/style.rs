@@ -1,4 +1,5 @@
-//! Colours, markers and dashes of series. Which search has which is told elsewhere: here is what there is to choose from.
+//! Colours, markers and dashes of series. Which search has which is told elsewhere: here is what
+//! there is to choose from.
 
 /// Ink of words and axes.
 pub const INK: &str = "#222222";
@@ -9,8 +10,9 @@ pub const GRID: &str = "#dddddd";
 /// Paper.
 pub const PAPER: &str = "#ffffff";
 
-/// Colours of series. They were searched for, by simulated annealing, as those whose least distance is greatest to normal and to each kind of
-/// dichromatic eyes at once, each dark enough on paper (contrast 3:1); orange, blue and black were given. A test demands the distance.
+/// Colours of series. They were searched for, by simulated annealing, as those whose least distance
+/// is greatest to normal and to each kind of dichromatic eyes at once, each dark enough on paper
+/// (contrast 3:1); orange, blue and black were given. A test demands the distance.
 pub mod color {
     /// The one that stands out.
     pub const ORANGE: &str = "#e8590c";
@@ -180,7 +182,8 @@ impl Style {
         if self.filled { full } else { 0.7 * full }
     }
 
-    /// The marker's corners about `(x, y)`, of the area of a square of side `size`, larger where it stands out.
+    /// The marker's corners about `(x, y)`, of the area of a square of side `size`, larger where it
+    /// stands out.
     #[must_use]
     pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
         let size = if self.heavy { 1.3 * size } else { size };
@@ -217,7 +220,8 @@ mod tests {
         }
     }
 
-    /// The ruler itself: red and green as red-blind and green-blind eyes see them, values of the standard illuminant.
+    /// The ruler itself: red and green as red-blind and green-blind eyes see them, values of the
+    /// standard illuminant.
     #[test]
     fn the_simulation_knows_what_is_confused() {
         let [normal, protan, deutan, tritan] = EYES;

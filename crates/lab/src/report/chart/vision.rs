@@ -1,5 +1,6 @@
-//! Colours as eyes of every kind see them, to test what charts demand of their readers: dichromatic vision after Machado, Oliveira and
-//! Fernandes (2009, severity 1), distances in CIE Lab of 1976, contrast as WCAG 2 counts it.
+//! Colours as eyes of every kind see them, to test what charts demand of their readers: dichromatic
+//! vision after Machado, Oliveira and Fernandes (2009, severity 1), distances in CIE Lab of 1976,
+//! contrast as WCAG 2 counts it.
 
 /// Kinds of colour vision, as a matrix on linear RGB.
 #[derive(Clone, Copy)]

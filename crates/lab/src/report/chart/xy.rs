@@ -162,7 +162,8 @@ impl XyChart {
                 }
             }
         }
-        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what is near.
+        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what
+        // is near.
         dots.sort_by_key(|(order, _)| *order);
         marks.extend(dots.into_iter().map(|(_, dot)| dot));
         for (place, label) in labels {

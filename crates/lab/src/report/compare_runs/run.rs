@@ -90,7 +90,8 @@ impl Run {
         })
     }
 
-    /// The passes' medians of a row (counted from 1), each over that of the RBM baseline which shows the same picture in the same stage.
+    /// The passes' medians of a row (counted from 1), each over that of the RBM baseline which
+    /// shows the same picture in the same stage.
     pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
         let at = |name: &str| COLUMNS.iter().position(|c| *c == name);
         let record = self.results.records.get(row.checked_sub(1)?)?;

@@ -42,7 +42,8 @@ impl Trend {
     }
 }
 
-/// The tables as printed. Measured by the authors on an Intel Core i7-3612QM with a GeForce GT 630M.
+/// The tables as printed. Measured by the authors on an Intel Core i7-3612QM with a GeForce GT
+/// 630M.
 pub const TABLES: [Printed; 3] = [
     Printed {
         number: 1,

@@ -29,8 +29,8 @@ pub struct Growth {
     passes: Vec<Vec<f64>>,
     /// The law through all points; `None` of fewer than two.
     pub law: Option<PowerLaw>,
-    /// Its exponent: the mean of the passes' own, with Student's interval over the passes. It tells how sure the exponent is, not how well a
-    /// power law fits.
+    /// Its exponent: the mean of the passes' own, with Student's interval over the passes. It tells
+    /// how sure the exponent is, not how well a power law fits.
     pub exponent: Option<Interval>,
     /// The exponent between the last two points: what it comes to when fixed costs no longer count.
     pub last: Option<f64>,

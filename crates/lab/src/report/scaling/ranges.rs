@@ -22,7 +22,8 @@ const SIZES: [(u32, u32); 5] = [
 const COPIES: [u32; 5] = [1, 10, 100, 1000, 10_000];
 /// Rows of maps.
 const ROWS: [u32; 7] = [64, 128, 256, 512, 1024, 2048, 4096];
-/// Meshes measured where none is named: one for solids that fill the picture, one for solids of some ten pixels.
+/// Meshes measured where none is named: one for solids that fill the picture, one for solids of
+/// some ten pixels.
 pub const MESHES: [(u32, u32); 2] = [(16, 32), (64, 128)];
 /// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
 const MOST_QUADS: u64 = 1 << 23;

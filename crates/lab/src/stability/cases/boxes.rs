@@ -20,7 +20,8 @@ fn eye_in_replicas() -> Case {
         steps: [1.0, 2.0, 3.0, 4.0]
             .into_iter()
             .map(|n: f64| {
-                // Wider than its cell and as high: replicas are joined through the borders of their cells, but for holes in them.
+                // Wider than its cell and as high: replicas are joined through the borders of their
+                // cells, but for holes in them.
                 let keys = format!("repeat = {:?}", [n as u32, n as u32, n as u32]);
                 let polygon = [
                     [0.0, 0.0],

@@ -9,8 +9,8 @@ pub(super) fn cases() -> Vec<Case> {
     vec![budgets(), rows(), bits(), binary(), projections()]
 }
 
-/// A picture whose colour changes slowly and without a jump, but differs from place to place: a texel more or less does not show, a
-/// coarser level does.
+/// A picture whose colour changes slowly and without a jump, but differs from place to place: a
+/// texel more or less does not show, a coarser level does.
 pub(super) fn waves() -> Picture {
     let (width, height) = (128u32, 64u32);
     let wave = |place: u32, all: u32, turns: f64| {

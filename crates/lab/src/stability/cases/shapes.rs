@@ -96,7 +96,8 @@ fn border() -> Case {
 }
 
 fn tip() -> Case {
-    // Numbers that 32 bits hold exactly, in a picture with a middle pixel: its ray goes through the tip to the last bit.
+    // Numbers that 32 bits hold exactly, in a picture with a middle pixel: its ray goes through the
+    // tip to the last bit.
     let cone = [[0.0, 0.25], [0.25, 0.25], [0.0, 0.75]];
     Case {
         steps: [0.0, 30.0, 60.0, 90.0]
