@@ -116,7 +116,7 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
 const LOPSIDED: f64 = 32.0;
 
 /// Whether a copy's box is too flat or too slender for its hull.
-fn is_lopsided(object: &Object, copy: &Placement) -> bool {
+pub(crate) fn is_lopsided(object: &Object, copy: &Placement) -> bool {
     let radius = object.profile.radius;
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()

@@ -158,7 +158,10 @@ impl Planner<'_> {
             }
             let listed = self.subgroup_size >= LEAST_SUBGROUP
                 && surface.is_boundary()
-                && !surface.listed().is_empty();
+                && !surface.listed().is_empty()
+                && !placements
+                    .iter()
+                    .any(|copy| hulls::is_lopsided(object, copy));
             let tiles = lists.tiles(&shown, placements.len(), listed);
             if self.beams_pay(&shown, &tiles, placements.len(), lists) {
                 return lists.beams(tiles);
