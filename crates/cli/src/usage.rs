@@ -18,9 +18,7 @@ pub fn report(error: &clap::Error) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        output::complain(
-            "names no command; give render, animate, bake, bench, chart, stability, devices or compare; see `revmap --help`",
-        );
+        output::complain("names no command; give render or another one that `revmap --help` lists");
     } else {
         output::complain(&one_line(&error.to_string()));
     }
