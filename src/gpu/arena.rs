@@ -4,14 +4,12 @@
 use super::buffers::storage;
 use super::device::Shared;
 use super::memory::Buffer;
-use super::offset_surface::{OffsetSurface, Part};
+use super::offset_surface::OffsetSurface;
+use super::table_slot::{Part, Ranges, Slot};
 use crate::error::{Error, Result, Stage};
 use crate::shader::generated::PATCH_VECTORS;
 use range_alloc::RangeAllocator;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, Weak};
-
-type Ranges = Arc<Mutex<RangeAllocator<u32>>>;
 
 /// The buffer and what of it is free.
 pub(crate) struct TableArena {
@@ -25,29 +23,6 @@ pub(crate) struct TableArena {
     /// Length of `placed` from which on the dead are taken out.
     crowded: usize,
     device: Arc<Shared>,
-}
-
-/// A place in the arena, free again when dropped.
-#[derive(Debug)]
-pub(crate) struct Slot {
-    range: Range<u32>,
-    unit: u32,
-    ranges: Ranges,
-}
-
-impl Slot {
-    /// The vector with which it begins.
-    pub fn begin(&self) -> u32 {
-        self.range.start * self.unit
-    }
-}
-
-impl Drop for Slot {
-    fn drop(&mut self) {
-        if let Ok(mut ranges) = self.ranges.lock() {
-            ranges.free_range(self.range.clone());
-        }
-    }
 }
 
 /// Units of an arena that is made anew.
@@ -92,11 +67,7 @@ impl TableArena {
                 self.ranges()?.allocate_range(units).map_err(|_| full())?
             }
         };
-        let slot = Slot {
-            range,
-            unit: self.unit,
-            ranges: self.ranges.clone(),
-        };
+        let slot = Slot::new(range, self.unit, &self.ranges);
         let begin = surface.keep_slot(part, slot);
         self.write(begin, vectors)?;
         self.placed.push((Arc::downgrade(surface), part));

@@ -1,33 +1,17 @@
 //! From values of a scene to what shaders read.
 
 use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
+use super::map_key::MapFacts;
 use super::output::DepthOrder;
-use super::solid::MapFacts;
+use super::reach::{axis_offset, farthest_corner, largest_width};
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::maps::MapFormat;
-use crate::scene::{Growth, Lighting, Object, Offset, Placement};
+use crate::scene::{Growth, Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
 use crate::shader::is_beveled;
 use glam::DVec3;
-
-/// The largest offset that the surface takes in the box.
-pub(crate) fn largest_width(offset: &Offset) -> f64 {
-    offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
-}
-
-/// How far from the axis the map must reach: to the solid's own radius where that stays within the
-/// box's inscribed cylinder about a centred axis, else to what of the solid the box can hold.
-pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
-    let radius = object.profile.radius;
-    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
-    let solid = widest + largest_width(&object.offset);
-    if solid <= radius && axis_offset(object) == [0.0; 2] {
-        return radius;
-    }
-    (solid + margin).min(farthest_corner(object)).max(radius)
-}
 
 /// Fails where a map's format cannot show what the object asks for.
 pub(crate) fn check_format(
@@ -43,17 +27,6 @@ pub(crate) fn check_format(
         .at_key("extend"));
     }
     Ok(())
-}
-
-/// Where the axis stands, object units from the middle of the box.
-pub(crate) fn axis_offset(object: &Object) -> [f64; 2] {
-    object.axis.map(|o| (2.0 * o - 1.0) * object.profile.radius)
-}
-
-/// Distance from the axis to the farthest vertical edge of the box.
-fn farthest_corner(object: &Object) -> f64 {
-    let [x, y] = axis_offset(object).map(f64::abs);
-    (x + object.profile.radius).hypot(y + object.profile.radius)
 }
 
 /// The batch's block; `instances` are its range, `shadow_map` its map's index among those that

@@ -2,9 +2,9 @@
 
 use super::blocks::InstanceBlock;
 use super::levels;
-use super::offset_surface::Part;
 use super::plan::{DrawPath, Work};
 use super::renderer::{Entry, Renderer};
+use super::table_slot::Part;
 use super::view::View;
 
 /// How an object was drawn in the last prepared frame, and what it takes on the device.

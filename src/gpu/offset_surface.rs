@@ -1,10 +1,10 @@
 //! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what
 //! is made of them for the GPU.
 
-use super::arena::Slot;
 use super::bins::Inner;
-use super::hulls::GpuProxyHull;
-use super::solid::Outlined;
+use super::outlined::Outlined;
+use super::proxy_hull::GpuProxyHull;
+use super::table_slot::{Part, Slot};
 use super::tables::{self, GpuTables};
 use crate::error::Result;
 use crate::maps::envelope::Envelope;
@@ -39,17 +39,6 @@ enum Made {
     Patches(Vec<QuadricPatch>, [f64; 3]),
     Cones(Cones),
     Envelope,
-}
-
-/// The parts of a surface that stand in the arena.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
-    /// What searches walk.
-    Tables,
-    /// What the vertex shaders of hulls grow.
-    Frusta,
-    /// What lists of patches are made from.
-    Patches,
 }
 
 impl OffsetSurface {

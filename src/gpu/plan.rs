@@ -3,6 +3,7 @@
 use super::bins::{Rectangle, Shown, rectangle};
 use super::hulls;
 use super::offset_surface::OffsetSurface;
+use super::proxy_hull::COMPONENTS;
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::{GROUP_PIXELS, LIST_LENGTHS};
@@ -113,8 +114,8 @@ impl Planner<'_> {
     pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>, binned: bool) -> Work {
         let fits = |surface: &&OffsetSurface| {
             !surface.is_boundary()
-                || (self.limits.max_fragment_input_components >= hulls::COMPONENTS
-                    && self.limits.max_vertex_output_components >= hulls::COMPONENTS + 4)
+                || (self.limits.max_fragment_input_components >= COMPONENTS
+                    && self.limits.max_vertex_output_components >= COMPONENTS + 4)
         };
         let copies = object.placements().len();
         wrapped

@@ -6,10 +6,12 @@ use super::block::{frame_block, instance_block, note_growth, solid_block};
 use super::blocks::SolidBlock;
 use super::buffers::{indices, write_slice};
 use super::hulls;
-use super::offset_surface::{OffsetSurface, Part};
+use super::offset_surface::OffsetSurface;
 use super::output::Output;
 use super::plan::{Lists, Planner, Work};
+use super::proxy_hull;
 use super::renderer::{Entry, Renderer};
+use super::table_slot::Part;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::scene::Shadow;
@@ -323,10 +325,10 @@ impl Renderer {
 
     /// Sees to it that there are corners for hulls of so many frusta.
     fn fit_corners(&mut self, frusta: usize) -> Result<()> {
-        let bytes = 4 * hulls::corners(u32::try_from(frusta).unwrap_or(u32::MAX)) as usize;
+        let bytes = 4 * proxy_hull::corners(u32::try_from(frusta).unwrap_or(u32::MAX)) as usize;
         if self.corners.bytes < bytes as u64 {
             let frusta = frusta.next_power_of_two();
-            let all = hulls::indices(frusta);
+            let all = proxy_hull::indices(frusta);
             let mut corners = indices(&self.device, 4 * all.len())?;
             write_slice(&mut corners, &all)?;
             let old = std::mem::replace(&mut self.corners, corners);

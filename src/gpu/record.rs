@@ -2,10 +2,10 @@
 
 use super::bins::{Rectangle, Shown};
 use super::frame_slot::FrameSlot;
-use super::hulls;
 use super::output::Output;
 use super::pipelines::PUSHED;
 use super::plan::{Tiles, Work};
+use super::proxy_hull;
 use super::renderer::{Entry, Renderer};
 use super::usage::{Usage, buffer_barrier};
 use crate::shader::LIST_LENGTHS;
@@ -49,8 +49,8 @@ impl Renderer {
                         let kind = vk::IndexType::UINT32;
                         raw.cmd_bind_index_buffer(cmd, self.corners.raw, 0, kind);
                         for run in frusta {
-                            let corners = hulls::corners(run.end - run.start);
-                            let begin = hulls::corners(run.start);
+                            let corners = proxy_hull::corners(run.end - run.start);
+                            let begin = proxy_hull::corners(run.start);
                             raw.cmd_draw_indexed(cmd, corners, count, begin, 0, first);
                         }
                     }

@@ -1,11 +1,14 @@
 //! From an object's values to what the device needs of it. All that can fail comes first; then
 //! everything is taken over at once.
 
-use super::block::{check_format, largest_width};
+use super::block::check_format;
 use super::levels;
+use super::map_key::MapKey;
 use super::offset_surface::OffsetSurface;
+use super::reach::largest_width;
 use super::renderer::{Entry, Prepared, Renderer};
-use super::solid::{MapKey, ShapeTexture, Solid};
+use super::shape_texture::ShapeTexture;
+use super::solid::Solid;
 use super::textures::{Bound, ShadowMaps};
 use super::view::View;
 use crate::error::{Error, Result, Stage};

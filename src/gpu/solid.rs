@@ -6,23 +6,17 @@
 
 use super::device::Shared;
 use super::levels;
-use super::memory::Image;
+use super::map_key::{MapFacts, MapKey};
 use super::offset_surface::{OffsetSurface, Recipe};
+use super::outlined::Outlined;
+use super::shape_texture::{ArcTexture, ShapeTexture};
 use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
-use crate::maps::envelope::Envelope;
-use crate::maps::{ArcLength, BakeOptions, Bounds, MapFormat, MapSource, ShapeMap};
 use crate::profile::Profile;
-use crate::scene::{GrownProfiles, Growth, Object, Offset};
-use crate::settings::SearchSettings;
-use crate::surface::{Contour, ContourSource};
-use ash::vk;
+use crate::scene::{GrownProfiles, Growth, Offset};
 use std::collections::HashMap;
 use std::hash::Hash;
-use std::sync::{Arc, Mutex, OnceLock, Weak};
-
-/// Most rows of a map whose box has grown.
-const MOST_ROWS: f64 = 16384.0;
+use std::sync::{Arc, Mutex, Weak};
 
 /// The solids of a renderer, by profile.
 #[derive(Default)]
@@ -39,12 +33,6 @@ pub(crate) struct Solid {
     surfaces: Kept<SurfaceKey, OffsetSurface>,
     maps: Kept<MapKey, ShapeTexture>,
     arcs: Kept<(u32, u32), ArcTexture>,
-}
-
-/// What of a profile does not depend on the offset.
-pub(crate) struct Outlined {
-    pub profile: Arc<Profile>,
-    source: OnceLock<Result<ContourSource>>,
 }
 
 /// A table of weak references that forgets the dead.
@@ -84,39 +72,6 @@ enum SurfaceKey {
     Envelope(MapKey, u64),
 }
 
-/// What a shape map is baked from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MapKey {
-    pub rows: u32,
-    pub source: MapSource,
-    pub format: MapFormat,
-    pub columns: u32,
-}
-
-/// A shape map on the device.
-pub(crate) struct ShapeTexture {
-    pub key: MapKey,
-    pub facts: MapFacts,
-    pub texture: Arc<Image>,
-    envelope: Option<Envelope>,
-}
-
-/// Lengths along the outline on the device, for a map of the same size.
-pub(crate) struct ArcTexture {
-    /// Length of the longest part of the outline, object units.
-    pub length: f64,
-    pub texture: Arc<Image>,
-}
-
-/// What a shader must know of a map, baked or not.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MapFacts {
-    pub columns: u32,
-    pub rows: u32,
-    pub scale: f32,
-    pub bounds: Bounds,
-}
-
 impl SolidCache {
     /// The solid of a profile.
     pub fn get(&mut self, profile: &Arc<Profile>) -> Arc<Solid> {
@@ -134,10 +89,7 @@ impl SolidCache {
 impl Solid {
     fn new(profile: &Arc<Profile>) -> Self {
         Self {
-            outlined: Arc::new(Outlined {
-                profile: profile.clone(),
-                source: OnceLock::new(),
-            }),
+            outlined: Arc::new(Outlined::new(profile)),
             surfaces: Kept::default(),
             maps: Kept::default(),
             arcs: Kept::default(),
@@ -171,7 +123,7 @@ impl Solid {
     /// Where the solid of `map` may be under offsets up to `by`; none of a solid that lies partly
     /// outside of its map.
     pub fn envelope(&self, map: &ShapeTexture, by: f64) -> Result<Option<Arc<OffsetSurface>>> {
-        let Some(envelope) = &map.envelope else {
+        let Some(envelope) = map.envelope() else {
             return Ok(None);
         };
         let key = SurfaceKey::Envelope(map.key, by.to_bits());
@@ -201,21 +153,7 @@ impl Solid {
         facts: &MapFacts,
     ) -> Result<Arc<ArcTexture>> {
         self.arcs.get((facts.columns, facts.rows), || {
-            let lengths = ArcLength::new(&self.outlined.profile)?;
-            let table = lengths.table(facts.columns, facts.rows);
-            // 16-bit normalised textures are not everywhere; 32-bit floats are.
-            let texels: Vec<f32> = table
-                .texels
-                .iter()
-                .map(|t| f32::from(*t) / f32::from(u16::MAX))
-                .collect();
-            let size = (table.columns, table.rows);
-            let bytes: &[u8] = bytemuck::cast_slice(&texels);
-            let format = vk::Format::R32_SFLOAT;
-            Ok(ArcTexture {
-                length: lengths.total(),
-                texture: uploads.image(device, "arc lengths", format, size, &[bytes])?,
-            })
+            ArcTexture::new(device, uploads, &self.outlined.profile, facts)
         })
     }
 }
@@ -223,101 +161,4 @@ impl Solid {
 /// Of both zeros one.
 fn bits(offset: &Offset) -> [u64; 3] {
     [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits())
-}
-
-impl Outlined {
-    /// The contour under `offset`.
-    ///
-    /// # Errors
-    /// Where the profile has none, or it does not close.
-    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
-        let source = self
-            .source
-            .get_or_init(|| ContourSource::new(&self.profile.outline));
-        match source {
-            Ok(source) => source.contour(offset),
-            Err(error) => Err(error.clone()),
-        }
-    }
-}
-
-impl MapKey {
-    /// The map that `object` wants; `columns` as many as its solid needs under its offset.
-    pub fn new(object: &Object, growth: &Growth, settings: &SearchSettings) -> Self {
-        let source = settings.map_source.unwrap_or_default();
-        let rows = settings.map_rows.unwrap_or(object.map_rows);
-        // Texels of a grown box are as large as those of its own.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
-        let rows = (f64::from(rows) * growth.height())
-            .ceil()
-            .min(MOST_ROWS.max(f64::from(rows))) as u32;
-        let reach = super::block::reach(object, 2.0 / f64::from(rows.max(1)));
-        Self {
-            rows,
-            source,
-            format: settings.map_format,
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
-            columns: (reach.max(object.profile.radius) * f64::from(rows) - 1e-9).ceil() as u32,
-        }
-    }
-
-    /// Whether a map of this key serves where `other` is wanted: it may reach farther.
-    pub fn holds(&self, other: &Self) -> bool {
-        self.columns >= other.columns
-            && Self {
-                columns: other.columns,
-                ..*self
-            } == *other
-    }
-
-    /// What a shader is told of the map where no map is baked: its size, and what the solid
-    /// occupies.
-    pub fn unbaked(&self, profile: &Profile) -> MapFacts {
-        MapFacts {
-            columns: self.columns,
-            rows: self.rows,
-            scale: 1.0,
-            // Of a solid that is not there nothing is clipped; nothing is met either.
-            bounds: profile.outline.bounds().unwrap_or(Bounds {
-                r_min: 0.0,
-                r_max: profile.radius,
-                z_min: 0.0,
-                z_max: 1.0,
-            }),
-        }
-    }
-}
-
-impl ShapeTexture {
-    fn bake(
-        device: &Arc<Shared>,
-        uploads: &mut Uploads,
-        profile: &Profile,
-        key: MapKey,
-    ) -> Result<Self> {
-        let options = BakeOptions {
-            source: key.source,
-            rows: key.rows,
-            reach: f64::from(key.columns) / f64::from(key.rows),
-        };
-        let map = ShapeMap::bake(profile, &options)?;
-        let encoded = map.encode(key.format);
-        let format = match key.format {
-            MapFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
-            MapFormat::R16 => vk::Format::R16_SFLOAT,
-            MapFormat::R32 => vk::Format::R32_SFLOAT,
-        };
-        let size = (encoded.columns, encoded.rows);
-        Ok(Self {
-            key,
-            facts: MapFacts {
-                columns: encoded.columns,
-                rows: encoded.rows,
-                scale: encoded.scale,
-                bounds: map.bounds,
-            },
-            texture: uploads.image(device, "shape map", format, size, &[&encoded.bytes])?,
-            envelope: Envelope::of(&map),
-        })
-    }
 }

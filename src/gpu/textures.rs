@@ -5,7 +5,7 @@ use super::call::Call;
 use super::device::Shared;
 use super::memory::Image;
 use super::sampler::{Sampler, Wrap};
-use super::solid::{ArcTexture, ShapeTexture};
+use super::shape_texture::{ArcTexture, ShapeTexture};
 use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
 use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};

@@ -1,0 +1,36 @@
+//! What of a profile does not depend on the offset.
+
+use crate::error::Result;
+use crate::profile::Profile;
+use crate::scene::Offset;
+use crate::surface::{Contour, ContourSource};
+use std::sync::{Arc, OnceLock};
+
+/// A profile and what its contours under offsets are made from.
+pub(crate) struct Outlined {
+    pub profile: Arc<Profile>,
+    source: OnceLock<Result<ContourSource>>,
+}
+
+impl Outlined {
+    pub fn new(profile: &Arc<Profile>) -> Self {
+        Self {
+            profile: profile.clone(),
+            source: OnceLock::new(),
+        }
+    }
+
+    /// The contour under `offset`.
+    ///
+    /// # Errors
+    /// Where the profile has none, or it does not close.
+    pub fn contour(&self, offset: &Offset) -> Result<Contour> {
+        let source = self
+            .source
+            .get_or_init(|| ContourSource::new(&self.profile.outline));
+        match source {
+            Ok(source) => source.contour(offset),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
