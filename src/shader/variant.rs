@@ -76,6 +76,9 @@ pub struct Variant {
     pub more_lights: u32,
     /// Patches that each pixel tests, of those that are listed for its tile; else 0.
     pub list_length: u32,
+    /// Bound of the papers' loop where it is their own, as the baseline must not lose by an option
+    /// that it does not take; else 0, and the bound is data.
+    pub papers_steps: u32,
 }
 
 impl Variant {
@@ -95,6 +98,7 @@ impl Variant {
         depth_keep: 1,
         more_lights: 0,
         list_length: 0,
+        papers_steps: 0,
     };
 
     /// The variant that draws `object` by the search `solver`, which is that of the settings or
@@ -166,6 +170,12 @@ impl Variant {
             // With shadows all are in one loop.
             more_lights: u32::from(lighting.lights.len() > 2 && !casts),
             list_length: 0,
+            // A shadow's ray takes the steps of what it meets.
+            papers_steps: if solver == Solver::Circle && settings.max_steps.is_none() && !casts {
+                solver.default_steps(is_beveled(object))
+            } else {
+                0
+            },
         };
         match planes {
             Planes::Depth { parallel } => shaded.depth_only(parallel),
@@ -261,7 +271,16 @@ impl Variant {
             Search::CircleBeveledRgba8 => Some(Search::CircleRgba8),
             _ => None,
         };
-        let twin = other(self.search).map(|search| Self { search, ..self });
+        let twin = other(self.search).map(|search| Self {
+            search,
+            papers_steps: if self.papers_steps == 0 {
+                0
+            } else {
+                let beveled = matches!(search, Search::CircleBeveled | Search::CircleBeveledRgba8);
+                solver.default_steps(beveled)
+            },
+            ..self
+        });
         let searched: Vec<Self> = std::iter::once(self).chain(twin).chain(fallback).collect();
         let on_map = |v: &Self| matches!(v.search, Search::Live | Search::LiveBeveled);
         let mut all = Vec::new();
@@ -348,7 +367,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 10] {
+    pub fn constants(&self) -> [(u32, u32); 11] {
         [
             (g::CELLS_ID, self.cells),
             (g::SHADOW_ID, self.shadow),
@@ -360,6 +379,7 @@ impl Variant {
             (g::DEPTH_KEEP_ID, self.depth_keep),
             (g::MORE_LIGHTS_ID, self.more_lights),
             (g::LIST_LENGTH_ID, self.list_length),
+            (g::PAPERS_STEPS_ID, self.papers_steps),
         ]
     }
 }
