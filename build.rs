@@ -252,39 +252,15 @@ fn spirv(
     macros: &[(&str, &str)],
     level: shaderc_link::OptimizationLevel,
 ) -> Fallible<Vec<u8>> {
-    use shaderc_link as shaderc;
-    let kind = match file.rsplit('.').next() {
-        Some("vert") => shaderc::ShaderKind::Vertex,
-        Some("frag") => shaderc::ShaderKind::Fragment,
-        _ => shaderc::ShaderKind::Compute,
-    };
-    let mut options = shaderc::CompileOptions::new()?;
-    options.set_target_env(
-        shaderc::TargetEnv::Vulkan,
-        shaderc::EnvVersion::Vulkan1_2 as u32,
-    );
-    options.set_optimization_level(level);
-    options.set_warnings_as_errors();
-    for (macro_name, value) in macros {
-        options.add_macro_definition(macro_name, Some(value));
-    }
-    options.set_include_callback(|wanted, _, _, _| {
-        let path = Path::new(SOURCES).join("include").join(wanted);
-        let content = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        Ok(shaderc::ResolvedInclude {
-            resolved_name: path.to_string_lossy().into_owned(),
-            content,
-        })
-    });
     let path = Path::new(SOURCES).join(file);
     let text = fs::read_to_string(&path)?;
-    let made = compiler.compile_into_spirv(
-        &text,
-        kind,
-        &path.to_string_lossy(),
-        "main",
-        Some(&options),
-    )?;
+    let include = |wanted: &str| {
+        let path = Path::new(SOURCES).join("include").join(wanted);
+        let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok((path.to_string_lossy().into_owned(), text))
+    };
+    let source = (&*path.to_string_lossy(), text.as_str());
+    let made = shaderc_link::spirv(compiler, source, macros, level, include)?;
     let bytes = packed(made.as_binary());
     if keeps() {
         fs::write(Path::new(KEPT).join(format!("{name}.{ENDING}")), &bytes)?;

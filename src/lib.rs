@@ -128,6 +128,7 @@
 //! | `scene-file` | | scenes from TOML files |
 //! | `exr` | | frames and maps as EXR files |
 //! | `shaderc` | | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
+//! | `other-shaders` | | pipelines of SPIR-V that the host gives, for work on the shaders |
 //!
 //! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in
 //! `revmap-lab`; the program is `revmap-cli`.

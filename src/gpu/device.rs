@@ -110,6 +110,29 @@ impl Device {
         })
     }
 
+    /// As [`Device::borrow`], with pipelines made of the SPIR-V that `shaders` gives: for work on
+    /// the shaders while a program runs.
+    ///
+    /// # Errors
+    /// As `borrow`.
+    ///
+    /// # Safety
+    /// As `borrow`. What `shaders` gives is valid and has the interface of this version's shaders:
+    /// their bindings, blocks and specialisation constants.
+    #[cfg(feature = "other-shaders")]
+    pub unsafe fn borrow_with_shaders(
+        host: &HostDevice<'_>,
+        shaders: super::ShaderSource,
+    ) -> Result<Self> {
+        // SAFETY: as the caller promised.
+        let mut device = unsafe { Self::borrow(host) }?;
+        let shared = Arc::get_mut(&mut device.shared);
+        if let Some(pipelines) = shared.and_then(|shared| shared.pipelines.as_mut()) {
+            pipelines.source = Some(shaders);
+        }
+        Ok(device)
+    }
+
     /// Bounds the bytes of all buffers and images on the device, those of pictures included;
     /// `None`: as many as it has. What was taken before counts; what would exceed the budget fails,
     /// and nothing else does.

@@ -60,6 +60,8 @@ pub use device::{Device, HostDevice};
 pub use instance::VALIDATION_VARIABLE;
 pub use offscreen::{Guest, Offscreen, Times};
 pub use output::{DepthOrder, Output, PassFormats, PassKind};
+#[cfg(feature = "other-shaders")]
+pub use pipelines::ShaderSource;
 pub use plan::DrawPath;
 pub use prewarm::Prewarm;
 pub use renderer::{ObjectId, Renderer};

@@ -30,8 +30,15 @@ pub(crate) struct Pipelines {
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
     passes: Mutex<HashMap<Planes, vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
+    /// Where modules come from that are not those embedded.
+    #[cfg(feature = "other-shaders")]
+    pub source: Option<ShaderSource>,
     raw: ash::Device,
 }
+
+/// Gives the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros.
+#[cfg(feature = "other-shaders")]
+pub type ShaderSource = Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Vec<u32>> + Send + Sync>;
 
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
@@ -55,6 +62,8 @@ impl Pipelines {
             owners: AtomicU64::new(0),
             passes: Mutex::default(),
             flags: vk::PipelineCreateFlags::empty(),
+            #[cfg(feature = "other-shaders")]
+            source: None,
             raw,
         };
         let raw = &all.raw;
@@ -265,16 +274,23 @@ impl Pipelines {
         }
     }
 
+    fn words(&self, module: &Module) -> Result<Vec<u32>> {
+        #[cfg(feature = "other-shaders")]
+        if let Some(source) = &self.source {
+            let module = crate::shader::listed(module).unwrap_or(*module);
+            return source(module.entry.file(), &module.macros());
+        }
+        let none = || Error::new(Stage::Draw, format!("no shader is {}", module.name()));
+        words(module).ok_or_else(none)
+    }
+
     fn module(&self, module: &Module, order: DepthOrder) -> Result<ShaderModule<'_>> {
-        let Some(mut words) = words(module) else {
-            let name = module.name();
-            return Err(Error::new(Stage::Draw, format!("no shader is {name}")));
-        };
+        let mut words = self.words(module)?;
         if order == DepthOrder::Reversed {
             words = depth_less(&words);
         }
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V made by build.rs.
+        // SAFETY: the words are SPIR-V made by build.rs, or those that the host promised.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
         Ok(ShaderModule {

@@ -6,6 +6,7 @@ use super::commands::Commands;
 use super::device::Shared;
 use super::memory::{Buffer, Image, ImageKind};
 use super::render_pass::{DEPTH_FORMAT, color_formats};
+use super::srgb::pack_srgb;
 use super::usage::{Usage, buffer_barrier, image_barrier};
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes};
@@ -25,6 +26,14 @@ pub struct ComputeTarget {
     /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where
     /// colour alone is drawn, or fragments draw.
     pub images: Vec<vk::ImageView>,
+}
+
+impl ComputeTarget {
+    /// The second word of a pixel of this linear colour, where colour alone is drawn.
+    #[must_use]
+    pub fn color_word(linear: [f32; 4]) -> u32 {
+        pack_srgb(linear)
+    }
 }
 
 /// The images of an off-screen frame.
@@ -155,7 +164,7 @@ impl Target {
         if let Some(words) = &self.words {
             let half = 4 * u64::from(self.width) * u64::from(self.height);
             let second = match self.planes {
-                Planes::Color => super::srgb::pack_srgb(background),
+                Planes::Color => pack_srgb(background),
                 Planes::Depth { .. } | Planes::All => 0,
             };
             buffer_barrier(

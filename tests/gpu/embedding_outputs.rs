@@ -257,7 +257,7 @@ fn compute_writes_to_a_hosts_buffer() {
         .collect();
     words.extend((0..pixels).map(|n| {
         if is_empty(n) {
-            pack(&BACKGROUND)
+            ComputeTarget::color_word(BACKGROUND)
         } else {
             nearer
         }

@@ -1,4 +1,36 @@
-//! [`shaderc`], re-exported. This crate's build script adds the archives that Debian's and Ubuntu's
-//! `libshaderc-dev` leave out of `libshaderc_combined.a`; where shaderc is whole it adds nothing.
+//! [`shaderc`], re-exported, and how revmap compiles its GLSL. This crate's build script adds the
+//! archives that Debian's and Ubuntu's `libshaderc-dev` leave out of `libshaderc_combined.a`; where
+//! shaderc is whole it adds nothing.
 
 pub use shaderc::*;
+
+/// SPIR-V of the GLSL `text` of an entry file; the end of the file's name says which stage it is.
+/// Warnings are errors. `include` gives the path and the text of what a directive names.
+pub fn spirv(
+    compiler: &Compiler,
+    (file, text): (&str, &str),
+    macros: &[(&str, &str)],
+    level: OptimizationLevel,
+    include: impl Fn(&str) -> std::result::Result<(String, String), String>,
+) -> Result<CompilationArtifact> {
+    let kind = match file.rsplit('.').next() {
+        Some("vert") => ShaderKind::Vertex,
+        Some("frag") => ShaderKind::Fragment,
+        _ => ShaderKind::Compute,
+    };
+    let mut options = CompileOptions::new()?;
+    options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_2 as u32);
+    options.set_optimization_level(level);
+    options.set_warnings_as_errors();
+    for (name, value) in macros {
+        options.add_macro_definition(name, Some(value));
+    }
+    options.set_include_callback(|wanted, _, _, _| {
+        let (resolved_name, content) = include(wanted)?;
+        Ok(ResolvedInclude {
+            resolved_name,
+            content,
+        })
+    });
+    compiler.compile_into_spirv(text, kind, file, "main", Some(&options))
+}

@@ -2,6 +2,8 @@
 
 use super::controls::{self, Asked, Told};
 use super::inspect::Inspector;
+#[cfg(feature = "shaderc")]
+use super::reload::Reload;
 use super::saved;
 use super::shown::Shown;
 use super::stage::Stage;
@@ -12,12 +14,12 @@ use revmap::error::{Error, Result, Stage as Where};
 use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 /// Changes that can be undone.
@@ -25,16 +27,21 @@ const UNDOS: usize = 100;
 /// Longer pauses of the controls than this are none.
 const SOON: Duration = Duration::from_secs(5);
 
-/// The window and what is in it. The stage goes before the window.
+/// The window and what is in it. The stage goes before the window, and what is made on its device
+/// before the stage.
 struct Open {
     inspector: Inspector,
+    #[cfg(feature = "shaderc")]
+    reload: Option<Reload>,
     stage: Stage,
     gui: egui_winit::State,
-    window: Arc<Window>,
+    window: Rc<Window>,
 }
 
 pub struct App {
     options: View,
+    /// Calls for a frame from another thread.
+    wake: EventLoopProxy<()>,
     /// Where what is shown was read from.
     source: PathBuf,
     file: SceneFile,
@@ -59,12 +66,13 @@ pub struct App {
 }
 
 impl App {
-    pub fn new(options: View, file: SceneFile, shown: Shown) -> Self {
+    pub fn new(options: View, file: SceneFile, shown: Shown, wake: EventLoopProxy<()>) -> Self {
         let mut times = Times::default();
         times.kept = options.times.is_some().then(Vec::new);
         Self {
             source: options.scene.clone(),
             options,
+            wake,
             file,
             first: shown.clone(),
             shown,
@@ -114,11 +122,15 @@ impl App {
             None,
             None,
         );
+        #[cfg(feature = "shaderc")]
+        let reload = self.options.watch_shaders.as_deref();
         Ok(Open {
             inspector: Inspector::default(),
+            #[cfg(feature = "shaderc")]
+            reload: reload.map(|folder| Reload::new(folder, self.wake.clone())),
             stage,
             gui,
-            window: Arc::new(window),
+            window: Rc::new(window),
         })
     }
 
@@ -131,15 +143,25 @@ impl App {
         if size.width == 0 || size.height == 0 {
             return Ok(None); // minimised
         }
+        let mut shaders = "";
+        #[cfg(feature = "shaderc")]
+        if let Some(reload) = &mut open.reload {
+            let (host, format) = (&open.stage.host, open.stage.format());
+            if let Some(made) = reload.take(host, format, &self.shown) {
+                open.inspector.forget();
+                open.stage.take(made)?;
+            }
+            if reload.is_busy() {
+                shaders = "the shaders are being compiled";
+            }
+        }
         let input = open.gui.take_egui_input(&open.window);
         let context = open.gui.egui_ctx().clone();
         let inspects = Inspector::is_wanted(&self.shown);
         let picture = if inspects {
             let (version, size) = (self.version, (size.width, size.height));
-            let device = open.stage.host.shared()?.clone();
-            let inspector = &mut open.inspector;
-            let made =
-                inspector.picture(&self.shown, version, size, &device, &context, &open.window);
+            let (inspector, device) = (&mut open.inspector, &open.stage.device);
+            let made = inspector.picture(&self.shown, version, size, device, &context, &self.wake);
             made.map(|texture| texture.map(egui::TextureHandle::id))
         } else {
             Ok(None)
@@ -160,6 +182,7 @@ impl App {
             notes: [
                 &self.written,
                 if inspects { &open.inspector.words } else { "" },
+                shaders,
             ],
             undos: self.undo.len(),
             draw_paths: &draw_paths,
@@ -176,6 +199,10 @@ impl App {
                 .default_size([300.0, 640.0])
                 .vscroll(true)
                 .show(ui.ctx(), |ui| asked = controls::show(ui, shown, &told));
+            #[cfg(feature = "shaderc")]
+            if let Some(text) = open.reload.as_ref().and_then(|r| r.problem.as_deref()) {
+                controls::shader_problem(ui.ctx(), text);
+            }
         });
         self.take(asked, before);
         let open = match &mut self.open {
@@ -277,7 +304,7 @@ impl App {
             let message = format!("cannot be made ({e}); move the scene to another folder");
             Error::new(Where::Frame, message).in_file(&folder)
         })?;
-        let device = open.stage.host.shared()?.clone();
+        let device = open.stage.device.clone();
         let size = open.window.inner_size();
         let settings = self
             .shown
@@ -393,6 +420,13 @@ impl ApplicationHandler for App {
                 Ok(_) => events.set_control_flow(ControlFlow::Wait),
             },
             _ => {}
+        }
+    }
+
+    /// Another thread has something to show.
+    fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
+        if let Some(open) = &self.open {
+            open.window.request_redraw();
         }
     }
 

@@ -13,8 +13,8 @@ pub struct Told<'a> {
     pub times: &'a Times,
     /// What the last values led to.
     pub problem: Option<&'a str>,
-    /// What was written last, and what an inspected picture says.
-    pub notes: [&'a str; 2],
+    /// What was written last, what an inspected picture says, what becomes of shaders.
+    pub notes: [&'a str; 3],
     pub undos: usize,
     /// How each object is drawn.
     pub draw_paths: &'a [DrawPath],
@@ -75,6 +75,24 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
         asked.changed |= ui.add(angle).changed();
     });
     asked
+}
+
+/// Lines of the compiler that are shown.
+#[cfg(feature = "shaderc")]
+const LINES: usize = 12;
+
+/// Says in a window of its own why shaders do not compile.
+#[cfg(feature = "shaderc")]
+pub fn shader_problem(context: &egui::Context, text: &str) {
+    egui::Window::new("shaders: those before are kept")
+        .id(egui::Id::new("shaders"))
+        .anchor(egui::Align2::RIGHT_BOTTOM, [-8.0, -8.0])
+        .show(context, |ui| {
+            for line in text.lines().take(LINES) {
+                let line = egui::RichText::new(line).monospace();
+                ui.colored_label(egui::Color32::LIGHT_RED, line);
+            }
+        });
 }
 
 fn object(ui: &mut Ui, object: &mut Object) -> bool {

@@ -1,17 +1,16 @@
-//! Pictures that the window shows in place of the drawn scene: planes of an off-screen frame, the
-//! compute stage's frame, and errors against the reference.
+//! Pictures that the window shows in place of the drawn scene: planes of an off-screen frame, and
+//! errors against the reference.
 
 use super::shown::{Inspected, Shown};
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::frame::{Frame, Picture};
 use revmap::gpu::{Device, DrawPath, Offscreen};
-use revmap::settings::{DrawStage, Planes, Settings};
+use revmap::settings::{Planes, Settings};
 use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_lab::report::pictures::steps;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use winit::window::Window;
+use winit::event_loop::EventLoopProxy;
 
 /// Side of a pixel of the error's picture, in pixels of the window: the reference takes seconds for
 /// a whole window.
@@ -42,7 +41,7 @@ pub struct Inspector {
 impl Inspector {
     /// Whether the window shows a picture made here, and not what is drawn in its own pass.
     pub fn is_wanted(shown: &Shown) -> bool {
-        shown.inspected != Inspected::Color || shown.stage == DrawStage::Compute
+        shown.inspected != Inspected::Color
     }
 
     /// The picture of version `version` of what is shown, for a window of `size` pixels. None until
@@ -54,7 +53,7 @@ impl Inspector {
         size: (u32, u32),
         device: &Device,
         context: &Context,
-        window: &Arc<Window>,
+        wake: &EventLoopProxy<()>,
     ) -> Result<Option<&TextureHandle>> {
         let side = if shown.inspected == Inspected::Error {
             COARSE
@@ -71,7 +70,7 @@ impl Inspector {
             return Ok(self.texture.as_ref());
         }
         let reference = match shown.inspected {
-            Inspected::Error => match self.reference(shown, version, &settings, window)? {
+            Inspected::Error => match self.reference(shown, version, &settings, wake)? {
                 Some(frame) => Some(frame),
                 None => {
                     self.words = "the reference is being drawn".into();
@@ -107,6 +106,11 @@ impl Inspector {
         Ok(self.texture.as_ref())
     }
 
+    /// Forgets what was drawn with other shaders.
+    pub fn forget(&mut self) {
+        (self.offscreen, self.made) = (None, None);
+    }
+
     /// One frame by the device, with the picture's settings.
     pub fn draw(&mut self, shown: &Shown, settings: Settings, device: &Device) -> Result<Frame> {
         let offscreen = match &mut self.offscreen {
@@ -131,7 +135,7 @@ impl Inspector {
         shown: &Shown,
         version: u64,
         settings: &Settings,
-        window: &Arc<Window>,
+        wake: &EventLoopProxy<()>,
     ) -> Result<Option<Frame>> {
         if let Some(check) = &self.check {
             let drawn = match check.drawn.try_recv() {
@@ -149,11 +153,11 @@ impl Inspector {
             }
         }
         let (done, drawn) = channel();
-        let (scene, settings, window) = (shown.scene.clone(), *settings, window.clone());
+        let (scene, settings, wake) = (shown.scene.clone(), *settings, wake.clone());
         std::thread::spawn(move || {
             // A window that was closed meanwhile wants nothing any more.
             let _ = done.send(revmap_reference::draw(&scene, &settings, &|_, _| {}));
-            window.request_redraw();
+            let _ = wake.send_event(());
         });
         self.check = Some(Check { version, drawn });
         Ok(None)

@@ -1,14 +1,23 @@
 //! `revmap view`: a window with live controls.
 
 mod app;
+mod barriers;
 mod controls;
+mod frames;
 mod inspect;
+mod memory;
 mod orbit;
+#[cfg(feature = "shaderc")]
+mod reload;
 mod saved;
+mod scene_renderer;
+mod screen;
+mod screenshot;
 mod shown;
 mod stage;
 mod swapchain;
 mod times;
+mod traced;
 mod vulkan;
 
 use super::output;
@@ -28,7 +37,7 @@ pub struct View {
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
-    /// Where rays are traced; the compute stage's frames go through the CPU into the window
+    /// Where rays are traced
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&shown::STAGES))]
     stage: DrawStage,
     /// How the first hit along a ray is found
@@ -47,6 +56,11 @@ pub struct View {
     /// What is shown: color, depth, normals, steps, or error against the reference
     #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&shown::Inspected::NAMES))]
     show: shown::Inspected,
+    /// Draw with the GLSL files of a folder, and with what becomes of them while the window is open
+    /// [default folder: that of the source tree]
+    #[cfg(feature = "shaderc")]
+    #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true, default_missing_value = reload::FOLDER)]
+    watch_shaders: Option<PathBuf>,
     /// Show so many frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
@@ -81,7 +95,7 @@ impl View {
         let events = EventLoop::new().map_err(screen)?;
         let mut shown = shown::Shown::new(scene, search);
         (shown.stage, shown.inspected) = (self.stage, self.show);
-        let mut app = app::App::new(self, file, shown);
+        let mut app = app::App::new(self, file, shown, events.create_proxy());
         events.run_app(&mut app).map_err(screen)?;
         app.end()
     }

@@ -1,18 +1,22 @@
 //! What the window shows: the scene's renderer and the controls, in one pass.
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
+use super::frames::FRAMES;
+use super::scene_renderer::SceneRenderer;
+use super::screen::{Before, DEPTH, Screen};
 use super::shown::Shown;
-use super::swapchain::{Begun, DEPTH, FRAMES, Swapchain};
 use super::times::Cost;
+use super::traced::Traced;
 use super::vulkan::Vulkan;
+use ash::vk;
 use egui::FullOutput;
 use egui_ash_renderer::allocator::GpuAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer as Gui};
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::frame::Picture;
-use revmap::gpu::{DepthOrder, DrawPath, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{Device, DrawPath, View};
 use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings};
+use revmap::settings::DrawStage;
 use std::rc::Rc;
 use std::time::Instant;
 use winit::window::Window;
@@ -20,10 +24,12 @@ use winit::window::Window;
 /// Everything that is drawn with. Fields go in order; the device goes last.
 pub struct Stage {
     gui: Gui<GpuAllocator>,
-    renderer: Renderer,
-    ids: Vec<ObjectId>,
-    search: SearchSettings,
-    swapchain: Swapchain,
+    drawn: SceneRenderer,
+    /// What the renderer is made on, and others that draw with the same shaders.
+    pub device: Device,
+    /// What the compute stage draws into; none in the fragment stage, or without pictures.
+    traced: Option<Traced>,
+    screen: Screen,
     compiled: u64,
     /// Textures of the controls that go after the next frame.
     freed: Vec<egui::TextureId>,
@@ -50,10 +56,9 @@ impl Stage {
     pub fn new(window: &Window, choice: Option<&str>, shown: &Shown) -> Result<Self> {
         let host = Rc::new(Vulkan::open(window, choice)?);
         let size = window.inner_size();
-        let swapchain = Swapchain::new(&host, (size.width, size.height))?;
-        let shared = host.shared()?;
+        let screen = Screen::new(&host, (size.width, size.height))?;
         let mode = RenderMode::DynamicRendering(DynamicRendering {
-            color_attachment_format: swapchain.format.format,
+            color_attachment_format: screen.format(),
             depth_attachment_format: Some(DEPTH),
             stencil_attachment_format: None,
         });
@@ -62,55 +67,83 @@ impl Stage {
             srgb_framebuffer: true,
             ..Options::default()
         };
-        let gui = Gui::with_gpu_allocator(shared.allocator()?, host.device.clone(), mode, options)
-            .map_err(gui_error)?;
+        let gui = Gui::with_gpu_allocator(
+            host.allocator()?.clone(),
+            host.device.clone(),
+            mode,
+            options,
+        )
+        .map_err(gui_error)?;
+        let device = host.lend(None)?;
+        let by = (shown.stage, shown.search);
         let mut stage = Self {
             gui,
-            renderer: renderer(&host, &swapchain, &shown.search)?,
-            ids: Vec::new(),
-            search: shown.search,
-            swapchain,
+            drawn: SceneRenderer::new(&device, screen.format(), by)?,
+            device,
+            traced: None,
+            screen,
             compiled: 0,
             freed: Vec::new(),
-            host: host.clone(),
+            host,
         };
+        stage.aim()?;
         stage.set(shown)?;
-        stage.renderer.prewarm()?.compile()?;
-        stage.compiled = shared.pipelines_compiled();
+        stage.drawn.renderer.prewarm()?.compile()?;
+        stage.compiled = stage.device.pipelines_compiled();
         Ok(stage)
     }
 
     /// Takes over what is shown. What fails leaves the rest as it was.
     pub fn set(&mut self, shown: &Shown) -> Result<()> {
-        if self.search != shown.search {
-            self.host.wait();
-            self.renderer = renderer(&self.host, &self.swapchain, &shown.search)?;
-            self.search = shown.search;
-            self.ids.clear();
+        let by = (shown.stage, shown.search);
+        if self.drawn.by != by {
+            let drawn = SceneRenderer::new(&self.device, self.screen.format(), by)?;
+            self.replace(drawn)?;
         }
-        self.renderer.set_lighting(&shown.scene.lighting())?;
-        let objects = &shown.scene.objects;
-        while self.ids.len() > objects.len() {
-            if let Some(id) = self.ids.pop() {
-                self.renderer.remove(id)?;
-            }
-        }
-        for (n, object) in objects.iter().enumerate() {
-            match self.ids.get(n) {
-                Some(&id) => self.renderer.set(id, object.clone())?,
-                None => self.ids.push(self.renderer.add(object.clone())?),
-            }
+        self.drawn.set(&shown.scene)
+    }
+
+    /// Draws with another renderer, made on another device with other shaders.
+    pub fn take(&mut self, (device, drawn): (Device, SceneRenderer)) -> Result<()> {
+        self.replace(drawn)?;
+        self.device = device;
+        self.compiled = self.device.pipelines_compiled();
+        Ok(())
+    }
+
+    fn replace(&mut self, drawn: SceneRenderer) -> Result<()> {
+        self.host.wait();
+        self.drawn = drawn;
+        self.aim()
+    }
+
+    /// Of the window's pictures.
+    pub fn format(&self) -> vk::Format {
+        self.screen.format()
+    }
+
+    pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
+        self.screen.resize(size)?;
+        self.aim()
+    }
+
+    /// Gives the compute stage something to draw into, of the window's size. The device is idle.
+    fn aim(&mut self) -> Result<()> {
+        self.traced = None;
+        let extent = self.screen.extent();
+        if self.drawn.by.0 == DrawStage::Compute && extent.width > 0 && extent.height > 0 {
+            let traced = Traced::new(&self.host, extent)?;
+            // SAFETY: it is of the host's device and has the size of every view, and lives until
+            // another one is set, for which the device is waited for.
+            unsafe { self.drawn.renderer.set_compute_target(traced.target()) };
+            self.traced = Some(traced);
         }
         Ok(())
     }
 
-    pub fn resize(&mut self, size: (u32, u32)) -> Result<()> {
-        self.swapchain.resize(size)
-    }
-
     /// How each object was drawn in the last frame.
     pub fn draw_paths(&self) -> Vec<DrawPath> {
-        self.renderer.draw_paths()
+        self.drawn.renderer.draw_paths()
     }
 
     /// Draws a frame: the scene, unless the controls bring a picture of their own, then the
@@ -125,27 +158,51 @@ impl Stage {
         problem: &mut Option<String>,
     ) -> Result<Option<Frame>> {
         self.take_textures(&mut gui)?;
-        let Begun::Frame(frame) = self.swapchain.begin()? else {
+        let Some(frame) = self.screen.begin()? else {
             return Ok(None);
         };
-        let device = self.swapchain.device_ms(frame.slot).unwrap_or(0.0);
+        let device = self.screen.frames.device_ms(frame.slot).unwrap_or(0.0);
         let start = Instant::now();
-        let extent = self.swapchain.extent;
+        let extent = self.screen.extent();
         let prepared = scene.map(|scene| {
             let camera = &scene.camera;
             let distance = (camera.eye - camera.target).length();
             let range = [0.01 * distance, 100.0 * distance];
             let view = View::from_camera(camera, (extent.width, extent.height), range)?;
             // SAFETY: the slot was waited for; the commands are recording outside of the pass.
-            unsafe { self.renderer.prepare(frame.commands, frame.slot, &view) }
+            unsafe {
+                self.drawn
+                    .renderer
+                    .prepare(frame.commands, frame.slot, &view)
+            }
         });
+        let draws = match prepared {
+            Some(Err(error)) => {
+                *problem = Some(error.to_string());
+                false
+            }
+            other => other.is_some(),
+        };
         let background = scene.map_or([0.0; 4], |scene| scene.background);
-        self.swapchain.begin_pass(frame, background);
-        match prepared {
-            // SAFETY: the slot was prepared, the pass is of the output's formats.
-            Some(Ok(())) => unsafe { self.renderer.record(frame.commands, frame.slot) },
-            Some(Err(error)) => *problem = Some(error.to_string()),
-            None => {}
+        let (renderer, commands) = (&self.drawn.renderer, frame.commands);
+        match &self.traced {
+            Some(traced) if draws => {
+                // SAFETY: the slot was prepared, the commands are recording outside of a pass; what
+                // is drawn into has the window's size.
+                unsafe {
+                    traced.clear(commands, background);
+                    renderer.record_compute(commands, frame.slot);
+                    traced.show(commands, self.screen.picture(frame));
+                }
+                self.screen.begin_pass(frame, Before::Kept);
+            }
+            _ => {
+                self.screen.begin_pass(frame, Before::Cleared(background));
+                if draws {
+                    // SAFETY: the slot was prepared, the pass is of the output's formats.
+                    unsafe { renderer.record(commands, frame.slot) };
+                }
+            }
         }
         let primitives = context.tessellate(gui.shapes, gui.pixels_per_point);
         let drawn = self
@@ -154,8 +211,8 @@ impl Stage {
         drawn.map_err(gui_error)?;
         let prepare = milliseconds(start);
         let start = Instant::now();
-        let (fits, picture) = self.swapchain.finish(frame, keep)?;
-        let compiled = self.host.shared()?.pipelines_compiled();
+        let (fits, picture) = self.screen.finish(frame, keep)?;
+        let compiled = self.device.pipelines_compiled();
         let cost = Cost {
             prepare,
             device,
@@ -183,7 +240,7 @@ impl Stage {
             // Frames in flight may read what is replaced.
             self.host.wait();
         }
-        let (queue, pool) = (self.host.queue, self.swapchain.pool());
+        let (queue, pool) = (self.host.queue, self.screen.frames.pool);
         for (id, deltas) in delta.set.drain() {
             for delta in deltas {
                 let set = self.gui.set_texture(queue, pool, id, &delta);
@@ -198,20 +255,6 @@ impl Drop for Stage {
     fn drop(&mut self) {
         self.host.wait();
     }
-}
-
-fn renderer(host: &Vulkan, swapchain: &Swapchain, search: &SearchSettings) -> Result<Renderer> {
-    let output = Output::Pass(PassFormats {
-        begun: PassKind::Dynamic {
-            color: vec![swapchain.format.format],
-            depth: DEPTH,
-            stencil: ash::vk::Format::UNDEFINED,
-        },
-        samples: 1,
-        depth: DepthOrder::Normal,
-        planes: Planes::Color,
-    });
-    Renderer::new(host.shared()?, output, search, FRAMES)
 }
 
 fn milliseconds(since: Instant) -> f64 {

@@ -2,10 +2,12 @@
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
 use ash::{ext, khr, vk};
+use gpu_allocator::vulkan::Allocator;
 use revmap::error::{Error, Result, Stage};
-use revmap::gpu::{Device, HostDevice, Requirements, VALIDATION_VARIABLE};
+use revmap::gpu::{Device, HostDevice, Requirements, ShaderSource, VALIDATION_VARIABLE};
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 use winit::window::Window;
 
@@ -20,8 +22,9 @@ fn device_error(message: impl std::fmt::Display) -> Error {
 
 /// A device that draws into a window. What is made on it goes before.
 pub struct Vulkan {
-    /// What renderers share; none while it is being closed.
-    pub shared: Option<Device>,
+    /// Where all device memory comes from; none while it is being closed.
+    allocator: Option<Arc<Mutex<Allocator>>>,
+    features: vk::PhysicalDeviceFeatures,
     pub device: ash::Device,
     pub physical: vk::PhysicalDevice,
     pub queue: vk::Queue,
@@ -129,23 +132,14 @@ impl Vulkan {
             )
             .map_err(into_device)?;
             let queue = device.get_device_queue(family, 0);
-            let shared = Device::borrow(&HostDevice {
-                instance: &instance,
-                physical,
-                device: &device,
-                queue_family: family,
-                queue: Some(queue), // of the one thread that draws
-                features: needs.features,
-                allocator: None,
-                pipeline_cache: None,
-            })?;
             let families = instance.get_physical_device_queue_family_properties(physical);
             let limits = instance.get_physical_device_properties(physical).limits;
             let timed = families
                 .get(family as usize)
                 .is_some_and(|f| f.timestamp_valid_bits == 64);
-            Ok(Self {
-                shared: Some(shared),
+            let mut host = Self {
+                allocator: None,
+                features: needs.features,
                 device,
                 physical,
                 queue,
@@ -161,14 +155,40 @@ impl Vulkan {
                 messenger,
                 messages,
                 _entry: entry,
-            })
+            };
+            // The first borrower makes an allocator; it becomes everybody's.
+            host.allocator = Some(host.lend(None)?.allocator()?);
+            Ok(host)
         }
     }
 
-    /// What renderers share.
-    pub fn shared(&self) -> Result<&Device> {
+    /// Lends the device to renderers, whose shaders may be others than those built in. All that is
+    /// made with it must go before this does.
+    pub fn lend(&self, shaders: Option<ShaderSource>) -> Result<Device> {
+        let host = HostDevice {
+            instance: &self.instance,
+            physical: self.physical,
+            device: &self.device,
+            queue_family: self.family,
+            queue: Some(self.queue), // of the one thread that draws
+            features: self.features,
+            allocator: self.allocator.clone(),
+            pipeline_cache: None,
+        };
+        // SAFETY: the handles belong together and live as long as `self`; shaders are those of the
+        // source tree, as somebody works on them.
+        unsafe {
+            match shaders {
+                Some(shaders) => Device::borrow_with_shaders(&host, shaders),
+                None => Device::borrow(&host),
+            }
+        }
+    }
+
+    /// Where device memory comes from.
+    pub fn allocator(&self) -> Result<&Arc<Mutex<Allocator>>> {
         let closed = || Error::new(Stage::Draw, "the device is being closed");
-        self.shared.as_ref().ok_or_else(closed)
+        self.allocator.as_ref().ok_or_else(closed)
     }
 
     pub fn wait(&self) {
@@ -191,7 +211,7 @@ impl Vulkan {
 impl Drop for Vulkan {
     fn drop(&mut self) {
         self.wait();
-        self.shared = None;
+        self.allocator = None;
         // SAFETY: all that was made on the device is gone.
         unsafe {
             self.device.destroy_device(None);
