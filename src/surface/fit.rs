@@ -47,6 +47,10 @@ const STEEP: f64 = 4.0;
 /// linear in `z` the quadric has no other sheet near, the guard can go by `r`, and nothing is
 /// divided by small differences.
 const FLAT: f64 = 8.0;
+/// Farthest that a guard may reach past a patch's end, along the boundary, where a shorter patch
+/// reaches less far, object units: a twentieth of a texel of 512 rows. On a flat patch with a sheet
+/// near, the guard goes by `z` alone, and a rounding of `z` moves `r` by `|dr/dz|` times as much.
+const REACH: f64 = 0.05 / 512.0;
 /// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute
 /// rounding error.
 const SMALL: f64 = 0.05;
@@ -147,7 +151,8 @@ impl Cutter {
         } else {
             let (width, widest) = ((p.x - q.x).abs(), p.x.max(q.x));
             let slope = width / climb;
-            if slope > self.largest_bend(widest, 2.0 * widest * slope).sqrt() {
+            let most = self.largest_bend(widest, 2.0 * widest * slope);
+            if slope > FLAT && (slope * slope > most || self.reach(q, p, slope * slope) > REACH) {
                 let bow = climb * (width / (4.0 * (p.x + q.x))).min(1.0);
                 let bands = (bow / (0.5 * self.tolerance)).ceil().clamp(1.0, 64.0);
                 for k in 1..bands as u32 {
@@ -221,7 +226,7 @@ impl Cutter {
         let slope = (b.x - a.x) / (b.y - a.y);
         let widest = a.x.max(b.x);
         if slope.abs() > FLAT
-            && let Some(q) = self.bend(i, i + 1)
+            && let Some(q) = self.within(i, i + 1)
         {
             return q;
         }
@@ -229,8 +234,17 @@ impl Cutter {
         (slope * slope).min(most)
     }
 
-    /// A `q` with which one patch from point `i` to point `j` stays within the tolerance.
+    /// A `q` with which one patch from point `i` to point `j` is told from its neighbours and stays
+    /// within the tolerance.
     fn bend(&self, i: usize, j: usize) -> Option<f64> {
+        let q = self.within(i, j)?;
+        let (a, b) = (self.points[i], self.points[j]);
+        let flat = (b.x - a.x).abs() > FLAT * (b.y - a.y).abs();
+        (!flat || self.reach(a, b, q) <= REACH).then_some(q)
+    }
+
+    /// A `q` with which one patch from point `i` to point `j` stays within the tolerance.
+    fn within(&self, i: usize, j: usize) -> Option<f64> {
         let (a, b) = (self.points[i], self.points[j]);
         let (pa, pb) = (a.x * a.x, b.x * b.x);
         let linear = (pb - pa) / (b.y - a.y);
@@ -268,48 +282,57 @@ impl Cutter {
 
     fn quadric(&self, i: usize, j: usize, q: f64, chain: u32) -> QuadricPatch {
         let (a, b) = (self.points[i], self.points[j]);
-        let (pa, pb) = (a.x * a.x, b.x * b.x);
-        let climb = b.y - a.y;
-        let linear = (pb - pa) / climb;
-        let p = [
-            pa - linear * a.y + q * a.y * b.y,
-            linear - q * (a.y + b.y),
-            q,
-        ];
+        let (p, slopes) = parabola(a, b, q);
         // Upwards the solid lies towards the axis.
-        let side = climb.signum();
+        let side = (b.y - a.y).signum();
         let mut r = [a.x.min(b.x), a.x.max(b.x)];
-        let slopes = [linear - q * climb, linear + q * climb];
-        let monotone = slopes[0] * slopes[1] >= 0.0;
-        if !monotone {
+        if slopes[0] * slopes[1] < 0.0 {
             let top = p[0] - p[1] * p[1] / (4.0 * q);
             let extreme = top.max(0.0).sqrt();
             r = [r[0].min(extreme), r[1].max(extreme)];
         }
-        let z = [a.y.min(b.y), a.y.max(b.y)];
-        let cr = if monotone && linear != 0.0 {
-            let wanted = 1.0 / (2.0 * (0.5 * (a.x + b.x)).max(SMALL));
-            linear.signum() * wanted.min(unambiguous(p, z))
-        } else {
-            0.0
-        };
         QuadricPatch {
             quadric: [side, -side * p[0], -side * p[1], -side * p[2]],
             start: a,
             end: b,
-            z,
+            z: [a.y.min(b.y), a.y.max(b.y)],
             r,
-            guard: self.guard(
-                1.0,
-                cr,
-                a,
-                b,
-                (p[2].abs() + p[1].abs()) / slopes[0].hypot(2.0 * r[1]),
-            ),
+            guard: guard(self.weights(a, b, q, r[1]), a, b),
             chain,
             previous: None,
             next: None,
         }
+    }
+
+    /// Of the guard of a patch from `a` to `b`: the weights of `z` and `r^2`, and by how much it
+    /// reaches past what it has at the ends. `widest`: the largest `r`.
+    fn weights(&self, a: DVec2, b: DVec2, q: f64, widest: f64) -> [f64; 3] {
+        let (p, slopes) = parabola(a, b, q);
+        let monotone = slopes[0] * slopes[1] >= 0.0;
+        let rise = b.x * b.x - a.x * a.x;
+        let cr = if monotone && rise != 0.0 {
+            let wanted = 1.0 / (2.0 * (0.5 * (a.x + b.x)).max(SMALL));
+            let z = [a.y.min(b.y), a.y.max(b.y)];
+            (rise / (b.y - a.y)).signum() * wanted.min(unambiguous(p, z))
+        } else {
+            0.0
+        };
+        // The size of the coefficients over that of the gradient, which is what their rounding is
+        // multiplied by.
+        let bend = (p[2].abs() + p[1].abs()) / slopes[0].hypot(2.0 * widest);
+        [
+            1.0,
+            cr,
+            OVERLAP + (4.0 * EPSILON * bend).min(self.tolerance),
+        ]
+    }
+
+    /// How far along the boundary the guard of a patch from `a` to `b` lets points past its ends.
+    fn reach(&self, a: DVec2, b: DVec2, q: f64) -> f64 {
+        let [cz, cr, overlap] = self.weights(a, b, q, a.x.max(b.x));
+        let along = (b - a).normalize_or_zero();
+        let growth = |r: f64| (cz * along.y + 2.0 * cr * r.max(SMALL) * along.x).abs();
+        overlap / growth(a.x).min(growth(b.x))
     }
 
     fn plane(&self, i: usize, j: usize, chain: u32) -> QuadricPatch {
@@ -323,21 +346,30 @@ impl Cutter {
             end: b,
             z: [a.y, a.y],
             r: [a.x.min(b.x), a.x.max(b.x)],
-            guard: self.guard(0.0, cr, a, b, 0.0),
+            guard: guard([0.0, cr, OVERLAP], a, b),
             chain,
             previous: None,
             next: None,
         }
     }
+}
 
-    /// `bend`: the size of the coefficients over that of the gradient, which is what their rounding
-    /// is multiplied by.
-    fn guard(&self, cz: f64, cr: f64, a: DVec2, b: DVec2, bend: f64) -> [f64; 4] {
-        let place = |p: DVec2| cz * p.y + cr * p.x * p.x;
-        let (from, to) = (place(a), place(b));
-        let overlap = OVERLAP + (4.0 * EPSILON * bend).min(self.tolerance);
-        [cz, cr, from.min(to) - overlap, from.max(to) + overlap]
-    }
+/// `[p0, p1, p2]` of the parabola through both ends, and its slopes there.
+fn parabola(a: DVec2, b: DVec2, q: f64) -> ([f64; 3], [f64; 2]) {
+    let (pa, climb) = (a.x * a.x, b.y - a.y);
+    let linear = (b.x * b.x - pa) / climb;
+    let p = [
+        pa - linear * a.y + q * a.y * b.y,
+        linear - q * (a.y + b.y),
+        q,
+    ];
+    (p, [linear - q * climb, linear + q * climb])
+}
+
+fn guard([cz, cr, overlap]: [f64; 3], a: DVec2, b: DVec2) -> [f64; 4] {
+    let place = |p: DVec2| cz * p.y + cr * p.x * p.x;
+    let (from, to) = (place(a), place(b));
+    [cz, cr, from.min(to) - overlap, from.max(to) + overlap]
 }
 
 /// The largest weight of `r^2` in a guard with which the quadric's other sheet fails it everywhere

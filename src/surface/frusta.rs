@@ -31,6 +31,7 @@ impl FrustaBuilder<'_> {
         let long = |p: &&QuadricPatch| p.start.distance(p.end) > self.options.margin;
         let kept: Vec<QuadricPatch> = cell.iter().filter(long).copied().collect();
         let cell = if kept.is_empty() { cell } else { &kept };
+        let mut shell = Vec::new();
         let mut frusta: Vec<[DVec2; 2]> = Vec::new();
         let mut from = 0;
         while from < cell.len() {
@@ -47,9 +48,15 @@ impl FrustaBuilder<'_> {
                 })
                 .collect();
             self.follow(cell, &spans, 0, &mut frusta);
+            // A rim between a part that looks outwards and one that looks inwards.
+            let rim = (from > 0 && a * cell[from - 1].quadric[0] < 0.0).then(|| {
+                let joint = cell[from].start;
+                let up = if a < 0.0 { 1.0 } else { -1.0 };
+                joint * DVec2::new(self.widen, 1.0) + self.options.margin * DVec2::new(1.0, up)
+            });
+            join(&mut shell, &mut frusta, rim);
             from = to;
         }
-        let mut shell = joined(frusta);
         self.wall_off(cell, &mut shell);
         shell
     }
@@ -148,34 +155,58 @@ impl FrustaBuilder<'_> {
             return;
         };
         let on_axis = |p: DVec2| p.x == 0.0;
+        let alone = cell.len() == 1;
         if let Some(patch) = cell.last()
             && !(on_axis(patch.end) && on_axis(end))
         {
-            shell.push([end, self.foot(patch, patch.end, end, end.y <= patch.end.y)]);
+            let feet = self.feet(patch, [patch.start, patch.end], end, end.y <= patch.end.y);
+            let mut from = end;
+            for to in feet.into_iter().take(if alone { 1 } else { 2 }) {
+                shell.push([from, to]);
+                from = to;
+            }
         }
         if let Some(patch) = cell.first()
             && !(on_axis(patch.start) && on_axis(begin))
         {
             let around = begin.y > patch.start.y;
-            let foot = self.foot(patch, patch.start, begin, around);
-            shell.insert(0, [foot, begin]);
+            let feet = self.feet(patch, [patch.end, patch.start], begin, around);
+            let mut to = begin;
+            for from in feet.into_iter().take(if alone { 1 } else { 2 }) {
+                shell.insert(0, [from, to]);
+                to = from;
+            }
         }
     }
 
-    /// Where a wall ends that comes from `top`: through the joint, or rather through a polygon that
-    /// keeps the joint's circle on the wall's inner side all round, and as far beyond as that
-    /// polygon departs from the circle, so that no ray passes under the foot.
+    /// Where a wall leads that comes from `top` to the joint at the end of `[.., joint]`: through
+    /// the joint, or rather through a polygon that keeps the joint's circle on the wall's inner side
+    /// all round, and as far beyond as that polygon departs from the circle, so that no ray passes
+    /// under the foot.
     ///
-    /// A plane's rims are beyond its circles already: there walls stand upright.
-    fn foot(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2, around: bool) -> DVec2 {
+    /// A plane's rims are beyond its circles already. There the wall stands upright, and goes on
+    /// behind the plane to the joint: a ray that passes between polygon and circle from behind can
+    /// meet the cell's other patches.
+    fn feet(
+        &self,
+        patch: &QuadricPatch,
+        [inner, joint]: [DVec2; 2],
+        top: DVec2,
+        around: bool,
+    ) -> Vec<DVec2> {
         if patch.is_plane() {
-            return DVec2::new(top.x, joint.y + (joint.y - top.y).signum() * ROOT);
+            let behind = joint.y + (joint.y - top.y).signum() * ROOT;
+            let within = joint.x + (inner.x - joint.x).signum() * ROOT;
+            return vec![
+                DVec2::new(top.x, behind),
+                DVec2::new(within.max(0.0), behind),
+            ];
         }
         let factor = if around { self.widen } else { 1.0 };
         let ring = DVec2::new(joint.x * factor, joint.y);
         let reach = (self.widen - 1.0) * joint.x + ROOT;
         let p = ring + (ring - top).normalize_or_zero() * reach;
-        DVec2::new(p.x.max(0.0), p.y)
+        vec![DVec2::new(p.x.max(0.0), p.y)]
     }
 }
 
@@ -211,12 +242,13 @@ fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(
     found
 }
 
-/// Joins frusta end to start: at bulges at the intersection of their lines, in hollows where they
-/// cross, else by a frustum more.
-fn joined(frusta: Vec<[DVec2; 2]>) -> Vec<[DVec2; 2]> {
-    let mut out: Vec<[DVec2; 2]> = Vec::with_capacity(frusta.len());
-    for mut frustum in frusta {
-        if let Some(last) = out.last_mut() {
+/// Appends frusta, each joined to the one before it: at bulges at the intersection of their lines,
+/// in hollows where they cross, else by a frustum more. That one goes around `rim`, the joint in
+/// the meridian through the corners: its polygon has the one part's circles around it and is within
+/// the other's, and would leave part of the joint's circle outside.
+fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rim: Option<DVec2>) {
+    for mut frustum in frusta.drain(..) {
+        if let Some(last) = shell.last_mut() {
             let (p, q) = (last[1], frustum[0]);
             let (u, v) = (last[1] - last[0], frustum[1] - frustum[0]);
             let cross = u.perp_dot(v);
@@ -230,11 +262,13 @@ fn joined(frusta: Vec<[DVec2; 2]>) -> Vec<[DVec2; 2]> {
                 frustum[0] = p;
             } else if bulge || hollow {
                 (last[1], frustum[0]) = (meeting, meeting);
+            } else if let Some(rim) = rim.filter(|&rim| (q - p).perp_dot(rim - p) < 0.0) {
+                shell.extend([[p, rim], [rim, q]]);
             } else {
-                out.push([p, q]);
+                shell.push([p, q]);
             }
         }
-        out.push(frustum);
+        rim = None;
+        shell.push(frustum);
     }
-    out
 }

@@ -111,8 +111,11 @@ impl Trimmer {
         parts: &mut Segments,
     ) {
         self.candidates.clear();
-        for (k, (s, [before, after])) in segments.iter().zip(corners).enumerate() {
-            let feature = 2 * k as u32 + 1;
+        let (mut feature, mut end) = (1, None);
+        for (s, [before, after]) in segments.iter().zip(corners) {
+            // Neighbours in the list that do not join, as of two loops, share no feature.
+            feature += if end == Some(s.a) { 2 } else { 4 };
+            end = Some(s.b);
             // The corner before a segment that has none after its predecessor: where a curve begins
             // on the axis.
             if let Some(corner) = before {

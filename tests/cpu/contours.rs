@@ -183,3 +183,85 @@ fn rows_and_nodes_contain_their_patches() {
         }
     }
 }
+
+/// Two loops that touch, the last corner of the one before the first side of the other in the list:
+/// their curves meet like any others.
+#[test]
+fn loops_that_touch() {
+    let touch = [0.23830707371234894, 0.5634481739252806];
+    let loops = [
+        vec![
+            [0.20953533789503118, 0.6242880245839505],
+            [0.03897609827147791, 0.7395282681200596],
+            [0.19750422514226482, 0.4783838381214222],
+            touch,
+        ],
+        vec![
+            [0.349583290704926, 0.7954328951334169],
+            touch,
+            [0.450701805896659, 0.11432463201705488],
+        ],
+    ];
+    let outline = Outline {
+        loops: loops
+            .map(|l| l.into_iter().map(DVec2::from).collect())
+            .into(),
+    };
+    for extend in [0.005, 0.02, 0.042754879734338364, 0.06] {
+        let offset = Offset {
+            extend,
+            ..Offset::default()
+        };
+        sound(&outline, offset).unwrap();
+    }
+}
+
+/// A patch that is all but level ends where it ends: points of its quadric beyond are not its own.
+#[test]
+fn flat_patches_end() {
+    let texel = 1.0 / 512.0;
+    let mut tried = 0;
+    for slope in [
+        10.0, 20.0, 50.0, 90.0, 150.0, 300.0, 600.0, 2000.0, 10_000.0,
+    ] {
+        for (inner, outer) in [(0.2, 0.3), (0.0, 0.4), (0.05, 0.45), (0.44, 0.46)] {
+            let top = 0.65;
+            let points = [
+                [outer, top],
+                [inner, top + (outer - inner) / slope],
+                [inner, 0.3],
+                [outer, 0.3],
+            ];
+            let outline = Outline {
+                loops: vec![points.map(DVec2::from).to_vec()],
+            };
+            let source = ContourSource::new(&outline).unwrap();
+            let contour = source.contour(&Offset::default()).unwrap();
+            for patch in fit_patches(&contour, &FitOptions::default()) {
+                let run = patch.end - patch.start;
+                if patch.is_plane() || run.x.abs() < 8.0 * run.y.abs() {
+                    continue;
+                }
+                for (end, outwards) in [(patch.start, -run), (patch.end, run)] {
+                    let beyond = 0.1 * texel * outwards.x.signum();
+                    let r = end.x + beyond;
+                    // About the axis radii are not told apart so finely.
+                    if end.x.min(r) < 0.05 {
+                        continue;
+                    }
+                    // The quadric's height there.
+                    let mut z = end.y + beyond * run.y / run.x;
+                    for _ in 0..20 {
+                        let [_, _, k1, k2] = patch.quadric;
+                        let slope = -patch.quadric[0] * (k1 + 2.0 * k2 * z);
+                        z -= (patch.square_at(z) - r * r) / slope;
+                    }
+                    assert!((patch.square_at(z) - r * r).abs() < 1e-9);
+                    assert!(!patch.guards(r * r, z), "slope {slope}: {r} of {patch:?}");
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 100, "{tried}");
+}

@@ -213,3 +213,96 @@ fn what_a_hull_leaves_out_no_ray_meets() {
         assert_eq!(left_out > 0, hollow, "{name}");
     }
 }
+
+/// Rays at what is near a joint: a thin ledge at a cell's end, a rim whose outer flank is wrapped by
+/// one frustum.
+#[test]
+fn rims_and_ledges_lose_no_ray() {
+    let ledge = vec![
+        [0.10070874609126598, 0.94],
+        [0.0, 0.94],
+        [0.37670857681604786, 0.04],
+        [0.45789064347860303, 0.34],
+        [0.41723172148963583, 0.34],
+        [0.41723172148963583, 0.49],
+        [0.41801724761820014, 0.49],
+        [0.14881301676183442, 0.79],
+        [0.4077006168065225, 0.79],
+    ];
+    // Its mirror: the ledge looks up, and is seen from below.
+    let below = ledge.iter().rev().map(|[r, z]| [*r, 1.0 - z]).collect();
+    let rim = vec![
+        [0.42037396931714804, 0.8300237391211497],
+        [0.07970580923790756, 0.6460095492224637],
+        [0.09885382536848282, 0.3483777493886423],
+        [0.16564666791459592, 0.4096639095138618],
+    ];
+    let turned = rim.iter().rev().map(|[r, z]| [*r, 1.0 - z]).collect();
+    // The inner wall of a ring above a ledge as thin.
+    let hole = vec![
+        [0.2, 0.2],
+        [0.45, 0.2],
+        [0.45, 0.8],
+        [0.3, 0.8],
+        [0.3, 0.5],
+        [0.2992, 0.5],
+    ];
+    for (name, points) in [
+        ("ledge", ledge),
+        ("below", below),
+        ("rim", rim),
+        ("turned", turned),
+        ("hole", hole),
+    ] {
+        let outline = revmap::profile::Outline {
+            loops: vec![points.into_iter().map(DVec2::from).collect()],
+        };
+        let source = ContourSource::new(&outline).unwrap();
+        let contour = source.contour(&Offset::default()).unwrap();
+        let patches = fit_patches(&contour, &FitOptions::default());
+        let tables = Tables::new(&patches, ROWS);
+        let records: Vec<GpuPatch> = patches
+            .iter()
+            .enumerate()
+            .map(|(k, p)| GpuPatch::new(p, k))
+            .collect();
+        let mut random = Random(5);
+        for tests in [2, 3, 4, 5, 8] {
+            let options = ProxyHullOptions {
+                patches_per_cell: tests,
+                ..ProxyHullOptions::default()
+            };
+            let hull = ProxyHull::new(&patches, &options);
+            let (mut lost, mut hits) = (0, 0);
+            for _ in 0..count(3000) {
+                let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
+                let (y, x) = (random.next() * 6.3).sin_cos();
+                let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
+                // A point within a hundredth of a joint, a quarter of a texel under the surface: a ray
+                // at the surface itself may be a silhouette's.
+                let patch = &patches[(random.next() * patches.len() as f64) as usize];
+                let way = 0.01 * random.next() / patch.start.distance(patch.end);
+                let place = patch.start.lerp(patch.end, way.min(1.0));
+                let place = place - 5e-4 * patch.gradient(place).normalize();
+                let (sine, cosine) = (random.next() * 6.3).sin_cos();
+                let target = DVec3::new(place.x * cosine, place.x * sine, place.y);
+                let direction = (target - origin).normalize();
+                let truth = trace_patches(&tables, 2.0, DVec2::ZERO, origin, direction);
+                let found = hull.trace(&records, origin, direction);
+                let same = match (truth, found.hit) {
+                    (Some(a), Some((t, _))) => (a.t - f64::from(t)).abs() < 2e-4,
+                    (None, None) => true,
+                    _ => false,
+                };
+                lost += usize::from(!same);
+                hits += usize::from(truth.is_some());
+            }
+            println!("{name}, {tests} patches a cell: {lost} of {hits} lost");
+            // At silhouettes a rounding decides.
+            assert!(
+                lost as f64 <= 1e-3 * hits as f64,
+                "{name}, {tests} patches a cell: {lost} of {hits} lost"
+            );
+        }
+    }
+}

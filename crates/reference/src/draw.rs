@@ -48,6 +48,32 @@ pub fn draw(
     Ok(frame)
 }
 
+/// The colours of a scene along single rays.
+#[derive(Debug)]
+pub struct Colors<'a> {
+    scene: &'a Scene,
+    lengths: Lengths,
+}
+
+impl<'a> Colors<'a> {
+    /// Prepares a scene.
+    ///
+    /// # Errors
+    /// Those of [`ArcLength::new`](revmap::maps::ArcLength::new).
+    pub fn new(scene: &'a Scene) -> Result<Self> {
+        let lengths = Lengths::new(scene)?;
+        Ok(Self { scene, lengths })
+    }
+
+    /// The linear colour of the first hit along a ray; `None` where nothing is hit. The ways to the
+    /// lights begin at least `lift` off the surface, world units.
+    #[must_use]
+    pub fn along(&self, reference: &Reference, ray: Ray, lift: f64) -> Option<[f32; 4]> {
+        let hit = reference.trace(ray).hit?;
+        Some(shade(self.scene, reference, &self.lengths, &hit, ray, lift)?.color)
+    }
+}
+
 /// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` where no box was
 /// entered.
 fn pixel(
@@ -72,7 +98,7 @@ fn pixel(
         value[16] = steps;
         return (trace.evaluations > 0).then_some(value);
     };
-    let shaded = shade(scene, reference, lengths, &hit, ray)?;
+    let shaded = shade(scene, reference, lengths, &hit, ray, 0.0)?;
     let [r, g, b, a] = shaded.color;
     let [nx, ny, nz] = hit.normal.as_vec3().to_array();
     let [sx, sy, sz] = shaded.shading_normal.as_vec3().to_array();

@@ -44,7 +44,7 @@ mod solid;
 mod texture;
 
 pub use analytic::Analytic;
-pub use draw::draw;
+pub use draw::{Colors, draw};
 pub use solid::Surface;
 
 use field::Field;

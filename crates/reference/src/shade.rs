@@ -18,7 +18,8 @@ pub(super) struct Shaded {
 /// the surface would shade itself.
 const LIFT: f64 = 1e-6;
 
-/// Shades a hit that is seen along `ray`; `None` where it is of no object of the scene.
+/// Shades a hit that is seen along `ray`; `None` where it is of no object of the scene. The way to
+/// a light begins at least `least_lift` off the surface, world units.
 ///
 /// `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength * (n.l > 0 ?
 /// max(0, n.h)^shininess : 0))`, `l` towards the light, `h` half way between `l` and the viewer;
@@ -31,6 +32,7 @@ pub(super) fn shade(
     lengths: &Lengths,
     hit: &Hit,
     ray: Ray,
+    least_lift: f64,
 ) -> Option<Shaded> {
     let object = scene.objects.get(hit.object)?;
     let arc = lengths.of(hit.object);
@@ -47,7 +49,7 @@ pub(super) fn shade(
     let smooth = facing * hit.normal;
     let normal = bumped(scene, lengths, hit).map_or(smooth, |tilted| facing * tilted);
     let point = ray.origin + ray.direction * hit.t;
-    let lift = LIFT * hit.t * ray.direction.length();
+    let lift = (LIFT * hit.t * ray.direction.length()).max(least_lift);
 
     let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
     for light in &scene.lights {
@@ -125,7 +127,7 @@ mod tests {
             direction: direction.into(),
         };
         let lengths = Lengths::new(&scene).unwrap();
-        shade(&scene, &reference, &lengths, &hit, ray).unwrap()
+        shade(&scene, &reference, &lengths, &hit, ray, 0.0).unwrap()
     }
 
     #[track_caller]

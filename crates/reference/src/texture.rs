@@ -12,6 +12,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Lengths along the profiles of those objects that are textured by them.
+#[derive(Debug)]
 pub(super) struct Lengths(Vec<Option<Arc<ArcLength>>>);
 
 impl Lengths {

@@ -18,7 +18,9 @@
 //!
 //! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is
 //! outside of what the 3 x 3 pixels about it have in the reference, by more than [`COLOR`]. A
-//! shadow's edge may lie a pixel off, and a texture may be filtered.
+//! shadow's edge may lie a pixel off, and a texture may be filtered. To those belong the colours
+//! that the reference has for rays moved aside by the tolerance, and for ways to the lights that
+//! begin that far off the surface: an edge rounded by less than a texel shows any of its normals.
 
 use crate::compare::{CompareOptions, compare};
 use glam::DVec3;
@@ -26,7 +28,7 @@ use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::{CHANNELS, Frame};
 use revmap::scene::{CameraFrame, Scene, Shadow};
-use revmap_reference::{Ray, Reference};
+use revmap_reference::{Colors, Ray, Reference};
 
 /// A texel of 512 rows, object units.
 pub const TEXEL: f64 = 1.0 / 512.0;
@@ -103,10 +105,11 @@ impl Limits {
 }
 
 /// A scene's truth: the reference's frame, and the reference itself.
-pub struct Truth {
+pub struct Truth<'a> {
     /// The reference's frame.
     pub frame: Frame,
     reference: Reference,
+    painter: Colors<'a>,
     camera: CameraFrame,
     eye: DVec3,
     /// Whether the eye is in a solid.
@@ -119,12 +122,12 @@ pub struct Truth {
     colors: bool,
 }
 
-impl Truth {
+impl<'a> Truth<'a> {
     /// Draws the reference.
     ///
     /// # Errors
     /// As [`revmap_reference::draw`].
-    pub fn new(scene: &Scene, size: (u32, u32)) -> Result<Self> {
+    pub fn new(scene: &'a Scene, size: (u32, u32)) -> Result<Self> {
         let settings = revmap::settings::Settings {
             width: size.0,
             height: size.1,
@@ -157,6 +160,7 @@ impl Truth {
         Ok(Self {
             inside: reference.clearance_within(here, [0.0, 0.0], 1e-9) < 0.0,
             frame,
+            painter: Colors::new(scene)?,
             reference,
             camera,
             eye,
@@ -186,12 +190,9 @@ impl Truth {
             .into_par_iter()
             .map(|k| self.is_wrong(frame, k))
             .collect();
-        let strange = |truth: &Frame| {
+        let unlike = |truth: &Frame| {
             (0..frame.pixels())
-                .into_par_iter()
-                .filter(|&k| {
-                    !wrong[k] && frame.hits(k) && truth.hits(k) && !has_color(truth, frame, k)
-                })
+                .filter(|&k| !wrong[k] && is_strange(truth, frame, k, colors_about(truth, k)))
                 .count()
         };
         Ok(Judged {
@@ -203,9 +204,51 @@ impl Truth {
             normal_rms: errors.normal.map(|n| n.rms),
             not_finite: not_finite(frame),
             exhausted: frame.exhausted,
-            color: if self.colors { strange(&self.frame) } else { 0 },
-            stages: other.map_or(0, strange),
+            color: if self.colors {
+                self.strange(frame, &wrong)
+            } else {
+                0
+            },
+            stages: other.map_or(0, unlike),
         })
+    }
+
+    /// Pixels that are not wrong but for their colour.
+    fn strange(&self, frame: &Frame, wrong: &[bool]) -> usize {
+        let is = |k: usize| {
+            let mut range = colors_about(&self.frame, k);
+            if wrong[k] || !is_strange(&self.frame, frame, k, range) {
+                return false;
+            }
+            let Ray { origin, direction } = self.ray(k);
+            let far = self.tolerance[1] * self.texel / TEXEL;
+            let (right, up) = (
+                self.camera.right.normalize_or_zero(),
+                self.camera.up.normalize_or_zero(),
+            );
+            let moved = [right, -right, up, -up].map(|aside| (origin + far * aside, 0.0));
+            for (origin, lift) in moved.into_iter().chain([(origin, far)]) {
+                let color = (self.painter).along(&self.reference, Ray { origin, direction }, lift);
+                if let Some(color) = color {
+                    widen(&mut range, color);
+                }
+            }
+            is_strange(&self.frame, frame, k, range)
+        };
+        (0..frame.pixels())
+            .into_par_iter()
+            .filter(|&k| is(k))
+            .count()
+    }
+
+    /// The ray through the middle of pixel `k`, its direction of length 1.
+    fn ray(&self, k: usize) -> Ray {
+        let width = self.frame.width as usize;
+        let pixel = self.camera.pixel((k % width) as u32, (k / width) as u32);
+        Ray {
+            origin: self.eye,
+            direction: pixel.normalize(),
+        }
     }
 
     fn is_wrong(&self, frame: &Frame, k: usize) -> bool {
@@ -223,30 +266,23 @@ impl Truth {
         if hit && drawn && (z - truth).abs() <= 0.1 * self.texel {
             return false;
         }
-        let width = self.frame.width as usize;
-        let ray = Ray {
-            origin: self.eye,
-            direction: self
-                .camera
-                .pixel((k % width) as u32, (k / width) as u32)
-                .normalize(),
-        };
+        let ray = self.ray(k);
         let [silhouette, tolerance] = self.tolerance;
         let fine = 0.05 * silhouette;
         if drawn {
             // A hit on a face between cells may be rounded into the cell beyond, which need not be
             // solid there.
             let about = [z * (1.0 - 4.0 * ROUNDING), z * (1.0 + 4.0 * ROUNDING)];
-            let there = self.reference.clearance_within(ray, about, fine);
-            if there > tolerance {
+            if !self.reference.goes_deeper(ray, about, -tolerance, fine) {
                 return true;
             }
             if self.inside {
                 // From within all is solid before the hit: what counts is the distance to the true
-                // hit's tangent plane.
+                // hit's tangent plane, in units of the smallest object.
                 let n = DVec3::from(self.frame.normal[k].map(f64::from));
                 let steep = n.dot(ray.direction).abs().max(0.02);
-                return !hit || (z - truth).abs() * steep > 4.0 * tolerance;
+                let off = (z - truth).abs() * steep * TEXEL / self.texel;
+                return !hit || off > 4.0 * tolerance;
             }
             return hit && z > truth && self.reference.goes_deeper(ray, [0.0, z], tolerance, fine);
         }
@@ -272,18 +308,30 @@ fn not_finite(frame: &Frame) -> usize {
         .count()
 }
 
-/// Whether the colour of `frame` at `k` lies among those of the 3 x 3 pixels about `k` in `truth`.
-fn has_color(truth: &Frame, frame: &Frame, k: usize) -> bool {
+/// The least and the largest of each colour channel.
+type ColorRange = [[f32; 2]; 3];
+
+/// The colours of the 3 x 3 pixels about pixel `k`.
+fn colors_about(frame: &Frame, k: usize) -> ColorRange {
     let (w, h) = (frame.width as usize, frame.height as usize);
     let (x, y) = (k % w, k / w);
-    (0..3).all(|c| {
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for j in y.saturating_sub(1)..=(y + 1).min(h - 1) {
-            for i in x.saturating_sub(1)..=(x + 1).min(w - 1) {
-                let v = truth.color[j * w + i][c];
-                (low, high) = (low.min(v), high.max(v));
-            }
+    let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+    for j in y.saturating_sub(1)..=(y + 1).min(h - 1) {
+        for i in x.saturating_sub(1)..=(x + 1).min(w - 1) {
+            widen(&mut range, frame.color[j * w + i]);
         }
-        (low - COLOR..=high + COLOR).contains(&frame.color[k][c])
-    })
+    }
+    range
+}
+
+fn widen(range: &mut ColorRange, color: [f32; 4]) {
+    for ([low, high], v) in range.iter_mut().zip(color) {
+        (*low, *high) = (low.min(v), high.max(v));
+    }
+}
+
+/// Whether both frames hit at pixel `k`, but the colour of `frame` is outside of a range.
+fn is_strange(truth: &Frame, frame: &Frame, k: usize, range: ColorRange) -> bool {
+    let within = |([low, high], v): (&[f32; 2], f32)| (low - COLOR..=high + COLOR).contains(&v);
+    frame.hits(k) && truth.hits(k) && !range.iter().zip(frame.color[k]).all(within)
 }
