@@ -1,8 +1,9 @@
 //! Gives objects the levels that a view allows, and makes their surfaces.
 
+use super::entry::{Entry, Prepared};
 use super::levels::{coarsest, pixels_per_unit};
 use super::offset_surface::OffsetSurface;
-use super::renderer::{Entry, Prepared, Renderer};
+use super::renderer::Renderer;
 use super::table_slot::Part;
 use super::view::View;
 use crate::error::Result;

@@ -1,9 +1,10 @@
 //! What each object is drawn by, and the memory that it takes on the device.
 
 use super::blocks::InstanceBlock;
+use super::entry::Entry;
 use super::levels;
 use super::plan::{DrawPath, Work};
-use super::renderer::{Entry, Renderer};
+use super::renderer::Renderer;
 use super::table_slot::Part;
 use super::view::View;
 

@@ -1,9 +1,10 @@
 //! Pipelines compiled before they are needed.
 
 use super::device::Shared;
+use super::entry::Entry;
 use super::output::Output;
 use super::refresh::FALLBACK;
-use super::renderer::{Entry, Renderer};
+use super::renderer::Renderer;
 use crate::error::Result;
 use crate::settings::Solver;
 use crate::shader::generated::PATCH_VECTORS;

@@ -1,12 +1,13 @@
 //! The commands of a frame. Recording neither fails nor changes anything.
 
 use super::bins::{Rectangle, Shown};
+use super::entry::Entry;
 use super::frame_slot::FrameSlot;
 use super::output::Output;
 use super::pipelines::PUSHED;
 use super::plan::{Tiles, Work};
 use super::proxy_hull;
-use super::renderer::{Entry, Renderer};
+use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
 use crate::shader::LIST_LENGTHS;
 use crate::shader::generated::GROUP_PIXELS;

@@ -2,11 +2,12 @@
 //! everything is taken over at once.
 
 use super::block::check_format;
+use super::entry::{Entry, Prepared};
 use super::levels;
 use super::map_key::MapKey;
 use super::offset_surface::OffsetSurface;
 use super::reach::largest_width;
-use super::renderer::{Entry, Prepared, Renderer};
+use super::renderer::Renderer;
 use super::shape_texture::ShapeTexture;
 use super::solid::Solid;
 use super::textures::{Bound, ShadowMaps};

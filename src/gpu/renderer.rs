@@ -1,28 +1,25 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! [`Renderer::prepare`] is in `prepare.rs`, [`Renderer::record`] in `record.rs`, what changes of
-//! an object in `refresh.rs`.
+//! Objects come and go in `objects.rs`; what follows from their new values is in `refresh.rs`. A
+//! frame is planned in `frame_plan.rs`, prepared in `prepare.rs`, recorded in `record.rs`.
 
 use super::arena::TableArena;
 use super::buffers::indices;
 use super::device::{Device, Shared};
+use super::entry::{Entry, ObjectId};
 use super::frame_slot::FrameSlot;
-use super::map_key::MapFacts;
 use super::memory::Buffer;
-use super::offset_surface::OffsetSurface;
 use super::output::Output;
 use super::plan::{DrawPath, Work};
-use super::shape_texture::{ArcTexture, ShapeTexture};
-use super::solid::{Solid, SolidCache};
+use super::solid::SolidCache;
 use super::target::ComputeTarget;
-use super::textures::{ShadowMaps, TextureSet, Textures};
+use super::textures::{ShadowMaps, Textures};
 use super::uploads::Uploads;
 use super::view::View;
 use crate::error::{Error, Result, Stage};
-use crate::scene::{GrownObject, Lighting, Object, Offset, Placement};
+use crate::scene::{Lighting, Object};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{Kind, LIST_LENGTHS, Met, Variant};
-use ash::vk;
+use crate::shader::Met;
 use range_alloc::RangeAllocator;
 use std::any::Any;
 use std::collections::VecDeque;
@@ -47,7 +44,7 @@ pub struct Renderer {
     pub(super) entries: Vec<Option<Entry>>,
     /// Numbers of entries in the order in which they were added.
     pub(super) order: Vec<u32>,
-    generations: Vec<u32>,
+    pub(super) generations: Vec<u32>,
     pub(super) solids: SolidCache,
     pub(super) textures: Textures,
     pub(super) shadow_maps: Arc<ShadowMaps>,
@@ -87,90 +84,6 @@ pub struct Renderer {
     /// Of its pipelines, where they are not shared.
     pub(super) owner: u64,
     pub(super) device: Arc<Shared>,
-}
-
-/// An object of a renderer. It stays the same object whatever is set, and is never another's once
-/// removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ObjectId {
-    number: u32,
-    generation: u32,
-}
-
-impl ObjectId {
-    /// The id as one number, never 0, for interfaces that carry plain numbers.
-    #[must_use]
-    pub const fn to_bits(self) -> u64 {
-        (self.generation as u64) << 32 | (self.number as u64 + 1)
-    }
-
-    /// The id of [`ObjectId::to_bits`]. Any other number is the id of no object.
-    #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // the two halves
-    pub const fn from_bits(bits: u64) -> Self {
-        Self {
-            number: (bits as u32).wrapping_sub(1),
-            generation: (bits >> 32) as u32,
-        }
-    }
-}
-
-/// One object.
-pub(super) struct Entry {
-    pub object: Object,
-    /// What was set since it was prepared last.
-    pub wanted: Option<Object>,
-    /// What is drawn in its place, in a box that has grown with the offset.
-    pub grown: Option<GrownObject>,
-    /// None before the first frame, and where that failed.
-    pub prepared: Option<Prepared>,
-    pub draw: Draw,
-    pub instances: Range<u32>,
-    /// Bits of the slots that hold something older.
-    pub stale: u32,
-}
-
-/// What follows from an object's values, whatever the view.
-pub(super) struct Prepared {
-    /// Kept, as the cache keeps nothing.
-    pub solid: Arc<Solid>,
-    /// Which level of the surface it is drawn by.
-    pub level: u8,
-    /// Surfaces of other levels that the view asked for before.
-    pub levels: Vec<Arc<OffsetSurface>>,
-    /// What it is drawn by, which is not always what was asked for.
-    pub solver: Solver,
-    /// What the search walks.
-    pub surface: Option<Arc<OffsetSurface>>,
-    /// What rays can be held to before they are searched.
-    pub wrapped: Option<Arc<OffsetSurface>>,
-    pub map: Option<Arc<ShapeTexture>>,
-    pub facts: MapFacts,
-    pub arc: Option<Arc<ArcTexture>>,
-    /// Its map's number among those that shadows read.
-    pub shadow_map: u32,
-    pub textures: Arc<TextureSet>,
-    pub variant: Variant,
-}
-
-/// What follows from the view, too.
-#[derive(Default)]
-pub(super) struct Draw {
-    pub work: Option<Work>,
-    pub pipeline: vk::Pipeline,
-    /// The pipeline that lists tiles, where the work is of beams.
-    pub list: vk::Pipeline,
-    /// The pipelines of tiles whose patches are listed.
-    pub listed: [vk::Pipeline; LIST_LENGTHS.len()],
-    /// What the pipeline was compiled for.
-    pub key: Option<(Variant, Kind)>,
-    pub tables_offset: u32,
-    /// Likewise of the patches that lists are made from, and the vector with which they begin.
-    pub patches_offset: u32,
-    pub patches: u32,
-    /// Vectors with which frusta, tables begin.
-    pub frusta: u32,
-    pub tables: u32,
 }
 
 /// Most frames in flight.
@@ -249,161 +162,6 @@ impl Renderer {
         })
     }
 
-    /// Adds an object; it is drawn from the next prepared frame on, after those that were there
-    /// before.
-    ///
-    /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Draw`] for more than 2^32
-    /// instances.
-    pub fn add(&mut self, object: Object) -> Result<ObjectId> {
-        object.check()?;
-        let instances = self.allocate_instances(object.placements().len())?;
-        let free = self.entries.iter().position(Option::is_none);
-        let number = free.unwrap_or(self.entries.len());
-        if free.is_none() {
-            self.entries.push(None);
-            self.generations.push(0);
-        }
-        self.entries[number] = Some(Entry {
-            object,
-            wanted: None,
-            grown: None,
-            prepared: None,
-            draw: Draw::default(),
-            instances,
-            stale: 0,
-        });
-        let number = u32::try_from(number).unwrap_or(u32::MAX);
-        self.order.push(number);
-        self.changed.push(number);
-        self.reordered();
-        Ok(ObjectId {
-            number,
-            generation: self.generations[number as usize],
-        })
-    }
-
-    /// Takes an object away. What frames in flight read of it is kept until they are done.
-    ///
-    /// # Errors
-    /// [`Stage::Usage`] for an object that is not there.
-    pub fn remove(&mut self, id: ObjectId) -> Result<()> {
-        self.entry(id)?;
-        let number = id.number as usize;
-        self.generations[number] += 1;
-        if let Some(entry) = self.entries[number].take() {
-            self.instances.free_range(entry.instances.clone());
-            self.retire(entry.prepared);
-        }
-        for list in [&mut self.order, &mut self.changed, &mut self.unplanned] {
-            list.retain(|&n| n != id.number);
-        }
-        for slot in &mut self.frames {
-            slot.stale.retain(|&n| n != id.number);
-        }
-        self.reordered();
-        Ok(())
-    }
-
-    /// Gives an object other values, all of them. What is equal costs nothing.
-    ///
-    /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Usage`] for an object that
-    /// is not there.
-    pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
-        object.check()?;
-        if self.entry(id)?.latest().same_look(&object) {
-            if self.entry(id)?.latest().instances != object.instances {
-                self.set_instances(id, object.instances)?;
-            }
-            return self.set_placement(id, object.placement);
-        }
-        let count = object.placements().len();
-        if self.entry(id)?.placements_len() != count {
-            self.resize_instances(id, count)?;
-        }
-        self.entry(id)?.wanted = Some(object);
-        self.changed.push(id.number);
-        Ok(())
-    }
-
-    /// Moves the surface of an object.
-    ///
-    /// # Errors
-    /// As [`Renderer::set`].
-    pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
-        offset.check()?;
-        let entry = self.entry(id)?;
-        if entry.latest().offset == offset {
-            return Ok(());
-        }
-        let (wanted, object) = (&mut entry.wanted, &entry.object);
-        wanted.get_or_insert_with(|| object.clone()).offset = offset;
-        self.changed.push(id.number);
-        Ok(())
-    }
-
-    /// Moves an object that is one copy.
-    ///
-    /// # Errors
-    /// As [`Renderer::set`].
-    pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
-        placement.check()?;
-        let entry = self.entry(id)?;
-        if entry.latest().placement == placement {
-            return Ok(());
-        }
-        entry.object.placement = placement;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.placement = placement;
-        }
-        if let Some(grown) = &mut entry.grown {
-            grown.object.placement = grown.growth.placement(&placement);
-        }
-        self.unplanned.push(id.number);
-        Ok(())
-    }
-
-    /// Gives an object other copies; none: one, at its placement.
-    ///
-    /// # Errors
-    /// As [`Renderer::set`].
-    pub fn set_instances(&mut self, id: ObjectId, instances: Vec<Placement>) -> Result<()> {
-        for placement in &instances {
-            placement.check()?;
-        }
-        let count = instances.len().max(1);
-        if self.entry(id)?.placements_len() != count {
-            self.resize_instances(id, count)?;
-        }
-        let entry = self.entry(id)?;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.instances.clone_from(&instances);
-        }
-        if let Some(grown) = &mut entry.grown {
-            let all = instances.iter().map(|p| grown.growth.placement(p));
-            grown.object.instances = all.collect();
-        }
-        entry.object.instances = instances;
-        self.unplanned.push(id.number);
-        Ok(())
-    }
-
-    /// Sets lights and shadows for all objects.
-    ///
-    /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key.
-    pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
-        lighting.check()?;
-        super::block::check_lights(lighting)?;
-        let codes = |l: &Lighting| (l.lights.len(), l.shadow);
-        if codes(lighting) != codes(&self.lighting) {
-            self.changed.extend(&self.order);
-        }
-        self.lighting = lighting.clone();
-        Ok(())
-    }
-
     /// The objects, in the order in which they were added.
     pub fn ids(&self) -> impl Iterator<Item = ObjectId> + '_ {
         self.order.iter().map(|&number| ObjectId {
@@ -469,7 +227,7 @@ impl Renderer {
             .filter_map(|&number| self.entries[number as usize].as_ref())
     }
 
-    fn entry(&mut self, id: ObjectId) -> Result<&mut Entry> {
+    pub(super) fn entry(&mut self, id: ObjectId) -> Result<&mut Entry> {
         let known = self.generations.get(id.number as usize) == Some(&id.generation);
         self.entries
             .get_mut(id.number as usize)
@@ -520,15 +278,7 @@ impl Renderer {
         }
     }
 
-    /// What depends on the order: depths that compute compares, shadows' lists.
-    fn reordered(&mut self) {
-        self.version += 1;
-        if matches!(self.output, Output::Compute(_)) {
-            self.unplanned.extend(&self.order);
-        }
-    }
-
-    fn allocate_instances(&mut self, count: usize) -> Result<Range<u32>> {
+    pub(super) fn allocate_instances(&mut self, count: usize) -> Result<Range<u32>> {
         let many = || Error::new(Stage::Draw, "more than 2^31 instances");
         let count = u32::try_from(count).map_err(|_| many())?;
         if let Ok(range) = self.instances.allocate_range(count) {
@@ -540,7 +290,7 @@ impl Renderer {
         self.instances.allocate_range(count).map_err(|_| many())
     }
 
-    fn resize_instances(&mut self, id: ObjectId, count: usize) -> Result<()> {
+    pub(super) fn resize_instances(&mut self, id: ObjectId, count: usize) -> Result<()> {
         let old = self.entry(id)?.instances.clone();
         let new = self.swap_instances(old, count)?;
         self.entry(id)?.instances = new;
@@ -561,21 +311,5 @@ impl Drop for Renderer {
         if let Ok(pipelines) = self.device.pipelines() {
             pipelines.forget(self.owner);
         }
-    }
-}
-
-impl Entry {
-    /// The values that were set last.
-    pub fn latest(&self) -> &Object {
-        self.wanted.as_ref().unwrap_or(&self.object)
-    }
-
-    /// The values that were prepared last, in a box that cuts nothing.
-    pub fn drawn(&self) -> &Object {
-        self.grown.as_ref().map_or(&self.object, |g| &g.object)
-    }
-
-    fn placements_len(&self) -> usize {
-        self.latest().placements().len()
     }
 }

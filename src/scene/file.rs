@@ -44,12 +44,10 @@
 //!
 //! A scene without a `[[light]]` has one of the defaults above; `light = []` switches it off.
 
-use super::instances::{self, unit};
+use super::instances;
 use super::keys::Keys;
-use super::{
-    BumpForm, Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
-    overrides,
-};
+use super::values::{camera, light, offset, placement, specular};
+use super::{BumpForm, Camera, Clip, Object, Scene, Shadow, Texturing, overrides};
 use crate::error::{Error, Result, Stage};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
 use crate::profile::{Profile, ProfileAxis, ProfileOptions};
@@ -68,10 +66,6 @@ const SCENE: &[&str] = &[
     "light",
     "object",
 ];
-/// Keys of `[camera]`.
-const CAMERA: &[&str] = &["eye", "target", "up", "fov_y"];
-/// Keys of `[[light]]`.
-const LIGHT: &[&str] = &["direction", "color"];
 /// Keys of `[[object]]`.
 const OBJECT: &[&str] = &[
     "profile",
@@ -428,70 +422,6 @@ fn shared<T>(
 
 const AXES: [(&str, ProfileAxis); 2] =
     [("left", ProfileAxis::Left), ("center", ProfileAxis::Center)];
-
-fn camera(table: &Table) -> Result<Camera> {
-    let keys = Keys::new(table, "camera", CAMERA)?;
-    let point =
-        |key: &str| -> Result<Option<DVec3>> { Ok(keys.numbers(key)?.map(DVec3::from_array)) };
-    let needed = |key: &str| -> Result<DVec3> {
-        point(key)?
-            .ok_or_else(|| keys.fail(key, "is missing; give three numbers, as in [1.6, 0.3, 1.1]"))
-    };
-    let plain = Camera::new(needed("eye")?, needed("target")?);
-    Ok(Camera {
-        up: point("up")?.unwrap_or(plain.up),
-        fov_y: keys.number("fov_y")?.unwrap_or(plain.fov_y),
-        ..plain
-    })
-}
-
-fn light(table: &Table, index: usize) -> Result<Light> {
-    let keys = Keys::new(table, format!("light.{index}"), LIGHT)?;
-    let plain = Light::default();
-    Ok(Light {
-        direction: keys
-            .numbers("direction")?
-            .map_or(plain.direction, DVec3::from_array),
-        color: keys.floats("color")?.unwrap_or(plain.color),
-    })
-}
-
-fn specular(keys: &Keys) -> Result<Specular> {
-    let plain = Specular::default();
-    Ok(Specular {
-        strength: keys
-            .number("specular")?
-            .map_or(plain.strength, |x| x as f32),
-        shininess: keys
-            .number("shininess")?
-            .map_or(plain.shininess, |x| x as f32),
-    })
-}
-
-fn offset(keys: &Keys) -> Result<Offset> {
-    let plain = Offset::default();
-    Ok(Offset {
-        extend: keys.number("extend")?.unwrap_or(plain.extend),
-        bevel: keys.number("bevel")?.unwrap_or(plain.bevel),
-        chamfer: keys.number("chamfer")?.unwrap_or(plain.chamfer),
-    })
-}
-
-fn placement(keys: &Keys) -> Result<Placement> {
-    let plain = Placement::default();
-    Ok(Placement {
-        position: keys
-            .numbers("position")?
-            .map_or(plain.position, DVec3::from_array),
-        rotation: match keys.numbers("rotation")? {
-            Some(xyzw) => unit(xyzw).map_err(|e| e.at_key(keys.place("rotation")))?,
-            None => plain.rotation,
-        },
-        scale: keys
-            .numbers("scale")?
-            .map_or(plain.scale, DVec3::from_array),
-    })
-}
 
 #[cfg(test)]
 #[path = "file_tests.rs"]

@@ -1,6 +1,8 @@
 //! Tests of the reader of scene files.
 
 #![allow(clippy::unwrap_used)]
+use super::super::values::{CAMERA, LIGHT};
+use super::super::{Light, Offset, Placement, Specular};
 use super::*;
 use glam::DQuat;
 

@@ -36,6 +36,8 @@ mod keys;
 mod object;
 #[cfg(feature = "scene-file")]
 mod overrides;
+#[cfg(feature = "scene-file")]
+mod values;
 mod warnings;
 
 pub use camera::CameraFrame;

@@ -1,0 +1,307 @@
+//! Chooses how each object of a frame is drawn, and lists the copies that show.
+
+use super::bins::{Batch, Bins, Cylinder};
+use super::buffers::{indices, write_slice};
+use super::entry::Entry;
+use super::hulls;
+use super::offset_surface::OffsetSurface;
+use super::output::Output;
+use super::plan::{Lists, Planner, Work};
+use super::proxy_hull;
+use super::renderer::Renderer;
+use super::table_slot::Part;
+use super::view::View;
+use crate::error::Result;
+use crate::scene::Shadow;
+use crate::settings::SearchSettings;
+use crate::shader::generated::PATCH_VECTORS;
+use crate::shader::{Dispatch, Kind, Variant};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
+use std::sync::Arc;
+
+/// From so many objects on they are planned on all cores.
+const MANY: usize = 256;
+
+impl Renderer {
+    /// Whether the output shows hulls.
+    pub(super) fn draws_hulls(&self) -> bool {
+        matches!(self.output, Output::Pass(_))
+    }
+
+    /// Chooses how everything that changed is drawn, or everything, if the view did.
+    pub(super) fn plan(&mut self, view: &View) -> Result<()> {
+        let moved = self.view != Some(*view);
+        if moved || (!self.draws_hulls() && !self.unplanned.is_empty()) {
+            // In compute all objects' lists stand in one buffer.
+            self.unplanned.clone_from(&self.order);
+        }
+        if self.unplanned.is_empty() {
+            return Ok(());
+        }
+        let asked = self.unplanned.clone();
+        self.choose_levels(view, &asked)?;
+        let mut numbers = std::mem::take(&mut self.unplanned);
+        if self.draws_hulls() {
+            numbers.sort_unstable();
+            numbers.dedup();
+        } else {
+            // All of them, in order.
+            numbers.clone_from(&self.order);
+        }
+        self.view = Some(*view);
+        self.version += 1;
+        let planned = if self.draws_hulls() {
+            self.plan_fragment(view, &numbers)
+        } else {
+            self.plan_compute(view, &numbers)
+        };
+        let mut binned = false;
+        for (number, work) in numbers.into_iter().zip(planned) {
+            binned |= self.has_bins(number);
+            self.apply(number, work)?;
+            binned |= self.has_bins(number);
+        }
+        if binned || !self.draws_hulls() {
+            self.place_bins(view);
+        }
+        Ok(())
+    }
+
+    fn has_bins(&self, number: u32) -> bool {
+        let entry = self.entries[number as usize].as_ref();
+        entry.is_some_and(|e| matches!(e.draw.work, Some(Work::Bins(_))))
+    }
+
+    /// Finds the bins of all objects that are drawn from them; lists of tiles stand behind these.
+    fn place_bins(&mut self, view: &View) {
+        let numbers: Vec<u32> = self
+            .order
+            .iter()
+            .copied()
+            .filter(|&n| self.has_bins(n))
+            .collect();
+        let batches: Vec<Batch> = numbers
+            .iter()
+            .filter_map(|&number| {
+                self.entries[number as usize]
+                    .as_ref()?
+                    .batch(&self.settings)
+            })
+            .collect();
+        let bins = Bins::new(view, &batches, self.draws_hulls());
+        drop(batches);
+        for (number, shown) in numbers.into_iter().zip(bins.shown) {
+            if let Some(entry) = &mut self.entries[number as usize] {
+                entry.draw.work = Some(Work::Bins(shown));
+            }
+            self.mark(number);
+        }
+        let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
+        self.lists.0 = bins.words;
+        for entry in self.entries.iter_mut().flatten() {
+            if let Some(Work::Beams(copies)) = &mut entry.draw.work {
+                for tiles in copies {
+                    tiles.at += begin;
+                }
+            }
+        }
+    }
+
+    fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
+        let planner = Planner {
+            view,
+            limits: &self.device.limits,
+            subgroup_size: self.device.subgroup_size,
+            least_pixels: self.settings.proxy_min_pixels,
+        };
+        let entries = &self.entries;
+        let plan = |number: &u32| {
+            let entry = entries[*number as usize].as_ref();
+            entry.map_or(Work::Nothing, |entry| {
+                let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
+                let binned = entry
+                    .prepared
+                    .as_ref()
+                    .is_some_and(|p| p.variant.takes_bins());
+                planner.fragment(entry.drawn(), wrapped, binned)
+            })
+        };
+        if numbers.len() < MANY {
+            numbers.iter().map(plan).collect()
+        } else {
+            numbers.par_iter().with_min_len(64).map(plan).collect()
+        }
+    }
+
+    /// Plans all objects; the lists that they share are kept for [`Renderer::write`].
+    fn plan_compute(&mut self, view: &View, numbers: &[u32]) -> Vec<Work> {
+        let planner = Planner {
+            view,
+            limits: &self.device.limits,
+            subgroup_size: self.device.subgroup_size,
+            least_pixels: self.settings.proxy_min_pixels,
+        };
+        let mut lists = Lists::default();
+        let mut planned: Vec<Work> = numbers
+            .iter()
+            .map(|number| {
+                let entry = self.entries[*number as usize].as_ref();
+                entry.map_or(Work::Nothing, |entry| {
+                    let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
+                    planner.compute(entry.drawn(), wrapped, &mut lists)
+                })
+            })
+            .collect();
+        // Blocks of copies stand behind those of all objects.
+        let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX);
+        for work in &mut planned {
+            if let Work::Beams(copies) = work {
+                for tiles in copies {
+                    tiles.block = tiles.block.map(|n| blocks + n);
+                }
+            }
+        }
+        self.lists = (Vec::new(), lists.tiles, lists.copies);
+        planned
+    }
+
+    /// Gives an entry the pipeline and the tables that its work asks for.
+    fn apply(&mut self, number: u32, work: Work) -> Result<()> {
+        let several = self.order.len() > 1;
+        let in_pass = self.draws_hulls();
+        let casts = self.lighting.shadow != Shadow::Off;
+        let Some(entry) = &mut self.entries[number as usize] else {
+            return Ok(());
+        };
+        let Some(prepared) = &entry.prepared else {
+            entry.draw.work = None;
+            return Ok(());
+        };
+        let variant = prepared.variant;
+        let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
+        let large = |surface: Option<&Arc<OffsetSurface>>| {
+            surface.is_some_and(|s| s.tables().own > PATCH_VECTORS as usize)
+        };
+        let (kind, variant) = match &work {
+            Work::Hull(_) => {
+                frusta = prepared.wrapped.as_ref();
+                if frusta.is_some_and(|s| s.is_boundary()) {
+                    // A hull's own fragments read none of the tree; shadows' rays do.
+                    tables = tables.filter(|_| casts);
+                    (Kind::Hull, variant.in_shell())
+                } else {
+                    (Kind::ConvexHull, variant)
+                }
+            }
+            Work::Box => (Kind::Box, variant.with_tables(!large(tables))),
+            Work::Beams(copies) => {
+                let variant = variant.with_tables(!large(tables));
+                // Of an envelope beams alone read something.
+                tables = tables.or(prepared.wrapped.as_ref());
+                let several = several || copies.len() > 1;
+                (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
+            }
+            Work::Bins(_) if in_pass => (Kind::Bins, variant.with_tables(!large(tables))),
+            Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
+                let variant = variant.with_tables(!large(tables));
+                (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
+            }
+            Work::Rectangle(_) | Work::Bins(_) | Work::Nothing => {
+                let variant = variant.with_tables(!large(tables));
+                (
+                    Kind::Compute,
+                    variant.dispatched(Dispatch::Rectangle, several),
+                )
+            }
+        };
+        let mut replaced = Vec::new();
+        let mut put = |surface: Option<&_>, part| match surface {
+            Some(surface) => self.arena.place(surface, part).map(|(begin, old)| {
+                replaced.extend(old);
+                Some(begin)
+            }),
+            None => Ok(None),
+        };
+        let bands_at = put(frusta, Part::Frusta)?;
+        let tables_at = put(tables, Part::Tables)?;
+        let listed = matches!(&work, Work::Beams(copies) if copies.iter().any(|c| c.listed));
+        let patches_at = put(prepared.wrapped.as_ref().filter(|_| listed), Part::Patches)?;
+        let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
+        if entry.draw.key != Some((variant, kind)) {
+            let pipelines = self.device.pipelines()?;
+            entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
+            entry.draw.key = Some((variant, kind));
+        }
+        if matches!(work, Work::Beams(_)) {
+            let pipelines = self.device.pipelines()?;
+            let get = |variant, kind| pipelines.get(variant, kind, &self.output, self.owner);
+            let kind = if listed { Kind::List } else { Kind::Beam };
+            entry.draw.list = get(Variant::BEAM, kind)?;
+            if listed {
+                let lists = variant.listed(variant.depth_keep != 0);
+                for (to, variant) in entry.draw.listed.iter_mut().zip(lists) {
+                    *to = get(variant, Kind::Listed)?;
+                }
+            }
+        }
+        entry.draw.frusta = bands_at.unwrap_or(0);
+        entry.draw.tables = tables_at.unwrap_or(0);
+        entry.draw.tables_offset = 16 * entry.draw.tables;
+        entry.draw.patches = patches_at.unwrap_or(0);
+        entry.draw.patches_offset = 16 * entry.draw.patches;
+        entry.draw.work = Some(work);
+        self.mark(number);
+        for old in replaced {
+            self.retire(old);
+        }
+        self.fit_corners(most)
+    }
+
+    /// Sees to it that there are corners for hulls of so many frusta.
+    fn fit_corners(&mut self, frusta: usize) -> Result<()> {
+        let bytes = 4 * proxy_hull::corners(u32::try_from(frusta).unwrap_or(u32::MAX)) as usize;
+        if self.corners.bytes < bytes as u64 {
+            let frusta = frusta.next_power_of_two();
+            let all = proxy_hull::indices(frusta);
+            let mut corners = indices(&self.device, 4 * all.len())?;
+            write_slice(&mut corners, &all)?;
+            let old = std::mem::replace(&mut self.corners, corners);
+            self.retire(old);
+        }
+        Ok(())
+    }
+}
+
+impl Entry {
+    /// Its copies, as bins are found for them.
+    fn batch(&self, settings: &SearchSettings) -> Option<Batch<'_>> {
+        let (prepared, object) = (self.prepared.as_ref()?, self.drawn());
+        let block = self.block(settings)?;
+        let [side, radius, low, high] = block.bounds.map(f64::from);
+        let replicas = object.repeat != [1; 3];
+        let shape = Cylinder {
+            axis: if replicas {
+                DVec2::ZERO
+            } else {
+                DVec2::new(block.axis[0].into(), block.axis[1].into())
+            },
+            radius: if replicas { side * SQRT_2 } else { radius },
+            low: if replicas { 0.0 } else { low },
+            high: if replicas { 1.0 } else { high },
+        };
+        let surface = prepared
+            .surface
+            .as_ref()
+            .filter(|_| settings.occlusion_culling);
+        Some(Batch {
+            placements: object.placements(),
+            first: self.instances.start,
+            shape,
+            inner: surface
+                .filter(|s| hulls::is_whole(object, s))
+                .and_then(|s| s.inner()),
+        })
+    }
+}
