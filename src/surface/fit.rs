@@ -48,9 +48,11 @@ const STEEP: f64 = 4.0;
 /// divided by small differences.
 const FLAT: f64 = 8.0;
 /// Farthest that a guard may reach past a patch's end, along the boundary, where a shorter patch
-/// reaches less far, object units: a twentieth of a texel of 512 rows. On a flat patch with a sheet
+/// reaches less far, object units: less than a tenth of a texel of 512 rows. On a flat patch with a sheet
 /// near, the guard goes by `z` alone, and a rounding of `z` moves `r` by `|dr/dz|` times as much.
-const REACH: f64 = 0.05 / 512.0;
+const REACH: f64 = 0.08 / 512.0;
+/// Most bands of a flat segment.
+const MOST_BANDS: f64 = 128.0;
 /// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute
 /// rounding error.
 const SMALL: f64 = 0.05;
@@ -152,11 +154,17 @@ impl Cutter {
             let (width, widest) = ((p.x - q.x).abs(), p.x.max(q.x));
             let slope = width / climb;
             let most = self.largest_bend(widest, 2.0 * widest * slope);
-            if slope > FLAT && (slope * slope > most || self.reach(q, p, slope * slope) > REACH) {
-                let bow = climb * (width / (4.0 * (p.x + q.x))).min(1.0);
-                let bands = (bow / (0.5 * self.tolerance)).ceil().clamp(1.0, 64.0);
+            let bend = slope * slope;
+            if bend > most || (slope > FLAT && self.reach(q, p, bend) > REACH) {
+                // Between radii r and r + d a paraboloid through both ends is d^2 / (8 slope r) off:
+                // half of the tolerance where the roots of the radii are evenly spaced.
+                let [from, to] = [q.x, p.x].map(f64::sqrt);
+                let bands = ((to - from).abs() / (slope * self.tolerance).sqrt()).ceil();
+                let bands = bands.clamp(1.0, MOST_BANDS);
                 for k in 1..bands as u32 {
-                    self.points.push(q.lerp(p, f64::from(k) / bands));
+                    let root = from + (to - from) * f64::from(k) / bands;
+                    let share = (root * root - q.x) / (p.x - q.x);
+                    self.points.push(q.lerp(p, share));
                 }
             }
         }
