@@ -1008,12 +1008,6 @@ typedef struct RevmapPass {
 } RevmapPass;
 
 /**
- * An object of a renderer; never 0. It stays the same object whatever is set, and is never
- * another's once removed.
- */
-typedef uint64_t RevmapObject;
-
-/**
  * What compute shaders write to.
  */
 typedef struct RevmapComputeTarget {
@@ -1038,6 +1032,40 @@ typedef struct RevmapComputeTarget {
      */
     const VkImageView *images;
 } RevmapComputeTarget;
+
+/**
+ * A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
+ * (0 <= z <= w).
+ */
+typedef struct RevmapView {
+    /**
+     * sizeof(RevmapView).
+     */
+    uint32_t size;
+    /**
+     * A RevmapDepthOrder: the one of the renderer's output.
+     */
+    uint32_t depth_order;
+    /**
+     * From world to view space.
+     */
+    double view[16];
+    /**
+     * From view to clip space.
+     */
+    double projection[16];
+    /**
+     * Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
+     * Vulkan 1.1.
+     */
+    double viewport[4];
+} RevmapView;
+
+/**
+ * An object of a renderer; never 0. It stays the same object whatever is set, and is never
+ * another's once removed.
+ */
+typedef uint64_t RevmapObject;
 
 /**
  * What a renderer holds and did.
@@ -1093,34 +1121,6 @@ typedef struct RevmapStatistics {
      */
     uint32_t notes;
 } RevmapStatistics;
-
-/**
- * A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
- * (0 <= z <= w).
- */
-typedef struct RevmapView {
-    /**
-     * sizeof(RevmapView).
-     */
-    uint32_t size;
-    /**
-     * A RevmapDepthOrder: the one of the renderer's output.
-     */
-    uint32_t depth_order;
-    /**
-     * From world to view space.
-     */
-    double view[16];
-    /**
-     * From view to clip space.
-     */
-    double projection[16];
-    /**
-     * Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
-     * Vulkan 1.1.
-     */
-    double viewport[4];
-} RevmapView;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1398,72 +1398,6 @@ RevmapResult revmap_renderer_create_compute(const struct RevmapDevice *device,
                                             struct RevmapRenderer **renderer);
 
 /**
- * Adds an object, which is drawn from the next prepared frame on.
- *
- * Fails with REVMAP_RESULT_SCENE for values out of range.
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_add(struct RevmapRenderer *renderer,
-                                 const struct RevmapObjectInfo *info,
-                                 RevmapObject *object);
-
-/**
- * Takes an object away. What frames in flight read of it is kept until they are done.
- *
- * Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
- * one.
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObject object);
-
-/**
- * Gives an object other values, all of them. Values that are equal cost nothing.
- *
- * Fails with REVMAP_RESULT_SCENE for values out of range.
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
-                                 RevmapObject object,
-                                 const struct RevmapObjectInfo *info);
-
-/**
- * Moves the surface of an object: extension, bevel and chamfer.
- *
- * Fails as revmap_renderer_set().
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_set_offset(struct RevmapRenderer *renderer,
-                                        RevmapObject object,
-                                        const struct RevmapOffset *offset);
-
-/**
- * Moves an object that is one copy.
- *
- * Fails as revmap_renderer_set().
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_set_placement(struct RevmapRenderer *renderer,
-                                           RevmapObject object,
-                                           const struct RevmapPlacement *placement);
-
-/**
- * Gives an object other copies; with a count of 0 it is one, at its placement.
- *
- * Fails as revmap_renderer_set().
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_set_instances(struct RevmapRenderer *renderer,
-                                           RevmapObject object,
-                                           const struct RevmapPlacement *instances,
-                                           size_t count);
-
-/**
  * Sets lights and shadows for all objects.
  *
  * Thread: one at a time for a renderer.
@@ -1482,22 +1416,12 @@ RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
                                                 const struct RevmapComputeTarget *target);
 
 /**
- * Tells what a renderer holds and did. The size of statistics must be set.
+ * Gives the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: what a
+ * RevmapComputeTarget's colours are cleared to.
  *
- * Thread: one at a time for a renderer.
+ * Thread: any.
  */
-RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
-                                        struct RevmapStatistics *statistics);
-
-/**
- * Gives a note: what was done in another way than asked for, and why. The text lasts as long as
- * the renderer.
- *
- * Thread: one at a time for a renderer.
- */
-RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
-                                  uint32_t number,
-                                  const char **note);
+uint32_t revmap_color_word(float red, float green, float blue, float alpha);
 
 /**
  * Destroys a renderer; null is none. The frames that it recorded must be done.
@@ -1576,6 +1500,72 @@ RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
                                             uint32_t slot);
 
 /**
+ * Adds an object, which is drawn from the next prepared frame on.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_add(struct RevmapRenderer *renderer,
+                                 const struct RevmapObjectInfo *info,
+                                 RevmapObject *object);
+
+/**
+ * Takes an object away. What frames in flight read of it is kept until they are done.
+ *
+ * Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
+ * one.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObject object);
+
+/**
+ * Gives an object other values, all of them. Values that are equal cost nothing.
+ *
+ * Fails with REVMAP_RESULT_SCENE for values out of range.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
+                                 RevmapObject object,
+                                 const struct RevmapObjectInfo *info);
+
+/**
+ * Moves the surface of an object: extension, bevel and chamfer.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_offset(struct RevmapRenderer *renderer,
+                                        RevmapObject object,
+                                        const struct RevmapOffset *offset);
+
+/**
+ * Moves an object that is one copy.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_placement(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *placement);
+
+/**
+ * Gives an object other copies; with a count of 0 it is one, at its placement.
+ *
+ * Fails as revmap_renderer_set().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_instances(struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           const struct RevmapPlacement *instances,
+                                           size_t count);
+
+/**
  * Lists every pipeline that the objects can reach while parameters, lights, placements and the
  * view change. Other techniques make others necessary: textures where there were none, replicas,
  * shadows; in compute also more objects or copies than one. Nothing is compiled yet.
@@ -1619,6 +1609,24 @@ RevmapResult revmap_prewarm_destroy(struct RevmapPrewarm *prewarm);
 RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
                                             VkCommandBuffer command_buffer,
                                             uint32_t slot);
+
+/**
+ * Tells what a renderer holds and did. The size of statistics must be set.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
+                                        struct RevmapStatistics *statistics);
+
+/**
+ * Gives a note: what was done in another way than asked for, and why. The text lasts as long as
+ * the renderer.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
+                                  uint32_t number,
+                                  const char **note);
 
 /**
  * Makes a colour map from a PNG or JPEG file. The path is UTF-8.

@@ -1,18 +1,19 @@
 //! Renderers: objects that are recorded into a host's command buffers.
 
 pub mod frame;
+pub mod objects;
 pub mod prewarm;
+pub mod statistics;
 
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, handle};
-use crate::object::{RevmapObjectInfo, placements};
-use crate::pointers::{described, fill, list, put, read, take};
-use crate::values::{RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch, size};
+use crate::pointers::{described, list, put, read};
+use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
-use revmap::gpu::{ComputeTarget, DrawPath, ObjectId, Output, PassFormats, PassKind, Renderer};
-use std::ffi::{CString, c_char};
+use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, Renderer};
+use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
 /// Objects on a device, drawn into whatever the host draws into, with several frames in flight,
@@ -30,10 +31,6 @@ pub(crate) struct Recorder {
     /// The renderer's notes that were asked for.
     notes: Vec<CString>,
 }
-
-/// An object of a renderer; never 0. It stays the same object whatever is set, and is never
-/// another's once removed.
-pub type RevmapObject = u64;
 
 /// The pass in which fragments are drawn.
 #[repr(C)]
@@ -84,38 +81,7 @@ pub struct RevmapComputeTarget {
     pub images: *const vk::ImageView,
 }
 
-/// What a renderer holds and did.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RevmapStatistics {
-    /// sizeof(RevmapStatistics).
-    pub size: u32,
-    /// Objects.
-    pub objects: u32,
-    /// Surfaces made so far: one for each profile under each offset that no object had in the frame
-    /// before.
-    pub surfaces_made: u64,
-    /// Bytes of shape maps with their tables of lengths, on the device.
-    pub shape_map_bytes: u64,
-    /// Bytes of colour and height maps, on the device.
-    pub texture_bytes: u64,
-    /// Objects that the last prepared frame does not draw at all (compute alone).
-    pub drawn_not: u32,
-    /// Objects that it draws by their boxes.
-    pub drawn_by_box: u32,
-    /// By hulls.
-    pub drawn_by_hull: u32,
-    /// By rectangles of the screen.
-    pub drawn_by_rectangle: u32,
-    /// By bins of the screen.
-    pub drawn_by_bins: u32,
-    /// By beams.
-    pub drawn_by_beams: u32,
-    /// Notes that revmap_renderer_note() gives.
-    pub notes: u32,
-}
-
-described!(RevmapPass, RevmapComputeTarget, RevmapStatistics);
+described!(RevmapPass, RevmapComputeTarget);
 
 impl RevmapPass {
     unsafe fn formats(&self) -> Outcome<PassFormats> {
@@ -221,129 +187,6 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     })
 }
 
-/// Adds an object, which is drawn from the next prepared frame on.
-///
-/// Fails with REVMAP_RESULT_SCENE for values out of range.
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_add(
-    renderer: *mut RevmapRenderer,
-    info: *const RevmapObjectInfo,
-    object: *mut RevmapObject,
-) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(object, "object", || {
-            let added = read(info)?.object()?;
-            with(renderer, |r| {
-                r.prepared.fill(false);
-                Ok(r.renderer.add(added)?.to_bits())
-            })
-        })
-    })
-}
-
-/// Takes an object away. What frames in flight read of it is kept until they are done.
-///
-/// Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
-/// one.
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub extern "C" fn revmap_renderer_remove(
-    renderer: *mut RevmapRenderer,
-    object: RevmapObject,
-) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            r.prepared.fill(false);
-            Ok(r.renderer.remove(ObjectId::from_bits(object))?)
-        })
-    })
-}
-
-/// Gives an object other values, all of them. Values that are equal cost nothing.
-///
-/// Fails with REVMAP_RESULT_SCENE for values out of range.
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_set(
-    renderer: *mut RevmapRenderer,
-    object: RevmapObject,
-    info: *const RevmapObjectInfo,
-) -> RevmapResult {
-    enter(|| {
-        // SAFETY: the caller's pointers.
-        let values = unsafe { read(info)?.object() }?;
-        let id = ObjectId::from_bits(object);
-        with(renderer, |r| Ok(r.renderer.set(id, values)?))
-    })
-}
-
-/// Moves the surface of an object: extension, bevel and chamfer.
-///
-/// Fails as revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_set_offset(
-    renderer: *mut RevmapRenderer,
-    object: RevmapObject,
-    offset: *const RevmapOffset,
-) -> RevmapResult {
-    enter(|| {
-        // SAFETY: the caller's pointer.
-        let offset = unsafe { take(offset, "offset") }?;
-        let id = ObjectId::from_bits(object);
-        with(renderer, |r| {
-            Ok(r.renderer.set_offset(id, offset.into())?)
-        })
-    })
-}
-
-/// Moves an object that is one copy.
-///
-/// Fails as revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_set_placement(
-    renderer: *mut RevmapRenderer,
-    object: RevmapObject,
-    placement: *const RevmapPlacement,
-) -> RevmapResult {
-    enter(|| {
-        // SAFETY: the caller's pointer.
-        let placement = unsafe { take(placement, "placement") }?;
-        let id = ObjectId::from_bits(object);
-        with(renderer, |r| {
-            Ok(r.renderer.set_placement(id, placement.into())?)
-        })
-    })
-}
-
-/// Gives an object other copies; with a count of 0 it is one, at its placement.
-///
-/// Fails as revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_set_instances(
-    renderer: *mut RevmapRenderer,
-    object: RevmapObject,
-    instances: *const RevmapPlacement,
-    count: usize,
-) -> RevmapResult {
-    enter(|| {
-        // SAFETY: the caller's, as many as it says.
-        let all = placements(unsafe { list(instances, count, "instances") }?);
-        let id = ObjectId::from_bits(object);
-        with(renderer, |r| Ok(r.renderer.set_instances(id, all)?))
-    })
-}
-
 /// Sets lights and shadows for all objects.
 ///
 /// Thread: one at a time for a renderer.
@@ -390,69 +233,13 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
     })
 }
 
-impl Recorder {
-    fn statistics(&self) -> RevmapStatistics {
-        let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let paths = self.renderer.draw_paths();
-        let drawn = |path| number(paths.iter().filter(|p| **p == path).count());
-        let [shape_map_bytes, texture_bytes] = self.renderer.map_bytes();
-        RevmapStatistics {
-            size: size(size_of::<RevmapStatistics>()),
-            objects: number(paths.len()),
-            surfaces_made: self.renderer.rebuild_count(),
-            shape_map_bytes,
-            texture_bytes,
-            drawn_not: drawn(DrawPath::Nothing),
-            drawn_by_box: drawn(DrawPath::Box),
-            drawn_by_hull: drawn(DrawPath::Hull),
-            drawn_by_rectangle: drawn(DrawPath::Rectangle),
-            drawn_by_bins: drawn(DrawPath::Bins),
-            drawn_by_beams: drawn(DrawPath::Beams),
-            notes: number(self.renderer.notes().len()),
-        }
-    }
-}
-
-/// Tells what a renderer holds and did. The size of statistics must be set.
+/// Gives the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: what a
+/// RevmapComputeTarget's colours are cleared to.
 ///
-/// Thread: one at a time for a renderer.
+/// Thread: any.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_statistics(
-    renderer: *const RevmapRenderer,
-    statistics: *mut RevmapStatistics,
-) -> RevmapResult {
-    enter(|| {
-        let value = with(renderer, |r| Ok(r.statistics()))?;
-        // SAFETY: the caller's structure.
-        unsafe { fill(statistics, value) }
-    })
-}
-
-/// Gives a note: what was done in another way than asked for, and why. The text lasts as long as
-/// the renderer.
-///
-/// Thread: one at a time for a renderer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn revmap_renderer_note(
-    renderer: *const RevmapRenderer,
-    number: u32,
-    note: *mut *const c_char,
-) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
-        put(note, "note", || {
-            with(renderer, |r| {
-                let Recorder {
-                    renderer, notes, ..
-                } = r;
-                for text in &renderer.notes()[notes.len()..] {
-                    notes.push(CString::new(text.replace('\0', " ")).unwrap_or_default());
-                }
-                let note = notes.get(number as usize).map(|text| text.as_ptr());
-                note.ok_or_else(|| Fault::usage(format!("there is no note {number}")))
-            })
-        })
-    })
+pub extern "C" fn revmap_color_word(red: f32, green: f32, blue: f32, alpha: f32) -> u32 {
+    ComputeTarget::color_word([red, green, blue, alpha])
 }
 
 /// Destroys a renderer; null is none. The frames that it recorded must be done.

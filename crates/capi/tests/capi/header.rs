@@ -30,7 +30,8 @@ fn sources() -> Vec<PathBuf> {
     for name in SOURCES {
         all.push(folder().join(format!("src/{name}.rs")));
         if name == "renderer" {
-            all.extend(["frame", "prewarm"].map(|n| folder().join(format!("src/renderer/{n}.rs"))));
+            let parts = ["frame", "objects", "prewarm", "statistics"];
+            all.extend(parts.map(|n| folder().join(format!("src/renderer/{n}.rs"))));
         }
     }
     all

@@ -4,7 +4,8 @@ use crate::programs::{compile, folder};
 use revmap_capi::device::{RevmapDeviceInfo, RevmapHostDevice, RevmapRequirements};
 use revmap_capi::object::RevmapObjectInfo;
 use revmap_capi::offscreen::{RevmapPicture, RevmapScene, RevmapTimes};
-use revmap_capi::renderer::{RevmapComputeTarget, RevmapPass, RevmapStatistics};
+use revmap_capi::renderer::statistics::RevmapStatistics;
+use revmap_capi::renderer::{RevmapComputeTarget, RevmapPass};
 use revmap_capi::values::{
     RevmapCamera, RevmapLight, RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch,
     RevmapView,

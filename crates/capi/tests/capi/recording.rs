@@ -18,7 +18,9 @@ use revmap_capi::fault::*;
 use revmap_capi::object::*;
 use revmap_capi::profile::*;
 use revmap_capi::renderer::frame::*;
+use revmap_capi::renderer::objects::*;
 use revmap_capi::renderer::prewarm::*;
+use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
 use revmap_capi::values::*;
 use std::ffi::CStr;
@@ -292,7 +294,7 @@ impl<'a> Words<'a> {
     }
 
     /// Clears depths and colours, for compute shaders.
-    fn clear(&self, cmd: vk::CommandBuffer) {
+    fn clear(&self, cmd: vk::CommandBuffer, color: u32) {
         let device = &self.host.device;
         let (half, bytes) = (4 * PIXELS as u64, vk::WHOLE_SIZE);
         let barrier = |from, to| {
@@ -321,7 +323,7 @@ impl<'a> Words<'a> {
                 &[],
             );
             device.cmd_fill_buffer(cmd, self.raw, 0, half, 1f32.to_bits());
-            device.cmd_fill_buffer(cmd, self.raw, half, bytes, 0);
+            device.cmd_fill_buffer(cmd, self.raw, half, bytes, color);
             device.cmd_pipeline_barrier(
                 cmd,
                 copy,
@@ -379,6 +381,8 @@ impl Drop for Words<'_> {
     }
 }
 
+const BACKGROUND: [f32; 4] = [0.05, 0.2, 0.6, 0.5];
+
 #[test]
 fn compute_writes_what_rust_draws() {
     let host = open();
@@ -406,7 +410,8 @@ fn compute_writes_what_rust_draws() {
                 ok(revmap_renderer_prepare_camera(
                     renderer, cmd, slot, &camera, w, h, near, far,
                 ));
-                words.clear(cmd);
+                let [r, g, b, a] = BACKGROUND;
+                words.clear(cmd, revmap_color_word(r, g, b, a));
                 assert_eq!(
                     revmap_renderer_record(renderer, cmd, slot),
                     RevmapResult::Usage
@@ -438,7 +443,9 @@ fn compute_writes_what_rust_draws() {
         ..Settings::default()
     };
     let own = Device::open_validated(None).unwrap();
-    let mut offscreen = Offscreen::new(&own, &scene(), &settings).unwrap();
+    let mut scene = scene();
+    scene.background = BACKGROUND;
+    let mut offscreen = Offscreen::new(&own, &scene, &settings).unwrap();
     offscreen.draw().unwrap();
     let wanted = Picture::of(&offscreen.read().unwrap()).rgba;
     assert!(words.colors() == wanted, "pixels differ");

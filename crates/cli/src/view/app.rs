@@ -1,5 +1,7 @@
 //! The window's events.
 
+use super::View;
+use super::actions::Change;
 use super::controls::{self, Asked, Told};
 use super::inspect::Inspector;
 #[cfg(feature = "shaderc")]
@@ -8,11 +10,9 @@ use super::saved;
 use super::shown::Shown;
 use super::stage::Stage;
 use super::times::Times;
-use super::{View, orbit};
 use crate::output;
 use revmap::error::{Error, Result, Stage as Where};
 use revmap::scene::file::SceneFile;
-use revmap::settings::Planes;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -22,45 +22,43 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
-/// Changes that can be undone.
-const UNDOS: usize = 100;
 /// Longer pauses of the controls than this are none.
 const SOON: Duration = Duration::from_secs(5);
 
 /// The window and what is in it. The stage goes before the window, and what is made on its device
 /// before the stage.
-struct Open {
-    inspector: Inspector,
+pub(super) struct Open {
+    pub inspector: Inspector,
     #[cfg(feature = "shaderc")]
     reload: Option<Reload>,
-    stage: Stage,
+    pub stage: Stage,
     gui: egui_winit::State,
-    window: Rc<Window>,
+    pub window: Rc<Window>,
 }
 
 pub struct App {
-    options: View,
+    pub(super) options: View,
     /// Calls for a frame from another thread.
     wake: EventLoopProxy<()>,
     /// Where what is shown was read from.
-    source: PathBuf,
-    file: SceneFile,
-    first: Shown,
-    shown: Shown,
+    pub(super) source: PathBuf,
+    pub(super) file: SceneFile,
+    pub(super) first: Shown,
+    pub(super) shown: Shown,
     /// Counts changes of what is shown.
-    version: u64,
-    undo: Vec<Shown>,
-    /// Whether a change is going on that is one for undoing, as a slider is dragged.
-    changing: bool,
-    open: Option<Open>,
+    pub(super) version: u64,
+    pub(super) undo: Vec<Shown>,
+    /// The change that goes on: all of it is undone at once.
+    pub(super) changing: Option<Change>,
+    pub(super) open: Option<Open>,
     times: Times,
-    problem: Option<String>,
+    pub(super) problem: Option<String>,
     /// What was written last.
-    written: String,
+    pub(super) written: String,
     /// Whether the next frame is kept as a picture.
-    keep: bool,
-    pointer: [f64; 2],
-    held: Option<MouseButton>,
+    pub(super) keep: bool,
+    pub(super) pointer: [f64; 2],
+    pub(super) held: Option<MouseButton>,
     drawn: u32,
     ended: Result<()>,
 }
@@ -78,7 +76,7 @@ impl App {
             shown,
             version: 0,
             undo: Vec::new(),
-            changing: false,
+            changing: None,
             open: None,
             times,
             problem: None,
@@ -107,7 +105,7 @@ impl App {
     fn open(&self, events: &ActiveEventLoop) -> Result<Open> {
         let (width, height) = self.options.size;
         let attributes = Window::default_attributes()
-            .with_title(format!("revmap: {}", self.options.scene.display()))
+            .with_title(title(&self.source))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
         let window = window.map_err(|e| Error::new(Where::Device, format!("no window: {e}")))?;
@@ -209,8 +207,8 @@ impl App {
             Some(open) => open,
             None => return Ok(None),
         };
-        if self.changing && !context.input(|i| i.pointer.any_down()) {
-            self.changing = false;
+        if self.changing == Some(Change::Held) && !context.input(|i| i.pointer.any_down()) {
+            self.changing = None;
         }
         if let Err(error) = open.stage.set(&self.shown) {
             self.problem = Some(error.to_string());
@@ -251,107 +249,15 @@ impl App {
         Ok(Some(pause))
     }
 
-    /// Does what the controls ask for.
-    fn take(&mut self, asked: Asked, before: Shown) {
-        if asked != Asked::default() {
-            self.problem = None;
-            self.version += 1;
-        }
-        if asked.undo {
-            if let Some(shown) = self.undo.pop() {
-                self.shown = shown;
-            }
-        } else if asked.reset {
-            self.undo.push(before);
-            self.shown = self.first.clone();
-        } else if asked.changed && !self.changing {
-            self.undo.push(before);
-            self.changing = true;
-        }
-        if self.undo.len() > UNDOS {
-            self.undo.remove(0);
-        }
-        self.keep |= asked.screenshot;
-        if asked.save {
-            let (first, shown) = (&self.first.scene, &self.shown.scene);
-            let written = saved::write_scene(&self.source, &self.file, first, shown);
-            self.say(written);
-        }
-        if asked.turntable {
-            let written = self.write_turntable();
-            self.say(written);
-        }
-    }
-
-    /// Says what was written, or why it was not.
-    fn say(&mut self, written: Result<PathBuf>) {
-        match written {
-            Ok(path) => {
-                self.written = format!("written: {}", path.display());
-                output::result(&self.written);
-            }
-            Err(error) => self.problem = Some(error.to_string()),
-        }
-    }
-
-    /// Draws a whole turn about the target into a new folder of numbered pictures.
-    fn write_turntable(&mut self) -> Result<PathBuf> {
-        let folder = saved::beside(&self.source, "-turntable");
-        let Some(open) = &mut self.open else {
-            return Ok(folder);
-        };
-        std::fs::create_dir(&folder).map_err(|e| {
-            let message = format!("cannot be made ({e}); move the scene to another folder");
-            Error::new(Where::Frame, message).in_file(&folder)
-        })?;
-        let device = open.stage.device.clone();
-        let size = open.window.inner_size();
-        let settings = self
-            .shown
-            .settings((size.width, size.height), Planes::Color);
-        for n in 0..saved::TURNTABLE {
-            let turned = saved::turned(&self.shown, n);
-            let frame = open.inspector.draw(&turned, settings, &device)?;
-            revmap::frame::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
-        }
-        Ok(folder)
-    }
-
-    /// Shows what was dropped on the window.
-    fn load(&mut self, path: &Path) {
-        let read = SceneFile::open(path).and_then(|mut file| Ok((file.scene(&[])?, file)));
-        match read {
-            Ok((scene, file)) => {
-                self.undo.clear(); // of another file
-                self.shown.scene = scene;
-                self.first = self.shown.clone();
-                (self.source, self.file) = (path.to_owned(), file);
-                (self.problem, self.version) = (None, self.version + 1);
-            }
-            Err(error) => self.problem = Some(error.to_string()),
-        }
-    }
-
-    fn drag(&mut self, to: [f64; 2]) {
-        let by = [to[0] - self.pointer[0], to[1] - self.pointer[1]];
-        self.pointer = to;
-        let height = self
-            .open
-            .as_ref()
-            .map_or(1, |open| open.window.inner_size().height);
-        self.version += u64::from(self.held.is_some());
-        let camera = &mut self.shown.scene.camera;
-        match self.held {
-            Some(MouseButton::Left) => orbit::turn(camera, by),
-            Some(_) => orbit::shift(camera, by, f64::from(height)),
-            None => {}
-        }
-    }
-
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
         self.ended = Err(error);
         events.exit();
     }
+}
+
+/// Of a window that shows this file.
+pub(super) fn title(source: &Path) -> String {
+    format!("revmap: {}", source.display())
 }
 
 impl ApplicationHandler for App {
@@ -405,12 +311,12 @@ impl ApplicationHandler for App {
                     MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
                     MouseScrollDelta::PixelDelta(pixels) => pixels.y / 50.0,
                 };
-                orbit::zoom(&mut self.shown.scene.camera, steps);
-                self.version += 1;
+                self.zoom(steps);
                 window.request_redraw();
             }
             WindowEvent::RedrawRequested => match self.frame() {
                 Err(error) => self.fail(events, error),
+                Ok(None) => events.set_control_flow(ControlFlow::Wait),
                 Ok(_) if self.options.frames.is_some_and(|n| self.drawn >= n) => events.exit(),
                 Ok(_) if self.options.frames.is_some() => window.request_redraw(),
                 Ok(Some(Duration::ZERO)) => window.request_redraw(),

@@ -1,5 +1,6 @@
 //! `revmap view`: a window with live controls.
 
+mod actions;
 mod app;
 mod barriers;
 mod controls;

@@ -61,10 +61,7 @@ impl Swapchain {
         let host = self.host.clone();
         // SAFETY: the device is idle; the old chain is retired by the new one, and destroyed.
         unsafe {
-            let can = host
-                .surfaces
-                .get_physical_device_surface_capabilities(host.physical, host.surface);
-            let can = vulkan(can, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR")?;
+            let can = self.capabilities()?;
             if !can.supported_usage_flags.contains(Self::USAGE) {
                 let message = "the window's pictures cannot be copied; choose another device";
                 return Err(Error::new(Stage::Device, message));
@@ -147,10 +144,29 @@ impl Swapchain {
             .image_indices(&indices);
         // SAFETY: the picture was acquired, and what signals its semaphore was submitted.
         match unsafe { self.functions.queue_present(self.host.queue, &info) } {
-            Ok(suboptimal) => Ok(!suboptimal),
+            // Some systems call a picture suboptimal whose size is right; another would be, too.
+            Ok(suboptimal) => Ok(!suboptimal || self.fits()?),
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(false),
             Err(code) => vulkan(Err(code), "vkQueuePresentKHR"),
         }
+    }
+
+    /// Whether the window has the pictures' size.
+    fn fits(&self) -> Result<bool> {
+        let current = self.capabilities()?.current_extent;
+        Ok(current.width == u32::MAX || current == self.extent)
+    }
+
+    fn capabilities(&self) -> Result<vk::SurfaceCapabilitiesKHR> {
+        let Vulkan {
+            surfaces,
+            physical,
+            surface,
+            ..
+        } = &*self.host;
+        // SAFETY: a plain query.
+        let can = unsafe { surfaces.get_physical_device_surface_capabilities(*physical, *surface) };
+        vulkan(can, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR")
     }
 
     fn destroy(&mut self) {

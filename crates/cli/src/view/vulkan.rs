@@ -240,8 +240,12 @@ unsafe fn choose(
         .ok()
         .filter(|v| !v.is_empty());
     let choice = choice.or(variable.as_deref()).map(str::to_lowercase);
-    let mut refused =
-        device_error("no Vulkan device shows pictures in this window; install a driver");
+    let mut refused = device_error(match &choice {
+        None => "no Vulkan device shows pictures in this window; install a driver".to_owned(),
+        Some(choice) => {
+            format!("no device {choice} shows pictures in this window; `revmap devices` lists all")
+        }
+    });
     let mut found = Vec::new();
     // SAFETY: plain queries of live handles.
     unsafe {
@@ -250,6 +254,9 @@ unsafe fn choose(
             "vkEnumeratePhysicalDevices",
         )
         .map_err(into_device)?;
+        // A number is an index, unless there are fewer.
+        let number = choice.as_ref().and_then(|c| c.parse::<usize>().ok());
+        let number = number.filter(|n| *n < all.len());
         for (index, physical) in all.into_iter().enumerate() {
             let properties = instance.get_physical_device_properties(physical);
             let name = properties
@@ -257,9 +264,12 @@ unsafe fn choose(
                 .unwrap_or_default()
                 .to_string_lossy()
                 .to_lowercase();
-            let named =
-                |wanted: &String| wanted.parse() == Ok(index) || name.contains(wanted.as_str());
-            if !choice.as_ref().is_none_or(named) {
+            let named = match (number, &choice) {
+                (Some(number), _) => number == index,
+                (None, Some(part)) => name.contains(part.as_str()),
+                (None, None) => true,
+            };
+            if !named {
                 continue;
             }
             let needs = match Requirements::of(instance, physical) {

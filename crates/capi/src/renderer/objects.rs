@@ -1,0 +1,139 @@
+//! Objects of a renderer: added, changed, removed.
+
+use super::{RevmapRenderer, with};
+use crate::fault::{Outcome, RevmapResult, enter};
+use crate::object::{RevmapObjectInfo, placements};
+use crate::pointers::{list, put, read, take};
+use crate::values::{RevmapOffset, RevmapPlacement};
+use revmap::gpu::{ObjectId, Renderer};
+
+/// An object of a renderer; never 0. It stays the same object whatever is set, and is never
+/// another's once removed.
+pub type RevmapObject = u64;
+
+/// Calls `change` with a renderer and one of its objects.
+fn with_object(
+    renderer: *const RevmapRenderer,
+    object: RevmapObject,
+    change: impl FnOnce(&mut Renderer, ObjectId) -> revmap::Result<()>,
+) -> Outcome<()> {
+    let id = ObjectId::from_bits(object);
+    with(renderer, |r| Ok(change(&mut r.renderer, id)?))
+}
+
+/// Adds an object, which is drawn from the next prepared frame on.
+///
+/// Fails with REVMAP_RESULT_SCENE for values out of range.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_add(
+    renderer: *mut RevmapRenderer,
+    info: *const RevmapObjectInfo,
+    object: *mut RevmapObject,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers.
+    enter(|| unsafe {
+        put(object, "object", || {
+            let added = read(info)?.object()?;
+            with(renderer, |r| {
+                r.prepared.fill(false);
+                Ok(r.renderer.add(added)?.to_bits())
+            })
+        })
+    })
+}
+
+/// Takes an object away. What frames in flight read of it is kept until they are done.
+///
+/// Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
+/// one.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_remove(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.prepared.fill(false);
+            Ok(r.renderer.remove(ObjectId::from_bits(object))?)
+        })
+    })
+}
+
+/// Gives an object other values, all of them. Values that are equal cost nothing.
+///
+/// Fails with REVMAP_RESULT_SCENE for values out of range.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    info: *const RevmapObjectInfo,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointers.
+        let values = unsafe { read(info)?.object() }?;
+        with_object(renderer, object, |r, id| r.set(id, values))
+    })
+}
+
+/// Moves the surface of an object: extension, bevel and chamfer.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_offset(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    offset: *const RevmapOffset,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointer.
+        let offset = unsafe { take(offset, "offset") }?;
+        with_object(renderer, object, |r, id| r.set_offset(id, offset.into()))
+    })
+}
+
+/// Moves an object that is one copy.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_placement(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    placement: *const RevmapPlacement,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's pointer.
+        let placement = unsafe { take(placement, "placement") }?;
+        with_object(renderer, object, |r, id| {
+            r.set_placement(id, placement.into())
+        })
+    })
+}
+
+/// Gives an object other copies; with a count of 0 it is one, at its placement.
+///
+/// Fails as revmap_renderer_set().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_set_instances(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    instances: *const RevmapPlacement,
+    count: usize,
+) -> RevmapResult {
+    enter(|| {
+        // SAFETY: the caller's, as many as it says.
+        let all = placements(unsafe { list(instances, count, "instances") }?);
+        with_object(renderer, object, |r, id| r.set_instances(id, all))
+    })
+}

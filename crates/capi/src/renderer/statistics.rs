@@ -1,0 +1,106 @@
+//! What a renderer holds and did.
+
+use super::{Recorder, RevmapRenderer, with};
+use crate::fault::{Fault, RevmapResult, enter};
+use crate::pointers::{described, fill, put};
+use crate::values::size;
+use revmap::gpu::DrawPath;
+use std::ffi::{CString, c_char};
+
+/// What a renderer holds and did.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapStatistics {
+    /// sizeof(RevmapStatistics).
+    pub size: u32,
+    /// Objects.
+    pub objects: u32,
+    /// Surfaces made so far: one for each profile under each offset that no object had in the frame
+    /// before.
+    pub surfaces_made: u64,
+    /// Bytes of shape maps with their tables of lengths, on the device.
+    pub shape_map_bytes: u64,
+    /// Bytes of colour and height maps, on the device.
+    pub texture_bytes: u64,
+    /// Objects that the last prepared frame does not draw at all (compute alone).
+    pub drawn_not: u32,
+    /// Objects that it draws by their boxes.
+    pub drawn_by_box: u32,
+    /// By hulls.
+    pub drawn_by_hull: u32,
+    /// By rectangles of the screen.
+    pub drawn_by_rectangle: u32,
+    /// By bins of the screen.
+    pub drawn_by_bins: u32,
+    /// By beams.
+    pub drawn_by_beams: u32,
+    /// Notes that revmap_renderer_note() gives.
+    pub notes: u32,
+}
+
+described!(RevmapStatistics);
+
+impl Recorder {
+    fn statistics(&self) -> RevmapStatistics {
+        let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let paths = self.renderer.draw_paths();
+        let drawn = |path| number(paths.iter().filter(|p| **p == path).count());
+        let [shape_map_bytes, texture_bytes] = self.renderer.map_bytes();
+        RevmapStatistics {
+            size: size(size_of::<RevmapStatistics>()),
+            objects: number(paths.len()),
+            surfaces_made: self.renderer.rebuild_count(),
+            shape_map_bytes,
+            texture_bytes,
+            drawn_not: drawn(DrawPath::Nothing),
+            drawn_by_box: drawn(DrawPath::Box),
+            drawn_by_hull: drawn(DrawPath::Hull),
+            drawn_by_rectangle: drawn(DrawPath::Rectangle),
+            drawn_by_bins: drawn(DrawPath::Bins),
+            drawn_by_beams: drawn(DrawPath::Beams),
+            notes: number(self.renderer.notes().len()),
+        }
+    }
+}
+
+/// Tells what a renderer holds and did. The size of statistics must be set.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_statistics(
+    renderer: *const RevmapRenderer,
+    statistics: *mut RevmapStatistics,
+) -> RevmapResult {
+    enter(|| {
+        let value = with(renderer, |r| Ok(r.statistics()))?;
+        // SAFETY: the caller's structure.
+        unsafe { fill(statistics, value) }
+    })
+}
+
+/// Gives a note: what was done in another way than asked for, and why. The text lasts as long as
+/// the renderer.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_note(
+    renderer: *const RevmapRenderer,
+    number: u32,
+    note: *mut *const c_char,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe {
+        put(note, "note", || {
+            with(renderer, |r| {
+                let Recorder {
+                    renderer, notes, ..
+                } = r;
+                for text in &renderer.notes()[notes.len()..] {
+                    notes.push(CString::new(text.replace('\0', " ")).unwrap_or_default());
+                }
+                let note = notes.get(number as usize).map(|text| text.as_ptr());
+                note.ok_or_else(|| Fault::usage(format!("there is no note {number}")))
+            })
+        })
+    })
+}

@@ -1,0 +1,187 @@
+//! Wrong arguments of renderers and their objects; threads that use one at once.
+
+use super::*;
+use revmap_capi::object::*;
+use revmap_capi::renderer::frame::*;
+use revmap_capi::renderer::objects::*;
+use revmap_capi::renderer::prewarm::*;
+use revmap_capi::renderer::statistics::*;
+use revmap_capi::renderer::*;
+
+#[test]
+fn renderers_and_objects() {
+    let (device, profile) = (device(), spindle());
+    let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
+    let mut search = defaults!(revmap_search_defaults, RevmapSearch);
+    let (mut renderer, mut object) = (null_mut(), 0);
+    // SAFETY: live values, or null; no command buffer is recorded into.
+    unsafe {
+        let mut pass: RevmapPass = zeroed();
+        pass.size = size_of::<RevmapPass>() as u32;
+        pass.samples = 1;
+        pass.depth_format = ash::vk::Format::D32_SFLOAT;
+        pass.color_format_count = 1;
+        let mut make = |pass: &RevmapPass, frames| {
+            revmap_renderer_create(device, pass, null(), frames, &mut renderer)
+        };
+        fail! {
+            Usage, "color formats is null": make(&pass, 2);
+        }
+        let color = ash::vk::Format::R8G8B8A8_SRGB;
+        pass.color_formats = &color;
+        fail! {
+            Usage, "frames in flight": make(&pass, 0);
+            Usage, "3 samples": make(&RevmapPass { samples: 3, ..pass }, 2);
+            Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
+            Usage, "VkRenderPass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
+        }
+        ok(make(&pass, 2));
+        search.solver = 99;
+        let mut other = null_mut();
+        fail! {
+            Usage, "RevmapSolver": revmap_renderer_create_compute(device, 0, &search, 2, &mut other);
+        }
+        ok(revmap_renderer_create_compute(
+            device,
+            0,
+            null(),
+            2,
+            &mut other,
+        ));
+
+        fail! {
+            Handle, "the profile is null": revmap_renderer_add(renderer, &info, &mut object);
+        }
+        info.profile = profile;
+        info.placement.scale = [0.0; 3];
+        fail! {
+            Scene, "scale": revmap_renderer_add(renderer, &info, &mut object);
+        }
+        info.placement.scale = [1.0; 3];
+        info.instance_count = 3;
+        fail! {
+            Usage, "instances is null": revmap_renderer_add(renderer, &info, &mut object);
+        }
+        info.instance_count = 0;
+        assert_eq!(object, 0, "a failure has written an object");
+        ok(revmap_renderer_add(renderer, &info, &mut object));
+        let moved = RevmapOffset {
+            extend: 0.01,
+            bevel: 0.0,
+            chamfer: 1.0,
+        };
+        ok(revmap_renderer_set_offset(renderer, object, &moved));
+        fail! {
+            Usage, "null": revmap_renderer_set_offset(renderer, object, null());
+            Scene, "extend": revmap_renderer_set_offset(renderer, object, &RevmapOffset { extend: f64::NAN, ..moved });
+        }
+        for unknown in [0, object + 1, u64::MAX] {
+            fail! {
+                Usage, "object": revmap_renderer_set_offset(renderer, unknown, &moved);
+                Usage, "object": revmap_renderer_remove(renderer, unknown);
+            }
+        }
+        fail! {
+            Usage, "null": revmap_renderer_set_instances(renderer, object, null(), 2);
+        }
+
+        // Nothing was prepared.
+        let none = ash::vk::CommandBuffer::null();
+        let some = <ash::vk::CommandBuffer as ash::vk::Handle>::from_raw(16);
+        fail! {
+            Usage, "VkCommandBuffer is null": revmap_renderer_record(renderer, none, 0);
+        }
+        for slot in [0, 2, u32::MAX] {
+            fail! {
+                Usage, "not prepared": revmap_renderer_record(renderer, some, slot);
+                Usage, "not prepared": revmap_renderer_record_compute(renderer, some, slot);
+            }
+        }
+        let mut view: RevmapView = zeroed();
+        fail! {
+            Usage, "RevmapView": revmap_renderer_prepare(renderer, some, 0, &view);
+        }
+        view.size = size_of::<RevmapView>() as u32;
+        fail! {
+            Scene, "view": revmap_renderer_prepare(renderer, some, 0, &view);
+        }
+        let mut target: RevmapComputeTarget = zeroed();
+        target.size = size_of::<RevmapComputeTarget>() as u32;
+        fail! {
+            Usage, "VkBuffer": revmap_renderer_set_compute_target(other, &target);
+        }
+        target.words = <ash::vk::Buffer as ash::vk::Handle>::from_raw(16);
+        fail! {
+            Usage, "draws in a pass": revmap_renderer_set_compute_target(renderer, &target);
+            Usage, "no note 0": revmap_renderer_note(renderer, 0, &mut null());
+        }
+
+        let mut prewarm = null_mut();
+        ok(revmap_renderer_prewarm(renderer, &mut prewarm));
+        let mut count = 0;
+        ok(revmap_prewarm_count(prewarm, &mut count));
+        assert!(count > 0);
+        ok(revmap_prewarm_destroy(prewarm));
+        fail! {
+            Handle, "the prewarm was destroyed": revmap_prewarm_compile(prewarm);
+        }
+
+        // The profile and the device are kept by what uses them.
+        ok(revmap_profile_destroy(profile));
+        ok(revmap_device_destroy(device));
+        fail! {
+            Handle, "the profile was destroyed": revmap_renderer_set(renderer, object, &info);
+        }
+        ok(revmap_renderer_remove(renderer, object));
+        fail! {
+            Usage, "removed": revmap_renderer_remove(renderer, object);
+        }
+        ok(revmap_renderer_destroy(renderer));
+        fail! {
+            Handle, "the renderer was destroyed": revmap_renderer_remove(renderer, object);
+        }
+        ok(revmap_renderer_destroy(other));
+    }
+}
+
+/// Threads that use one renderer at once are refused or served; none is harmed, and what was
+/// accepted counts.
+#[test]
+fn threads_at_once_are_refused_or_served() {
+    let (device, profile) = (device(), spindle());
+    let mut renderer = null_mut();
+    // SAFETY: live values.
+    ok(unsafe { revmap_renderer_create_compute(device, 0, null(), 1, &mut renderer) });
+    let (shared, of) = (renderer.addr(), profile.addr());
+    let work = || {
+        let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
+        info.profile = std::ptr::without_provenance(of);
+        let add = || {
+            let mut object = 0;
+            // SAFETY: live values; the handle is a number.
+            unsafe {
+                revmap_renderer_add(std::ptr::without_provenance_mut(shared), &info, &mut object)
+            }
+        };
+        (0..500).map(|_| add()).collect::<Vec<_>>()
+    };
+    let results: Vec<RevmapResult> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(work)).collect();
+        threads
+            .into_iter()
+            .flat_map(|t| t.join().unwrap())
+            .collect()
+    });
+    let added = results.iter().filter(|r| **r == Is::Ok).count();
+    assert!(results.iter().all(|r| [Is::Ok, Is::Busy].contains(r)));
+    // SAFETY: plain numbers, live values.
+    unsafe {
+        let mut statistics: RevmapStatistics = zeroed();
+        statistics.size = size_of::<RevmapStatistics>() as u32;
+        ok(revmap_renderer_statistics(renderer, &mut statistics));
+        assert_eq!(statistics.objects as usize, added);
+    }
+    ok(revmap_renderer_destroy(renderer));
+    ok(revmap_profile_destroy(profile));
+    ok(revmap_device_destroy(device));
+}

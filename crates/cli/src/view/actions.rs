@@ -1,0 +1,157 @@
+//! What the controls and the pointer ask for, done.
+
+use super::app::{App, title};
+use super::controls::Asked;
+use super::shown::Shown;
+use super::{orbit, saved};
+use crate::output;
+use revmap::error::{Error, Result, Stage as Where};
+use revmap::scene::file::SceneFile;
+use revmap::settings::Planes;
+use std::path::{Path, PathBuf};
+use winit::event::MouseButton;
+
+/// Changes that can be undone.
+const UNDOS: usize = 100;
+
+/// A change that goes on over several frames, and is undone at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// With a button held: of a slider, or of the camera.
+    Held,
+    /// With the wheel, until something else is changed.
+    Wheel,
+}
+
+impl App {
+    /// Does what the controls ask for.
+    pub fn take(&mut self, asked: Asked, before: Shown) {
+        if asked != Asked::default() {
+            self.problem = None;
+            self.version += 1;
+        }
+        if asked.undo {
+            self.changing = None;
+            if let Some(shown) = self.undo.pop() {
+                self.shown = shown;
+            }
+        } else if asked.reset {
+            self.changing = None;
+            self.remember(Change::Held, before);
+            self.shown = self.first.clone();
+        } else if asked.changed {
+            self.remember(Change::Held, before);
+        }
+        self.keep |= asked.screenshot;
+        if asked.save {
+            let (first, shown) = (&self.first.scene, &self.shown.scene);
+            let written = saved::write_scene(&self.source, &self.file, first, shown);
+            self.say(written);
+        }
+        if asked.turntable {
+            let written = self.write_turntable();
+            self.say(written);
+        }
+    }
+
+    /// Says what was written, or why it was not.
+    pub fn say(&mut self, written: Result<PathBuf>) {
+        match written {
+            Ok(path) => {
+                self.written = format!("written: {}", path.display());
+                output::result(&self.written);
+            }
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+    }
+
+    /// Draws a whole turn about the target into a new folder of numbered pictures: all of them, or
+    /// no folder.
+    fn write_turntable(&mut self) -> Result<PathBuf> {
+        let folder = saved::beside(&self.source, "-turntable");
+        std::fs::create_dir(&folder).map_err(|e| {
+            let message = format!("cannot be made ({e}); move the scene to another folder");
+            Error::new(Where::Frame, message).in_file(&folder)
+        })?;
+        match self.write_turned(&folder) {
+            Ok(()) => Ok(folder),
+            Err(error) => {
+                // Why it failed says more than why its remains cannot be removed.
+                let _ = std::fs::remove_dir_all(&folder);
+                Err(error)
+            }
+        }
+    }
+
+    fn write_turned(&mut self, folder: &Path) -> Result<()> {
+        let Some(open) = &mut self.open else {
+            return Ok(());
+        };
+        let size = open.window.inner_size();
+        let settings = self
+            .shown
+            .settings((size.width, size.height), Planes::Color);
+        for n in 0..saved::TURNTABLE {
+            let turned = saved::turned(&self.shown, n);
+            let frame = open.inspector.draw(&turned, settings, &open.stage.device)?;
+            revmap::frame::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
+        }
+        Ok(())
+    }
+
+    /// Shows what was dropped on the window.
+    pub fn load(&mut self, path: &Path) {
+        let read = SceneFile::open(path).and_then(|mut file| Ok((file.scene(&[])?, file)));
+        match read {
+            Ok((scene, file)) => {
+                // Of another file.
+                (self.undo, self.changing) = (Vec::new(), None);
+                self.shown.scene = scene;
+                self.first = self.shown.clone();
+                (self.source, self.file) = (path.to_owned(), file);
+                (self.problem, self.version) = (None, self.version + 1);
+                if let Some(open) = &self.open {
+                    open.window.set_title(&title(path));
+                }
+            }
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+    }
+
+    /// The pointer has moved; what it holds follows.
+    pub fn drag(&mut self, to: [f64; 2]) {
+        let by = [to[0] - self.pointer[0], to[1] - self.pointer[1]];
+        self.pointer = to;
+        let Some(button) = self.held.filter(|_| by != [0.0; 2]) else {
+            return;
+        };
+        self.remember(Change::Held, self.shown.clone());
+        self.version += 1;
+        let open = self.open.as_ref();
+        let height = open.map_or(1, |open| open.window.inner_size().height);
+        let camera = &mut self.shown.scene.camera;
+        match button {
+            MouseButton::Left => orbit::turn(camera, by),
+            _ => orbit::shift(camera, by, f64::from(height)),
+        }
+    }
+
+    /// The wheel was turned by so many steps.
+    pub fn zoom(&mut self, steps: f64) {
+        self.remember(Change::Wheel, self.shown.clone());
+        self.version += 1;
+        orbit::zoom(&mut self.shown.scene.camera, steps);
+    }
+
+    /// Keeps what was shown before a change for undoing, unless the change goes on.
+    fn remember(&mut self, change: Change, before: Shown) {
+        if self.changing == Some(change) {
+            return;
+        }
+        self.changing = Some(change);
+        self.undo.push(before);
+        if self.undo.len() > UNDOS {
+            self.undo.remove(0);
+        }
+    }
+}
