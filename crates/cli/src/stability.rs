@@ -93,8 +93,12 @@ impl Stability {
         })?;
         drop(progress);
         report::write(&out, &chosen, &solvers, &outcome, &machine)?;
-        for line in report::table(&chosen, &solvers, &outcome).aligned().lines() {
-            output::result(line);
+        let tables = [
+            Some(report::table(&chosen, &solvers, &outcome)),
+            report::flicker(&chosen, &solvers, &outcome),
+        ];
+        for table in tables.iter().flatten() {
+            table.aligned().lines().for_each(output::result);
         }
         output::result(&format!(
             "{}: {} pictures",

@@ -22,6 +22,8 @@ pub struct Case {
     pub steps: Vec<Step>,
     /// What the default is known to fail, each with its reason.
     pub known: Vec<Known>,
+    /// Whether its scenes are the frames of a motion, between which no pixel may flicker.
+    pub motion: bool,
 }
 
 /// One scene of a case.
@@ -41,6 +43,8 @@ pub struct Step {
     pub map_source: Option<MapSource>,
     /// Storage of distances.
     pub map_format: MapFormat,
+    /// Which of its frames is judged: the first, or a later one of the same renderer.
+    pub frame: u32,
 }
 
 /// Part of a case that the default is known to fail.
@@ -76,6 +80,7 @@ impl Step {
             map_rows: None,
             map_source: None,
             map_format: MapFormat::R32,
+            frame: 1,
         }
     }
 

@@ -61,6 +61,38 @@ pub struct Judged {
     pub color: usize,
     /// Pixels whose colour in the other stage is a fault; 0 in the first stage that is judged.
     pub stages: usize,
+    /// Pixels that flicker: those whose fault is another one than in the frame before; `None` in a
+    /// frame that has none before it.
+    pub flicker: Option<usize>,
+}
+
+/// The faults of a frame, pixel by pixel.
+#[derive(Clone, Debug)]
+pub struct Faults {
+    /// Of each faulty pixel the error of its distance, world units: infinite for a ghost or a miss,
+    /// 0 where the colour alone is wrong.
+    pixels: Vec<Option<f64>>,
+    /// What errors may differ by: each of two is known to within this.
+    tolerance: f64,
+}
+
+impl Faults {
+    /// Pixels that flicker from this frame to the `next`: faulty in one of them alone, or in both
+    /// by errors of distance that differ by more than the tolerances of the two.
+    ///
+    /// Pixels that are right in both frames follow the reference to within the tolerance, so their
+    /// changes are the reference's.
+    #[must_use]
+    pub fn flicker(&self, next: &Self) -> usize {
+        let bound = self.tolerance + next.tolerance;
+        let pairs = self.pixels.iter().zip(&next.pixels);
+        let flickers = |pair: &(&Option<f64>, &Option<f64>)| match pair {
+            (None, None) => false,
+            (Some(a), Some(b)) => a != b && (a - b).abs() > bound,
+            _ => true,
+        };
+        pairs.filter(flickers).count()
+    }
 }
 
 impl Judged {
@@ -76,10 +108,18 @@ impl Judged {
         self.faults() as f64 / self.hits.max(1) as f64
     }
 
+    /// Pixels that flicker as a part of those that the reference hits.
+    #[must_use]
+    pub fn flicker_share(&self) -> Option<f64> {
+        Some(self.flicker? as f64 / self.hits.max(1) as f64)
+    }
+
     /// Whether the picture passes.
     #[must_use]
     pub fn passes(&self, limits: &Limits) -> bool {
-        self.not_finite == 0 && self.faults() <= limits.faults
+        self.not_finite == 0
+            && self.faults() <= limits.faults
+            && self.flicker.is_none_or(|count| count <= limits.faults)
     }
 }
 
@@ -181,6 +221,14 @@ impl<'a> Truth<'a> {
     /// # Errors
     /// When the frames differ in size.
     pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<Judged> {
+        Ok(self.judge_pixels(frame, other)?.0)
+    }
+
+    /// The same, with the faults of each pixel.
+    ///
+    /// # Errors
+    /// When the frames differ in size.
+    pub fn judge_pixels(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
         let options = CompareOptions {
             texel: self.texel,
             pixels_per_degree: None,
@@ -195,7 +243,20 @@ impl<'a> Truth<'a> {
                 .filter(|&k| !wrong[k] && is_strange(truth, frame, k, colors_about(truth, k)))
                 .count()
         };
-        Ok(Judged {
+        let strange = if self.colors {
+            self.strange(frame, &wrong)
+        } else {
+            vec![false; wrong.len()]
+        };
+        let error = |k: usize| {
+            let off = f64::from(frame.distance[k]) - f64::from(self.frame.distance[k]);
+            (wrong[k] || strange[k]).then_some(if strange[k] { 0.0 } else { off })
+        };
+        let faults = Faults {
+            pixels: (0..wrong.len()).map(error).collect(),
+            tolerance: self.tolerance[1] * self.texel / TEXEL,
+        };
+        let judged = Judged {
             hits: errors.hits,
             missed: errors.missed,
             ghost: errors.ghost,
@@ -204,17 +265,15 @@ impl<'a> Truth<'a> {
             normal_rms: errors.normal.map(|n| n.rms),
             not_finite: not_finite(frame),
             exhausted: frame.exhausted,
-            color: if self.colors {
-                self.strange(frame, &wrong)
-            } else {
-                0
-            },
+            color: strange.iter().filter(|s| **s).count(),
             stages: other.map_or(0, unlike),
-        })
+            flicker: None,
+        };
+        Ok((judged, faults))
     }
 
-    /// Pixels that are not wrong but for their colour.
-    fn strange(&self, frame: &Frame, wrong: &[bool]) -> usize {
+    /// Which pixels are not wrong but for their colour.
+    fn strange(&self, frame: &Frame, wrong: &[bool]) -> Vec<bool> {
         let is = |k: usize| {
             let mut range = colors_about(&self.frame, k);
             if wrong[k] || !is_strange(&self.frame, frame, k, range) {
@@ -235,10 +294,7 @@ impl<'a> Truth<'a> {
             }
             is_strange(&self.frame, frame, k, range)
         };
-        (0..frame.pixels())
-            .into_par_iter()
-            .filter(|&k| is(k))
-            .count()
+        (0..frame.pixels()).into_par_iter().map(is).collect()
     }
 
     /// The ray through the middle of pixel `k`, its direction of length 1.

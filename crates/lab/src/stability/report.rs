@@ -1,6 +1,7 @@
 //! What a run of the catalogue writes: the table, `results.csv`, `report.html`.
 
 use super::case::Case;
+use super::judge::Judged;
 use super::run::{Outcome, Sheet, Trial, Verdict};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
@@ -79,6 +80,29 @@ pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
     )
 }
 
+/// The table of flicker: of each motion and search the worst share of pixels that flicker from one
+/// frame to the next, percent of the hit pixels. None where no motion was drawn.
+#[must_use]
+pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<Table> {
+    let names = solvers.iter().map(|s| s.name());
+    let share = |k: usize, solver: Solver| {
+        let judged = of(outcome, k, solver).filter_map(|t| t.judged.as_ref().ok());
+        judged.filter_map(Judged::flicker_share).reduce(f64::max)
+    };
+    let record = |k: usize| {
+        let shares = solvers.iter().map(|&s| share(k, s));
+        let cells =
+            shares.map(|s| s.map_or(String::new(), |s| format!("{} %", number(100.0 * s, 2))));
+        std::iter::once(cases[k].name.to_owned())
+            .chain(cells)
+            .collect()
+    };
+    let drawn = |k: &usize| cases[*k].motion && outcome.trials.iter().any(|t| t.case == *k);
+    let records: Vec<_> = (0..cases.len()).filter(drawn).map(record).collect();
+    let header = std::iter::once("flicker").chain(names);
+    (!records.is_empty()).then(|| Table::new(header, records))
+}
+
 /// What the default fails, a line for each.
 #[must_use]
 pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
@@ -88,8 +112,14 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
         let what = match &t.judged {
             Err(message) => message.clone(),
             Ok(j) => format!(
-                "{} wrong, {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, of {} hit",
-                j.wrong, j.not_finite, j.exhausted, j.color, j.stages, j.hits
+                "{} wrong, {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, {} that flicker, of {} hit",
+                j.wrong,
+                j.not_finite,
+                j.exhausted,
+                j.color,
+                j.stages,
+                j.flicker.unwrap_or(0),
+                j.hits
             ),
         };
         format!(
@@ -122,6 +152,7 @@ pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
         "exhausted",
         "color_faults",
         "stage_faults",
+        "flicker",
         "limit",
         "ms",
         "error",
@@ -152,8 +183,9 @@ pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
                 j.exhausted.to_string(),
                 j.color.to_string(),
                 j.stages.to_string(),
+                optional(j.flicker_share()),
             ]),
-            Err(_) => record.extend(std::iter::repeat_n(String::new(), 10)),
+            Err(_) => record.extend(std::iter::repeat_n(String::new(), 11)),
         }
         record.extend([
             trial.limits.faults.to_string(),
@@ -291,6 +323,13 @@ pub fn write(
     );
     page.chapter("All cases");
     page.table(&table(cases, solvers, outcome), &[0, 1]);
+    if let Some(flicker) = flicker(cases, solvers, outcome) {
+        page.text(
+            "Pixels that flicker from one frame of a motion to the next: their fault in the one is none in the other, or errs by another distance. A pixel that is right in \
+             both changes as the reference does.",
+        );
+        page.table(&flicker, &[0]);
+    }
     let drawn = |k: usize| outcome.trials.iter().any(|t| t.case == k);
     for (k, case) in cases.iter().enumerate().filter(|(k, _)| drawn(*k)) {
         page.chapter(case.name);

@@ -1,13 +1,14 @@
 //! Draws every case by every search in both stages and judges each picture.
 
 use super::case::{Case, Step};
-use super::judge::{Judged, Limits, Truth};
+use super::judge::{Faults, Judged, Limits, Truth};
 use crate::compare::{CompareOptions, Heat, heat_map};
 use crate::report::folder::write_text;
 use revmap::error::Result;
 use revmap::frame::{Frame, Picture};
 use revmap::gpu::{Device, Offscreen};
 use revmap::settings::{DrawStage, Settings, Solver};
+use std::collections::HashMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -131,6 +132,9 @@ pub fn run(
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
         let mut worst: Option<(f64, Sheet)> = None;
+        // The faults of each search and stage in the frame before, where frames are those of a
+        // motion.
+        let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
         for index in chosen(case) {
             if !progress(case.name, done, total) {
                 return Ok(outcome);
@@ -150,7 +154,15 @@ pub fn run(
                     let ms = begun.elapsed().as_secs_f64() * 1e3;
                     let limits = Limits::of((step.size.0 * step.size.1) as usize);
                     let judged = match &frame {
-                        Ok(frame) => Ok(truth.judge(frame, first.as_ref())?),
+                        Ok(frame) => {
+                            let (mut judged, faults) = truth.judge_pixels(frame, first.as_ref())?;
+                            if case.motion {
+                                let last = before.get(&(solver, stage));
+                                judged.flicker = last.map(|last| last.flicker(&faults));
+                                before.insert((solver, stage), faults);
+                            }
+                            Ok(judged)
+                        }
                         Err(error) => Err(error.to_string()),
                     };
                     let known = case.known(stage, step.value);
@@ -210,7 +222,9 @@ pub fn draw(
         ..Settings::exact()
     };
     let mut offscreen = Offscreen::new(device, scene, &settings)?;
-    offscreen.draw()?;
+    for _ in 0..step.frame {
+        offscreen.draw()?;
+    }
     let frame = offscreen.read()?;
     drop(offscreen);
     device.check()?;

@@ -100,6 +100,38 @@ fn planted_faults_fail() {
     assert_eq!(stages.stages, 5);
 }
 
+/// A fault that is in one frame alone flickers, and one that changes; one that stays does not.
+#[test]
+fn planted_flicker_is_counted() {
+    let step = step();
+    let scene = step.read(std::path::Path::new("")).unwrap();
+    let truth = Truth::new(&scene, step.size).unwrap();
+    let hit: Vec<usize> = (0..truth.frame.pixels())
+        .filter(|&k| truth.frame.hits(k))
+        .collect();
+    let faults = |spots: &[usize], change: &dyn Fn(&mut Frame, usize)| {
+        let mut frame = truth.frame.clone();
+        spots.iter().for_each(|&k| change(&mut frame, hit[k]));
+        truth.judge_pixels(&frame, None).unwrap().1
+    };
+    let none = faults(&[], &|_, _| {});
+    let spots = [1000, 1010, 1020];
+    let missed = faults(&spots, &|f, k| f.distance[k] = f32::INFINITY);
+    let behind = faults(&spots, &|f, k| f.distance[k] += 0.01);
+    let farther = faults(&spots, &|f, k| f.distance[k] += 0.0101);
+    let much_farther = faults(&spots, &|f, k| f.distance[k] += 0.02);
+    let dark = faults(&spots, &|f, k| f.color[k] = [0.0, 0.0, 0.0, 1.0]);
+    for fault in [&missed, &behind, &dark] {
+        assert_eq!((none.flicker(fault), fault.flicker(&none)), (3, 3));
+        assert_eq!(fault.flicker(fault), 0);
+    }
+    assert_eq!(missed.flicker(&behind), 3);
+    assert_eq!(behind.flicker(&farther), 0);
+    assert_eq!(behind.flicker(&much_farther), 3);
+    let elsewhere = faults(&[1000, 2000], &|f, k| f.distance[k] = f32::INFINITY);
+    assert_eq!(missed.flicker(&elsewhere), 3);
+}
+
 /// A seed gives one scene; its text is one that the program reads.
 #[test]
 fn random_scenes_are_scenes() {

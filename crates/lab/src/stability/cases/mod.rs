@@ -59,6 +59,7 @@ fn case(
         cure,
         steps: Vec::new(),
         known: Vec::new(),
+        motion: false,
     }
 }
 

@@ -12,6 +12,8 @@ pub(super) fn cases() -> Vec<Case> {
         flat(),
         sub_pixel(),
         moved_by_a_thousandth(),
+        creeping_offset(),
+        many_frames(),
     ]
 }
 
@@ -149,11 +151,58 @@ fn moved_by_a_thousandth() -> Case {
                 Step::new(f64::from(k), text.solid(&SPINDLE, "").done())
             })
             .collect(),
+        motion: true,
         ..case(
             "creeping-camera",
             "movement of the camera, thousandths of a pixel",
             "A search with a threshold flickers where a thousandth of a pixel decides whether its last step ends within it.",
             "Roots are solved, not approached.",
+        )
+    }
+}
+
+fn creeping_offset() -> Case {
+    Case {
+        steps: (0..8)
+            .map(|k| {
+                let by = 1e-4 * f64::from(k);
+                let keys = format!(
+                    "extend = {:?}\nbevel = {:?}\nchamfer = 0.3",
+                    0.02 + by,
+                    0.2 + by
+                );
+                let text = Text::seen(eye(20.0, 2.2), MIDDLE).solid(&SPINDLE, &keys);
+                Step::new(f64::from(k), text.done())
+            })
+            .collect(),
+        motion: true,
+        ..case(
+            "creeping-offset",
+            "growth of extension and bevel, ten-thousandths",
+            "An outline that is made anew in every frame may be cut into other pieces, or close in one frame and not in the next.",
+            "Each outline is exact: pieces that differ lie within the same tolerance.",
+        )
+    }
+}
+
+fn many_frames() -> Case {
+    let text = Text::seen(eye(20.0, 2.0), MIDDLE)
+        .solid(&SPINDLE, "")
+        .done();
+    Case {
+        steps: [1u32, 10, 100]
+            .into_iter()
+            .map(|n| Step {
+                frame: n,
+                ..Step::new(f64::from(n), text.clone())
+            })
+            .collect(),
+        motion: true,
+        ..case(
+            "many-frames",
+            "frames of one renderer until the one that is judged",
+            "What one frame leaves behind shows in a later one: a depth, a list, a table that was not made anew.",
+            "All that a frame reads is written in it, or does not change.",
         )
     }
 }
