@@ -50,9 +50,9 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     ray.speed = ray.speed2 * m.inverse_speed;
     ray.j2 = max(m.a * m.c - m.b * m.b, 0.0);
     ray.nearest = sqrt(ray.j2 / max(m.a, 1e-20));
-    // A quarter of a texel, or a tenth of a pixel where texels are smaller.
+    // A quarter of a texel, or a tenth of a pixel where texels are smaller; of the way through a flat box a hundredth.
     float texel = solid.map.z * m.inverse_speed;
-    float least = max(0.25 * texel, 0.1 * pixel);
+    float least = max(0.25 * texel, 0.1 * min(pixel, 0.1 * m.s_end));
     vec2 rz = point_rz(m, s);
     // The last step: where it began, and F at both of its ends. Of none the secant shows the surface where the ray is.
     float before = s;

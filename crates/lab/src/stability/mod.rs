@@ -8,6 +8,7 @@
 //! | [`judge`] | errors of one frame against the double-precision reference, and the limits derived for them |
 //! | [`run`] | every case, search and stage, drawn and judged |
 //! | [`report`] | the table, `results.csv`, `report.html` |
+//! | [`glance`] | a failure as the naked eye sees it: the part of a picture that differs most, enlarged |
 //! | [`random`] | random scenes held to the same limits; a failing one is reduced to the smallest that still fails |
 //!
 //! A case passes when no pixel is wrong beyond its limits ([`judge::Limits`]), no number of the
@@ -15,6 +16,7 @@
 
 pub mod case;
 pub mod cases;
+pub mod glance;
 pub mod judge;
 pub mod random;
 pub mod report;

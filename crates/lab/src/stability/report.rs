@@ -2,13 +2,13 @@
 
 use super::case::Case;
 use super::judge::Judged;
-use super::run::{Outcome, Sheet, Trial, Verdict};
+use super::run::{Glance, Outcome, Sheet, Trial, Verdict};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
 use crate::report::folder::png;
-use crate::report::folder::{keep_figure, write_text};
+use crate::report::folder::{keep_figure, make, write_bytes, write_text};
 use crate::report::machine::Machine;
 use crate::report::names::{number, stage};
 use crate::report::page::Page;
@@ -258,26 +258,19 @@ fn shot(case: usize, picture: &Picture, caption: String) -> Result<Shot> {
     })
 }
 
-/// A case at a glance: the reference, the search that fails most and where it does, side by side.
-/// The default where no other fails.
-fn strip(sheet: &Sheet) -> Picture {
-    let [drawn, truth, heat] = &sheet.own;
-    let all = match &sheet.other {
-        Some((_, [drawn, heat])) => [truth, drawn, heat],
-        None => [truth, drawn, heat],
+/// Which search drew a picture, and of which scene.
+fn told(glance: &Glance) -> String {
+    let (solver, each) = glance.method;
+    let nothing = if glance.seen == 0 {
+        ", nothing is seen"
+    } else {
+        ""
     };
-    let mut strip = Picture {
-        width: all.iter().map(|p| p.width).sum(),
-        height: truth.height,
-        rgba: Vec::new(),
-    };
-    for y in 0..truth.height as usize {
-        for picture in all {
-            let row = picture.rgba.chunks_exact(picture.width as usize).nth(y);
-            strip.rgba.extend_from_slice(row.unwrap_or_default());
-        }
-    }
-    strip
+    format!(
+        "{solver}, {}, at {}{nothing}",
+        stage(each),
+        number(glance.value, 6)
+    )
 }
 
 fn shots(sheet: &Sheet) -> Result<Vec<Shot>> {
@@ -330,6 +323,9 @@ pub fn write(
         );
         page.table(&flicker, &[0]);
     }
+    let pictures = folder.join("pictures");
+    make(&pictures)?;
+    let mut captions = Table::new(["case", "picture"], Vec::new());
     let drawn = |k: usize| outcome.trials.iter().any(|t| t.case == k);
     for (k, case) in cases.iter().enumerate().filter(|(k, _)| drawn(*k)) {
         page.chapter(case.name);
@@ -342,17 +338,14 @@ pub fn write(
             page.text(&format!("At {}:", number(sheet.value, 6)));
             let all = shots(sheet)?;
             page.shots(&all.iter().collect::<Vec<_>>());
-            let glance = folder.join("pictures").join(format!("{}.png", case.name));
-            crate::report::folder::make(&folder.join("pictures"))?;
-            crate::report::folder::write_bytes(&glance, &png(&strip(sheet))?)?;
-            for one in &all {
-                let name = one.caption.replace([',', ':', ' '], "-").replace("--", "-");
-                let file = format!("{}-{name}.png", case.name);
-                crate::report::folder::write_bytes(
-                    &folder.join("pictures").join(file),
-                    &one.small,
-                )?;
-            }
+        }
+        if let Some(glance) = outcome.glances.iter().find(|g| g.case == k) {
+            let caption = told(glance);
+            page.text("Where the failure is seen best: the whole picture, and a part of it as drawn, as the reference has it, and the difference.");
+            page.shots(&[&shot(k, &glance.strip, caption.clone())?]);
+            let file = pictures.join(format!("{}.png", case.name));
+            write_bytes(&file, &png(&glance.strip)?)?;
+            captions.records.push(vec![case.name.to_owned(), caption]);
         }
         let figure = chart(case, k, solvers, outcome);
         keep_figure(folder, case.name, &figure)?;
@@ -366,5 +359,6 @@ pub fn write(
             ),
         );
     }
+    write_text(&pictures.join("captions.csv"), &captions.csv())?;
     write_text(&folder.join("report.html"), &page.html())
 }

@@ -1,6 +1,7 @@
 //! Draws every case by every search in both stages and judges each picture.
 
 use super::case::{Case, Step};
+use super::glance::Spot;
 use super::judge::{Faults, Judged, Limits, Truth};
 use crate::compare::{CompareOptions, Heat, heat_map};
 use crate::report::folder::write_text;
@@ -79,6 +80,21 @@ pub struct Sheet {
     pub other: Option<(Solver, [Picture; 2])>,
 }
 
+/// The failure of a case that is seen best.
+pub struct Glance {
+    /// Index of the case.
+    pub case: usize,
+    /// The parameter's value.
+    pub value: f64,
+    /// Which search drew it, in which stage.
+    pub method: (Solver, DrawStage),
+    /// How much of it is seen; 0: nothing.
+    pub seen: u64,
+    /// The picture: the whole, and a part of it as drawn, as the reference has it, and the
+    /// difference.
+    pub strip: Picture,
+}
+
 /// All trials and a sheet for each case.
 #[derive(Default)]
 pub struct Outcome {
@@ -86,6 +102,8 @@ pub struct Outcome {
     pub trials: Vec<Trial>,
     /// Pictures for the report.
     pub sheets: Vec<Sheet>,
+    /// Of each case the failure that is seen best.
+    pub glances: Vec<Glance>,
 }
 
 impl Outcome {
@@ -132,6 +150,7 @@ pub fn run(
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
         let mut worst: Option<(f64, Sheet)> = None;
+        let mut seen: Option<Glance> = None;
         // The faults of each search and stage in the frame before, where frames are those of a
         // motion.
         let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
@@ -183,6 +202,7 @@ pub fn run(
                     }
                 }
             }
+            seen = glance(number, step.value, &truth, &drawn, seen)?;
             // The scene in which the default fares worst, else the one in which any does.
             let rank = |own: bool| {
                 let of = drawn.iter().filter(|d| (d.0 == Solver::DEFAULT) == own);
@@ -195,6 +215,7 @@ pub fn run(
             }
         }
         outcome.sheets.extend(worst.map(|(_, sheet)| sheet));
+        outcome.glances.extend(seen);
     }
     Ok(outcome)
 }
@@ -257,6 +278,40 @@ fn verdict(
 }
 
 type Drawn = (Solver, DrawStage, f64, Frame);
+
+/// Which of the pictures drawn shows the failure best, or the one `before`.
+fn glance(
+    case: usize,
+    value: f64,
+    truth: &Truth,
+    drawn: &[Drawn],
+    before: Option<Glance>,
+) -> Result<Option<Glance>> {
+    let reference = Picture::of(&truth.frame);
+    let spots = drawn.iter().map(|(solver, stage, _, frame)| {
+        let picture = Picture::of(frame);
+        let spot = Spot::worst(&picture, &reference);
+        (spot, picture, (*solver, *stage), frame)
+    });
+    let Some((spot, picture, method, frame)) = spots.max_by_key(|(spot, ..)| spot.seen) else {
+        return Ok(before);
+    };
+    if before.as_ref().is_some_and(|b| b.seen >= spot.seen) {
+        return Ok(before);
+    }
+    let options = CompareOptions {
+        texel: truth.texel(),
+        pixels_per_degree: None,
+    };
+    let heat = heat_map(&truth.frame, frame, &options, Heat::Depth)?;
+    Ok(Some(Glance {
+        case,
+        value,
+        method,
+        seen: spot.seen,
+        strip: spot.strip(&picture, &reference, &heat),
+    }))
+}
 
 fn sheet(case: usize, value: f64, truth: &Truth, drawn: &[Drawn]) -> Result<Option<Sheet>> {
     let options = CompareOptions {

@@ -132,6 +132,26 @@ fn planted_flicker_is_counted() {
     assert_eq!(missed.flicker(&elsewhere), 3);
 }
 
+/// The map search takes no step over a flat box: of a solid of 1000:1 every pixel is hit.
+#[test]
+fn flat_solids_are_drawn_from_their_map() {
+    let device = Device::open_validated(None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let plan = Plan {
+        cases: &cases::named(&["flat".to_owned()]).unwrap(),
+        solvers: &[Solver::Live],
+        quick: false,
+        folder: folder.path(),
+    };
+    let outcome = run(&device, &plan, &mut |_, _, _| true).unwrap();
+    for trial in &outcome.trials {
+        let judged = trial.judged.as_ref().unwrap();
+        assert!(100 * judged.missed < judged.hits, "{judged:?}");
+        assert!(10 * judged.wrong < judged.hits, "{judged:?}");
+    }
+    device.check().unwrap();
+}
+
 /// A seed gives one scene; its text is one that the program reads.
 #[test]
 fn random_scenes_are_scenes() {
