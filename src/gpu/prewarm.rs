@@ -128,7 +128,8 @@ impl Renderer {
         for (variant, kind) in of(solver).reachable(solver, wraps, copies, compute, fallback) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
                 let variant = match kind {
-                    Kind::Hull => variant.in_shell(),
+                    // These read none of the tree.
+                    Kind::Hull | Kind::Listed => variant.in_shell(),
                     _ => variant.with_tables(fit),
                 };
                 if !all.contains(&(variant, kind)) {

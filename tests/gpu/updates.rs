@@ -8,7 +8,7 @@ use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
@@ -263,6 +263,27 @@ fn no_update_compiles_a_pipeline() {
                 assert_eq!(now, compiled, "{stage:?} {solver}: {name}");
             }
         }
+    }
+    device.check().unwrap();
+}
+
+/// Tables near the limit of a uniform buffer have pipelines for both sides of it.
+#[test]
+fn pipelines_of_large_tables_are_compiled() {
+    let device = Device::open_validated(None).unwrap();
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
+    let scene = revmap::scene::file::load(file, &[]).unwrap();
+    for stage in STAGES {
+        let settings = Settings {
+            solver: Solver::Hull,
+            tolerance: Tolerance::EXACT,
+            ..settings(stage)
+        };
+        let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
+        renderer.prewarm().unwrap();
+        let compiled = device.pipelines_compiled();
+        renderer.draw().unwrap();
+        assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}");
     }
     device.check().unwrap();
 }
