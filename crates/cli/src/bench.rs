@@ -7,7 +7,9 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
+use revmap::settings::DrawStage;
 use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Measured, Observer, RenderedCase, TimeBudget, measure};
 use revmap_lab::report::pictures::Album;
@@ -15,7 +17,7 @@ use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::Extent;
 use revmap_lab::report::{
-    DeviceBench, budget, compare_runs, folder, overview, papers, scaling, text,
+    DeviceBench, budget, compare_runs, crowds, folder, overview, papers, scaling, text,
 };
 use std::path::PathBuf;
 
@@ -45,8 +47,11 @@ pub struct Bench {
     /// What a tolerance costs: errors and times of ten scenes at five tolerances
     #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling"])]
     budget: bool,
+    /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget"])]
+    crowds: bool,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget"])]
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds"])]
     compare: Vec<PathBuf>,
 }
 
@@ -66,6 +71,9 @@ impl Bench {
         }
         if self.budget {
             return self.budget();
+        }
+        if self.crowds {
+            return self.crowds();
         }
         let (budget, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
             (TimeBudget::QUICK, Extent::One, &[25.0], &[(800, 600)])
@@ -160,6 +168,32 @@ impl Bench {
         folder::write(&session.out, &plan, &measured, &session.machine)?;
         budget::write(&session.out, &plan, &measured, &errors, &session.machine)?;
         print(&budget::as_text(&measured.rows, &errors));
+        session.finish(&plan, &measured)
+    }
+
+    fn crowds(&self) -> Result<()> {
+        let stages = self.axes(&[], &[]).stages;
+        let (limits, numbers, frames) = if self.quick {
+            (TimeBudget::QUICK, crowds::QUICK, 30)
+        } else {
+            (TimeBudget::CHART, crowds::COPIES.len(), 300)
+        };
+        let plan = crowds::plan(&stages, numbers)?;
+        let session = Session::open(&self.lists)?;
+        let (measured, _) = session.measure(
+            &plan,
+            &self.lists.time_budget(&limits),
+            |_| false,
+            &mut |_| {},
+        )?;
+        let device = MethodDevice::new(session.device.clone())?;
+        let fly = |&stage: &DrawStage| {
+            crowds::fly(&device, &crowds::settings(stage), crowds::FLOWN, frames, 10)
+        };
+        let flights: Vec<_> = stages.iter().map(fly).collect::<Result<_>>()?;
+        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        crowds::write(&session.out, &plan, &measured, &flights, &session.machine)?;
+        print(&crowds::as_text(&measured.rows, &flights));
         session.finish(&plan, &measured)
     }
 

@@ -166,7 +166,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
         Method::Search(Solver::Relaxed) => &["--solver", "--device", "--max-steps", "--map-rows"],
         Method::Search(Solver::Cone) => &["--solver", "--device", "--map-rows"],
         Method::Search(_) => &["--solver", "--device", "--tolerance"],
-        Method::Mesh { .. } => &["--solver", "--device"],
+        Method::Mesh { .. } | Method::MeshLevels => &["--solver", "--device"],
     }
 }
 

@@ -18,9 +18,16 @@ pub enum Method {
         /// Most steps along the meridian; fewer where fewer follow it exactly.
         rings: u32,
     },
+    /// Triangles, each copy of a solid by one of [`Method::MESH_LEVELS`], and copies beside the
+    /// picture left out.
+    MeshLevels,
 }
 
 impl Method {
+    /// The meshes of [`Method::MeshLevels`]: segments, rings, and the height on the screen in
+    /// pixels from which on a copy is drawn by it.
+    pub const MESH_LEVELS: [(u32, u32, f64); 3] = [(16, 32, 0.0), (32, 64, 40.0), (64, 128, 160.0)];
+
     /// Every search, in the order in which reports list them. Meshes are as many as there are
     /// numbers of segments and rings, and not among them.
     pub const ALL: [Self; Solver::ALL.len()] = {
@@ -63,21 +70,23 @@ impl Method {
     pub const fn solver(self) -> Option<Solver> {
         match self {
             Self::Search(solver) => Some(solver),
-            Self::Mesh { .. } => None,
+            Self::Mesh { .. } | Self::MeshLevels => None,
         }
     }
 
     /// Whether it is a mesh.
     #[must_use]
     pub const fn is_mesh(self) -> bool {
-        matches!(self, Self::Mesh { .. })
+        matches!(self, Self::Mesh { .. } | Self::MeshLevels)
     }
 
-    /// Most quads of one copy of a solid: of a mesh the product of its numbers, of a search none.
+    /// Most quads of one copy of a solid: of a mesh the product of its numbers, of levels those of
+    /// the coarsest, of a search none.
     #[must_use]
     pub const fn quads(self) -> u64 {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
+            Self::MeshLevels => Self::MESH_LEVELS[0].0 as u64 * Self::MESH_LEVELS[0].1 as u64,
             Self::Search(_) => 0,
         }
     }
@@ -88,7 +97,7 @@ impl Method {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Search(solver) => solver.name(),
-            Self::Mesh { .. } => "mesh",
+            Self::Mesh { .. } | Self::MeshLevels => "mesh",
         }
     }
 
@@ -146,6 +155,7 @@ impl fmt::Display for Method {
         match self {
             Self::Search(solver) => solver.fmt(f),
             Self::Mesh { segments, rings } => write!(f, "mesh:{segments}x{rings}"),
+            Self::MeshLevels => f.write_str("mesh:levels"),
         }
     }
 }
@@ -163,6 +173,9 @@ impl FromStr for Method {
     fn from_str(text: &str) -> Result<Self> {
         if let Ok(solver) = text.parse() {
             return Ok(Self::Search(solver));
+        }
+        if text == "mesh:levels" {
+            return Ok(Self::MeshLevels);
         }
         let numbers = text
             .strip_prefix("mesh:")
@@ -251,7 +264,13 @@ mod tests {
 
     #[test]
     fn names_are_read_and_bounded() {
-        for text in ["mesh:3x2", "mesh:64x128", "mesh:2048x2048", "quadric"] {
+        for text in [
+            "mesh:3x2",
+            "mesh:levels",
+            "mesh:64x128",
+            "mesh:2048x2048",
+            "quadric",
+        ] {
             assert_eq!(text.parse::<Method>().unwrap().to_string(), text);
         }
         for bad in [

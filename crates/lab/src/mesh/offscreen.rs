@@ -31,12 +31,18 @@ impl MeshOffscreen {
         settings: &MethodSettings,
     ) -> Result<Self> {
         let method = settings.method;
-        let Method::Mesh { segments, rings } = method else {
-            let message = format!("{method} is a search; give a mesh as mesh:64x128");
-            return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+        let levels = match method {
+            Method::Mesh { segments, rings } => {
+                // Settings are plain values: the numbers may not have come through the check.
+                Method::mesh(segments, rings)?;
+                vec![(segments, rings, 0.0)]
+            }
+            Method::MeshLevels => Method::MESH_LEVELS.to_vec(),
+            Method::Search(_) => {
+                let message = format!("{method} is a search; give a mesh as mesh:64x128");
+                return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+            }
         };
-        // Settings are plain values: the numbers may not have come through the check.
-        Method::mesh(segments, rings)?;
         if settings.stage == DrawStage::Compute {
             let message = format!(
                 "{method} is rasterised, which a compute shader does not; give the stage fragment"
@@ -49,7 +55,7 @@ impl MeshOffscreen {
         let mut all = Self {
             drawer: MeshDrawer::new(pipelines, pass)?,
             offscreen,
-            meshes: SceneMeshes::new(segments, rings),
+            meshes: SceneMeshes::new(levels, (settings.width, settings.height)),
             size: (settings.width, settings.height),
         };
         all.update(scene)?;

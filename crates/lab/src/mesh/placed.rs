@@ -27,8 +27,10 @@ pub(super) struct PlacedMesh {
 
 /// Makes and keeps the meshes of a scene; objects of one profile and offset share one.
 pub(super) struct SceneMeshes {
-    segments: u32,
-    rings: u32,
+    /// Segments, rings, least height on the screen in pixels; from the coarsest to the finest.
+    levels: Vec<(u32, u32, f64)>,
+    /// Of the picture, pixels.
+    size: (u32, u32),
     sources: Vec<(Arc<Profile>, ContourSource)>,
     /// Profiles in boxes that have grown with offsets.
     grown: GrownProfiles,
@@ -40,15 +42,17 @@ pub(super) struct SceneMeshes {
 struct Made {
     profile: Arc<Profile>,
     offset: Offset,
+    level: usize,
     mesh: Arc<Mesh>,
 }
 
 impl SceneMeshes {
-    /// Meshes of so many segments and at most so many rings each.
-    pub fn new(segments: u32, rings: u32) -> Self {
+    /// Meshes of so many segments and at most so many rings each, by the height of a copy on the
+    /// screen.
+    pub fn new(levels: Vec<(u32, u32, f64)>, size: (u32, u32)) -> Self {
         Self {
-            segments,
-            rings,
+            levels,
+            size,
             sources: Vec::new(),
             grown: GrownProfiles::default(),
             made: Vec::new(),
@@ -79,17 +83,21 @@ impl SceneMeshes {
             let grown = self.grown.grown(object);
             let growth = Growth::of(object);
             let object = grown.as_ref().map_or(object, |g| &g.object);
-            let made = self.make(object).map_err(|error| {
-                let error = error.at_key(under("profile"));
-                match &object.file {
-                    Some(file) => error.in_file(file),
-                    None => error,
+            for (level, copies) in self.by_level(object, camera).into_iter().enumerate() {
+                let made = self.make(object, level).map_err(|error| {
+                    let error = error.at_key(under("profile"));
+                    match &object.file {
+                        Some(file) => error.in_file(file),
+                        None => error,
+                    }
+                })?;
+                check_box(object, made.mesh.extent[0])
+                    .map_err(|(key, error)| error.at_key(under(key)))?;
+                if !copies.is_empty() {
+                    placed.push(place(object, copies, &growth, made.mesh.clone(), camera));
                 }
-            })?;
-            check_box(object, made.mesh.extent[0])
-                .map_err(|(key, error)| error.at_key(under(key)))?;
-            placed.push(place(object, &growth, made.mesh.clone(), camera));
-            used.push(made);
+                used.push(made);
+            }
         }
         self.sources
             .retain(|(profile, _)| used.iter().any(|u| Arc::ptr_eq(&u.profile, profile)));
@@ -98,9 +106,29 @@ impl SceneMeshes {
         Ok(placed)
     }
 
-    fn make(&mut self, object: &Object) -> Result<Made> {
+    /// Copies of an object by level. Where there are several levels, those beside the picture are
+    /// left out.
+    fn by_level(&self, object: &Object, camera: &CameraFrame) -> Vec<Vec<Placement>> {
+        let mut all = vec![Vec::new(); self.levels.len()];
+        if let [one] = all.as_mut_slice() {
+            *one = object.placements().to_vec();
+            return all;
+        }
+        for copy in object.placements() {
+            if let Some(height) = pixels_high(object, copy, camera, self.size) {
+                let fine = |&(_, _, least): &(u32, u32, f64)| height >= least;
+                let level = self.levels.iter().rposition(fine).unwrap_or(0);
+                all[level].push(*copy);
+            }
+        }
+        all
+    }
+
+    fn make(&mut self, object: &Object, level: usize) -> Result<Made> {
         let same = |made: &&Made| {
-            Arc::ptr_eq(&made.profile, &object.profile) && made.offset == object.offset
+            Arc::ptr_eq(&made.profile, &object.profile)
+                && made.offset == object.offset
+                && made.level == level
         };
         if let Some(made) = self.made.iter().find(same) {
             return Ok(made.clone());
@@ -115,10 +143,12 @@ impl SceneMeshes {
             }
         };
         let contour = self.sources[place].1.contour(&object.offset)?;
+        let (segments, rings, _) = self.levels[level];
         let made = Made {
             profile: object.profile.clone(),
             offset: object.offset,
-            mesh: Arc::new(Mesh::new(&contour, self.segments, self.rings)),
+            level,
+            mesh: Arc::new(Mesh::new(&contour, segments, rings)),
         };
         self.made.push(made.clone());
         self.made_count += 1;
@@ -126,9 +156,41 @@ impl SceneMeshes {
     }
 }
 
-fn place(object: &Object, growth: &Growth, mesh: Arc<Mesh>, camera: &CameraFrame) -> PlacedMesh {
+/// The height of a copy's sphere in pixels; none beside the picture or behind the eye.
+fn pixels_high(
+    object: &Object,
+    copy: &Placement,
+    camera: &CameraFrame,
+    size: (u32, u32),
+) -> Option<f64> {
+    let half = DVec3::new(object.profile.radius, object.profile.radius, 0.5) * copy.scale;
+    let (radius, height) = (half.length(), copy.scale.max_element());
+    let middle = copy.position + copy.rotation * DVec3::new(0.0, 0.0, 0.5 * copy.scale.z);
+    let way = middle - camera.eye;
+    let depth = way.dot(camera.forward);
+    if depth < -radius {
+        return None;
+    }
+    let pixel = camera.right.length();
+    if depth <= 2.0 * radius {
+        return Some(f64::INFINITY);
+    }
+    // A sphere off the middle of the picture is seen stretched.
+    let around = 1.5 * radius / ((depth - radius) * pixel);
+    let x = way.dot(camera.right) / (depth * pixel * pixel) + camera.middle[0];
+    let y = camera.middle[1] - way.dot(camera.up) / (depth * pixel * pixel);
+    let within = |at: f64, size: u32| at + around > 0.0 && at - around < f64::from(size);
+    (within(x, size.0) && within(y, size.1)).then(|| height / ((depth - radius) * pixel))
+}
+
+fn place(
+    object: &Object,
+    mut placements: Vec<Placement>,
+    growth: &Growth,
+    mesh: Arc<Mesh>,
+    camera: &CameraFrame,
+) -> PlacedMesh {
     let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
-    let mut placements = object.placements().to_vec();
     placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     let eyes: Vec<DVec3> = (placements.iter())
         .map(|p| eye_about_axis(object, p, camera))

@@ -210,7 +210,9 @@ fn meshes_and_searches_hide_each_other() {
     let pipelines = MeshPipelines::new(&device).unwrap();
     let pass = (offscreen.render_pass(), settings.planes);
     let mut drawer = MeshDrawer::new(&pipelines, pass).unwrap();
-    let placed = SceneMeshes::new(256, 512).place(&theirs, &frame).unwrap();
+    let placed = SceneMeshes::new(vec![(256, 512, 0.0)], (64, 64))
+        .place(&theirs, &frame)
+        .unwrap();
     let block = FrameBlock::new(offscreen.view(), &frame, &all.lighting());
     drawer.update(&block, all.lights.len(), &placed).unwrap();
 

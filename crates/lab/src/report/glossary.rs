@@ -32,6 +32,9 @@ pub fn meaning(method: Method) -> &'static str {
         Method::Search(Solver::Hull) => {
             "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
         }
+        Method::MeshLevels => {
+            "the mesh baseline with levels of detail: 16 x 32, 32 x 64 or 64 x 128 by the height of each copy on the screen (to 40, to 160 pixels, above); copies beside the picture are left out"
+        }
         Method::Mesh { .. } => {
             "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
         }

@@ -8,6 +8,7 @@ pub mod budget;
 mod chapters;
 pub mod chart;
 pub mod compare_runs;
+pub mod crowds;
 pub mod curves;
 mod device;
 pub mod folder;

@@ -5,6 +5,8 @@
 mod benchmark;
 #[cfg(feature = "mesh")]
 mod mesh;
+#[cfg(feature = "mesh")]
+mod mesh_levels;
 mod mesh_shaders;
 #[cfg(feature = "report")]
 mod planted_faults;

@@ -28,7 +28,7 @@ fn pipelines() -> &'static Arc<MeshPipelines> {
     })
 }
 
-fn settings(segments: u32, rings: u32) -> MethodSettings {
+pub fn settings(segments: u32, rings: u32) -> MethodSettings {
     MethodSettings {
         width: 240,
         height: 180,
@@ -38,7 +38,7 @@ fn settings(segments: u32, rings: u32) -> MethodSettings {
 }
 
 /// Draws meshes; any message of the layers is a failure.
-fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
+pub fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
     let mut mesh = MeshOffscreen::new(pipelines(), scene, settings).unwrap();
     mesh.draw().unwrap();
     let frame = mesh.read().unwrap();
@@ -62,7 +62,7 @@ fn reference(scene: &Scene, settings: &MethodSettings) -> Frame {
 }
 
 /// One object of a polygon under two lights, seen from `eye`.
-fn scene_of(profile: Profile, eye: DVec3) -> Scene {
+pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
     scene.lights.push(Light {
         direction: DVec3::new(0.7, 0.5, -0.2),
@@ -73,12 +73,12 @@ fn scene_of(profile: Profile, eye: DVec3) -> Scene {
 }
 
 /// An eye at `distance` from the middle of a box of height 1, `elevation` degrees up.
-fn eye(elevation: f64, distance: f64) -> DVec3 {
+pub fn eye(elevation: f64, distance: f64) -> DVec3 {
     let (s, c) = elevation.to_radians().sin_cos();
     DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
 }
 
-fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
+pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
     Placement {
         position: position.into(),
         rotation: DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], euler[2]),

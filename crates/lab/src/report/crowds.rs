@@ -1,0 +1,219 @@
+//! Crowds: copies of ten solids by the hundred, the ten thousand and the million, beside one solid
+//! that fills the picture, and a flight through them.
+
+mod flight;
+mod scenes;
+
+pub use flight::{Flight, fly};
+
+use super::chapters;
+use super::folder::write_text;
+use super::machine::Machine;
+use super::measure::Measured;
+use super::names::{number, percent, stage};
+use super::page::Page;
+use super::plan::Plan;
+use super::ratios;
+use super::row::Row;
+use super::series_style::SeriesStyles;
+use super::stats::Interval;
+use super::table::Table;
+use super::text;
+use crate::method::{Method, MethodSettings};
+use revmap::error::Result;
+use revmap::settings::{DrawStage, Planes, Tolerance};
+use std::path::Path;
+
+/// Numbers of copies.
+pub const COPIES: [u32; 3] = [100, 10_000, 1_000_000];
+/// How many of them a quick look takes.
+pub const QUICK: usize = 2;
+/// Copies that are flown through.
+pub const FLOWN: u32 = 10_000;
+/// Size of the pictures, pixels.
+const SIZE: (u32, u32) = (1366, 706);
+/// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
+const MOST_QUADS: u64 = 1 << 23;
+
+/// The default search with a tolerance, as crowds are drawn.
+#[must_use]
+pub fn settings(stage: DrawStage) -> MethodSettings {
+    MethodSettings {
+        stage,
+        width: SIZE.0,
+        height: SIZE.1,
+        planes: Planes::Color,
+        tolerance: Tolerance::DEFAULT,
+        ..MethodSettings::default()
+    }
+}
+
+/// The plan: one solid, then armies of the first `numbers` of [`COPIES`]; the default search exact
+/// and with a tolerance, and meshes.
+///
+/// # Errors
+/// Of the solids that the program carries.
+pub fn plan(stages: &[DrawStage], numbers: usize) -> Result<Plan> {
+    let mut views = vec![scenes::one()?];
+    for &count in COPIES.iter().take(numbers) {
+        views.push(scenes::army(count)?);
+    }
+    let mut plan = Plan::new(views, &[]);
+    plan.mixed = true;
+    for view in 0..plan.views.len() {
+        let solids = plan.views[view].solids() as u64;
+        for &stage in stages {
+            let own = settings(stage);
+            for tolerance in [Tolerance::EXACT, own.tolerance] {
+                plan.add(view, MethodSettings { tolerance, ..own });
+            }
+            let meshes = [
+                Method::mesh(16, 32)?,
+                Method::mesh(64, 128)?,
+                Method::MeshLevels,
+            ];
+            for method in meshes.into_iter().filter(|_| stage == DrawStage::Fragment) {
+                if method.quads() * solids <= MOST_QUADS {
+                    let tolerance = Tolerance::EXACT;
+                    plan.add(
+                        view,
+                        MethodSettings {
+                            method,
+                            tolerance,
+                            ..own
+                        },
+                    );
+                }
+            }
+        }
+    }
+    Ok(plan)
+}
+
+/// A row beside the one solid drawn in the same way: time over time, and the same by equal numbers
+/// of pixels hit.
+fn beside(rows: &[Row], row: &Row) -> Option<(Interval, f64)> {
+    let same = |r: &&Row| r.view == 0 && r.settings == row.settings;
+    let one = rows.iter().find(same).filter(|_| row.view > 0)?;
+    let ratio = ratios::between(row, one)?;
+    Some((ratio, one.covered() / row.covered()))
+}
+
+fn table(rows: &[Row]) -> Table {
+    let header = [
+        "scene",
+        "solids",
+        "method",
+        "stage",
+        "tolerance (pixels)",
+        "pixels hit",
+        "time (ms)",
+        "time / one solid",
+        "by equal pixels",
+        "depth p99 (h/512)",
+        "wrong pixels",
+    ];
+    let record = |row: &Row| {
+        let beside = beside(rows, row);
+        let tolerance = row.settings.tolerance;
+        vec![
+            row.scene.clone(),
+            row.solids.to_string(),
+            row.settings.method.to_string(),
+            stage(row.settings.stage).to_owned(),
+            if row.settings.method.follows_tolerance() {
+                tolerance.to_string()
+            } else {
+                String::new()
+            },
+            percent(row.covered()),
+            row.time()
+                .map(|t| text::interval(&t, 3))
+                .unwrap_or_default(),
+            beside
+                .as_ref()
+                .map(|b| text::interval(&b.0, 2))
+                .unwrap_or_default(),
+            beside
+                .as_ref()
+                .map(|b| number(b.0.value * b.1, 2))
+                .unwrap_or_default(),
+            (row.errors.depth)
+                .map(|d| number(d.p99, 3))
+                .unwrap_or_default(),
+            (row.errors.missed + row.errors.ghost).to_string(),
+        ]
+    };
+    Table::new(header, rows.iter().map(record).collect())
+}
+
+fn flown(flights: &[Flight]) -> Table {
+    let header = [
+        "stage",
+        "frames",
+        "median (ms)",
+        "slowest (ms)",
+        "slowest / median",
+        "pictures compared",
+        "error p99.9 (pixels)",
+        "farthest contour (pixels)",
+    ];
+    let record = |flight: &Flight| {
+        let ([median, slowest], [p999, contour]) = (flight.frame_ms(), flight.worst());
+        vec![
+            stage(flight.settings.stage).to_owned(),
+            flight.times.len().to_string(),
+            number(median, 3),
+            number(slowest, 3),
+            number(slowest / median, 3),
+            flight.errors.len().to_string(),
+            number(p999, 3),
+            number(contour, 3),
+        ]
+    };
+    Table::new(header, flights.iter().map(record).collect())
+}
+
+/// All tables as text.
+#[must_use]
+pub fn as_text(rows: &[Row], flights: &[Flight]) -> String {
+    let flight = format!("\nA flight through {FLOWN} solids:\n");
+    table(rows).aligned() + &flight + &flown(flights).aligned()
+}
+
+/// Writes `crowds.csv`, a `flight-STAGE.csv` for each flight, and the page.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(
+    folder: &Path,
+    plan: &Plan,
+    measured: &Measured,
+    flights: &[Flight],
+    machine: &Machine,
+) -> Result<()> {
+    write_text(&folder.join("crowds.csv"), &table(&measured.rows).csv())?;
+    for flight in flights {
+        let name = format!("flight-{}.csv", stage(flight.settings.stage));
+        write_text(&folder.join(name), &flight.table().csv())?;
+    }
+    let mut page = Page::new("revmap: crowds");
+    chapters::begin(&mut page, machine, measured);
+    page.chapter("Crowds beside one solid");
+    page.text(
+        "Copies of ten solids stand on a field and are seen from within. One solid fills the picture, drawn in the same way. By equal pixels: the ratio of times \
+         over the ratio of the pixels hit. The camera stands still: what a moving one costs the CPU is in the flight.",
+    );
+    page.table(&table(&measured.rows), &[0, 2, 3]);
+    page.chapter("A flight");
+    page.text(&format!(
+        "Through {FLOWN} solids, with the tolerance of {} pixels. A frame is what the CPU takes to prepare it and the time until it is drawn. Errors are of some \
+         of the pictures, against exact ones: as the tolerance's, in pixels.",
+        Tolerance::DEFAULT
+    ));
+    page.table(&flown(flights), &[0]);
+    page.chapter("All rows");
+    chapters::row_table(&mut page, &measured.rows, &SeriesStyles::of(&measured.rows));
+    chapters::end(&mut page, plan, measured);
+    write_text(&folder.join("report.html"), &page.html())
+}
