@@ -3,6 +3,8 @@
 
 #[cfg(feature = "report")]
 mod benchmark;
+#[cfg(feature = "report")]
+mod crowds;
 #[cfg(feature = "mesh")]
 mod mesh;
 #[cfg(feature = "mesh")]
