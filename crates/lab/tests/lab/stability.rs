@@ -180,9 +180,10 @@ fn random_scenes_are_as_the_reference_has_them() {
     device.check().unwrap();
 }
 
-/// Those of ten thousand seeds that once failed: loops that touch (87), all but level faces
-/// (101001, 101182, 102085, 102185, 105034, 106944, 107060, 108513), rims and ledges (101862,
-/// 108119), and what the judge took for a fault (100107, 104954, 107022).
+/// Those of ten thousand seeds that once failed: loops that touch (87, 103411, 103587, 104603,
+/// 105839, 106341, 108163), all but level faces (101001, 101182, 102085, 102185, 105034, 106944,
+/// 107060, 108513), rims and ledges (101862, 108119), and what the judge took for a fault (100107,
+/// 104954, 107022).
 #[test]
 fn random_scenes_that_once_failed() {
     let device = Device::open_validated(None).unwrap();
