@@ -4,6 +4,8 @@ use super::entry::{Draw, Entry, ObjectId};
 use super::output::Output;
 use super::renderer::Renderer;
 use crate::error::Result;
+#[cfg(doc)]
+use crate::error::Stage;
 use crate::scene::{Lighting, Object, Offset, Placement};
 
 impl Renderer {
