@@ -17,7 +17,7 @@ const GAP: usize = 4;
 /// Where in a picture most is seen to be wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
-    /// How much: differences of more than [`SEEN`], summed.
+    /// How much: differences that can be seen (above 24 of 255), summed.
     pub seen: u64,
     /// The part's first column and row.
     pub corner: [usize; 2],
