@@ -8,7 +8,7 @@ use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
+use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
@@ -268,6 +268,7 @@ fn no_update_compiles_a_pipeline() {
 }
 
 /// Tables near the limit of a uniform buffer have pipelines for both sides of it.
+#[cfg(feature = "scene-file")]
 #[test]
 fn pipelines_of_large_tables_are_compiled() {
     let device = Device::open_validated(None).unwrap();
@@ -276,7 +277,7 @@ fn pipelines_of_large_tables_are_compiled() {
     for stage in STAGES {
         let settings = Settings {
             solver: Solver::Hull,
-            tolerance: Tolerance::EXACT,
+            tolerance: revmap::settings::Tolerance::EXACT,
             ..settings(stage)
         };
         let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
