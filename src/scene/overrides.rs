@@ -3,8 +3,8 @@
 use crate::error::{Error, Result, Stage};
 use toml::{Table, Value};
 
-/// Puts `assignment`, `path.to.key=value`, into `root`. The value is read as TOML, else taken as
-/// text; tables on the way are made, list entries must exist.
+/// Puts `assignment`, `path.to.key=value`, into `root`: `object.0.bevel=0.4`, `camera.eye.2=1.5`. The
+/// value is read as TOML, else taken as text; tables on the way are made, list entries must exist.
 pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
     let (path, value) = assignment.split_once('=').ok_or_else(|| {
         Error::new(
@@ -35,9 +35,19 @@ pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
             Value::Table(inner) => inner,
             Value::Array(items) => {
                 let count = items.len();
-                let index = way.next().ok_or_else(|| {
-                    fail(format!("`{step}` is a list; say which: {step}.0.{last}"))
-                })?;
+                let Some(index) = way.next() else {
+                    let below = if items.iter().any(Value::is_table) {
+                        format!("{step}.0.{last}")
+                    } else {
+                        format!("{step}.0")
+                    };
+                    let item = last.parse::<usize>().ok().and_then(|i| items.get_mut(i));
+                    let item = item.filter(|item| !item.is_table());
+                    *item
+                        .ok_or_else(|| fail(format!("`{step}` is a list; say which: {below}")))? =
+                        parse(value.trim());
+                    return Ok(());
+                };
                 index
                     .parse::<usize>()
                     .ok()
@@ -107,6 +117,7 @@ mod tests {
         for assignment in [
             "object.1.bevel=0.5",
             "camera.eye = [1, 2, 3]",
+            "camera.eye.2 = 4.5",
             "background=[0,0,0,1]",
             "new.key=x=y",
         ] {
@@ -115,6 +126,7 @@ mod tests {
         assert_eq!(root["object"][0]["bevel"], Value::Integer(0));
         assert_eq!(root["object"][1]["bevel"], Value::Float(0.5));
         assert_eq!(root["camera"]["eye"].as_array().unwrap().len(), 3);
+        assert_eq!(root["camera"]["eye"][2], Value::Float(4.5));
         assert_eq!(root["camera"]["fov_y"], Value::Integer(40));
         assert_eq!(root["new"]["key"], Value::String("x=y".into()));
     }

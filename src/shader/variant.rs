@@ -170,11 +170,11 @@ impl Variant {
             // With shadows all are in one loop.
             more_lights: u32::from(lighting.lights.len() > 2 && !casts),
             list_length: 0,
-            // A shadow's ray takes the steps of what it meets.
-            papers_steps: if solver == Solver::Circle && settings.max_steps.is_none() && !casts {
-                solver.default_steps(is_beveled(object))
-            } else {
-                0
+            papers_steps: {
+                let own = solver.default_steps(is_beveled(object));
+                let papers = solver == Solver::Circle && settings.max_steps.unwrap_or(own) == own;
+                // A shadow's ray takes the steps of what it meets.
+                if papers && !casts { own } else { 0 }
             },
         };
         match planes {
@@ -271,15 +271,20 @@ impl Variant {
             Search::CircleBeveledRgba8 => Some(Search::CircleRgba8),
             _ => None,
         };
-        let twin = other(self.search).map(|search| Self {
-            search,
-            papers_steps: if self.papers_steps == 0 {
-                0
-            } else {
-                let beveled = matches!(search, Search::CircleBeveled | Search::CircleBeveledRgba8);
-                solver.default_steps(beveled)
-            },
-            ..self
+        // Of the papers' loop with its own number of steps, and with another.
+        let steps = |search| match search {
+            Search::Circle | Search::CircleRgba8 => [0, solver.default_steps(false)].to_vec(),
+            Search::CircleBeveled | Search::CircleBeveledRgba8 => {
+                [0, solver.default_steps(true)].to_vec()
+            }
+            _ => vec![0],
+        };
+        let twin = other(self.search).into_iter().flat_map(|search| {
+            steps(search).into_iter().map(move |papers_steps| Self {
+                search,
+                papers_steps,
+                ..self
+            })
         });
         let searched: Vec<Self> = std::iter::once(self).chain(twin).chain(fallback).collect();
         let on_map = |v: &Self| matches!(v.search, Search::Live | Search::LiveBeveled);
