@@ -101,14 +101,7 @@ impl Bench {
             plan.add_meshes(meshes);
         }
         plan.add_rbm_baseline();
-        let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(
-            &plan,
-            &self.lists.time_budget(&budget),
-            |_| true,
-            &mut |_| {},
-        )?;
-        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        let (session, measured, album) = self.measured(&plan, &budget, |_| true, &mut |_| {})?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&text::summary(&measured.rows));
         session.finish(&plan, &measured)
@@ -122,6 +115,30 @@ impl Bench {
         })
     }
 
+    /// Of runs that are not the suite's.
+    fn limits(&self) -> TimeBudget {
+        if self.quick {
+            TimeBudget::QUICK
+        } else {
+            TimeBudget::CHART
+        }
+    }
+
+    /// Measures a plan, and keeps its rows.
+    fn measured(
+        &self,
+        plan: &Plan,
+        budget: &TimeBudget,
+        worth: fn(&MethodSettings) -> bool,
+        also: &mut dyn FnMut(&RenderedCase),
+    ) -> Result<(Session, Measured, Album)> {
+        let session = Session::open(&self.lists)?;
+        let budget = self.lists.time_budget(budget);
+        let (measured, album) = session.measure(plan, &budget, worth, also)?;
+        folder::write(&session.out, plan, &measured, &session.machine)?;
+        Ok((session, measured, album))
+    }
+
     /// The published tables. The solid is one that the program carries: the articles do not name
     /// theirs.
     fn tables(&self) -> Result<()> {
@@ -131,19 +148,8 @@ impl Bench {
         );
         plan.add_rbm_baseline();
         plan.mixed = true;
-        let budget = if self.quick {
-            TimeBudget::QUICK
-        } else {
-            TimeBudget::CHART
-        };
-        let session = Session::open(&self.lists)?;
-        let (measured, album) = session.measure(
-            &plan,
-            &self.lists.time_budget(&budget),
-            is_rbm_baseline,
-            &mut |_| {},
-        )?;
-        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        let (session, measured, album) =
+            self.measured(&plan, &self.limits(), is_rbm_baseline, &mut |_| {})?;
         papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&papers::as_text(&measured.rows));
         session.finish(&plan, &measured)
@@ -151,21 +157,12 @@ impl Bench {
 
     fn budget(&self) -> Result<()> {
         let stages = self.axes(&[], &[]).stages;
-        let limits = if self.quick {
-            TimeBudget::QUICK
-        } else {
-            TimeBudget::CHART
-        };
         let plan = budget::plan(&stages, self.quick)?;
-        let session = Session::open(&self.lists)?;
         let mut errors = budget::Errors::default();
-        let (measured, _) = session.measure(
-            &plan,
-            &self.lists.time_budget(&limits),
-            |_| false,
-            &mut |seen| errors.add(seen),
-        )?;
-        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        let (session, measured, _) =
+            self.measured(&plan, &self.limits(), |_| false, &mut |seen| {
+                errors.add(seen)
+            })?;
         budget::write(&session.out, &plan, &measured, &errors, &session.machine)?;
         print(&budget::as_text(&measured.rows, &errors));
         session.finish(&plan, &measured)
@@ -173,25 +170,19 @@ impl Bench {
 
     fn crowds(&self) -> Result<()> {
         let stages = self.axes(&[], &[]).stages;
-        let (limits, numbers, frames) = if self.quick {
-            (TimeBudget::QUICK, crowds::QUICK, 30)
+        let (numbers, frames) = if self.quick {
+            (crowds::QUICK, 30)
         } else {
-            (TimeBudget::CHART, crowds::COPIES.len(), 300)
+            (crowds::COPIES.len(), 300)
         };
         let plan = crowds::plan(&stages, numbers)?;
-        let session = Session::open(&self.lists)?;
-        let (measured, _) = session.measure(
-            &plan,
-            &self.lists.time_budget(&limits),
-            |_| false,
-            &mut |_| {},
-        )?;
+        let (session, measured, _) =
+            self.measured(&plan, &self.limits(), |_| false, &mut |_| {})?;
         let device = MethodDevice::new(session.device.clone())?;
         let fly = |&stage: &DrawStage| {
             crowds::fly(&device, &crowds::settings(stage), crowds::FLOWN, frames, 10)
         };
         let flights: Vec<_> = stages.iter().map(fly).collect::<Result<_>>()?;
-        folder::write(&session.out, &plan, &measured, &session.machine)?;
         crowds::write(&session.out, &plan, &measured, &flights, &session.machine)?;
         print(&crowds::as_text(&measured.rows, &flights));
         session.finish(&plan, &measured)
@@ -203,20 +194,14 @@ impl Bench {
             let mesh = |(segments, rings)| Method::Mesh { segments, rings };
             axes.methods.extend(scaling::MESHES.map(mesh));
         }
-        let (budget, ranges) = if self.quick {
-            (TimeBudget::QUICK, Ranges::QUICK)
+        let ranges = if self.quick {
+            Ranges::QUICK
         } else {
-            (TimeBudget::CHART, Ranges::ALL)
+            Ranges::ALL
         };
         let plan = scaling::plan(&axes.stages, &axes.methods, ranges)?;
-        let session = Session::open(&self.lists)?;
-        let (measured, _) = session.measure(
-            &plan,
-            &self.lists.time_budget(&budget),
-            |_| false,
-            &mut |_| {},
-        )?;
-        folder::write(&session.out, &plan, &measured, &session.machine)?;
+        let (session, measured, _) =
+            self.measured(&plan, &self.limits(), |_| false, &mut |_| {})?;
         scaling::write(&session.out, &plan, &measured, &session.machine)?;
         print(&scaling::as_text(&measured.rows));
         session.finish(&plan, &measured)

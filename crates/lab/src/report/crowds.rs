@@ -1,5 +1,5 @@
 //! Crowds: copies of ten solids by the hundred, the ten thousand and the million, beside one solid
-//! that fills the picture, and a flight through them.
+//! seen close, and a flight through them.
 
 mod flight;
 mod scenes;
@@ -201,7 +201,7 @@ pub fn write(
     chapters::begin(&mut page, machine, measured);
     page.chapter("Crowds beside one solid");
     page.text(
-        "Copies of ten solids stand on a field and are seen from within. One solid fills the picture, drawn in the same way. By equal pixels: the ratio of times \
+        "Copies of ten solids stand on a field and are seen from within. One solid is seen close, drawn in the same way. By equal pixels: the ratio of times \
          over the ratio of the pixels hit. The camera stands still: what a moving one costs the CPU is in the flight.",
     );
     page.table(&table(&measured.rows), &[0, 2, 3]);

@@ -34,7 +34,7 @@ const BALUSTER: [[f64; 2]; 10] = [
 /// From one solid to the next on the field, in heights of a solid.
 const APART: f64 = 1.1;
 
-/// One solid that fills the picture.
+/// One solid seen close.
 ///
 /// # Errors
 /// Of the solids that the program carries.
