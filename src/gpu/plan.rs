@@ -198,8 +198,9 @@ impl Planner<'_> {
 /// more, many are small or hidden, and bins leave out those.
 const MOST_WRAPPED: usize = 64;
 
-/// Fewer invocations than these, run together, walk a tree faster than they test a list: few of them wait for the slowest, and
-/// branches are taken. SwiftShader has 4 and takes 2.5 times as long over lists; llvmpipe has 8 and takes two thirds.
+/// Fewer invocations than these, run together, walk a tree faster than they test a list: few of
+/// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes 2.5 times as long
+/// over lists; llvmpipe has 8 and takes two thirds.
 const LEAST_SUBGROUP: u32 = 8;
 
 /// Tiles that each of several copies should cover for a list of its own to pay.
