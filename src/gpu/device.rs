@@ -45,7 +45,7 @@ pub(crate) struct Shared {
     allocator: Option<Arc<Mutex<Allocator>>>,
     pipelines: Option<Pipelines>,
     pub raw: ash::Device,
-    pub queue: Option<Mutex<vk::Queue>>,
+    pub queue: Option<Arc<Mutex<vk::Queue>>>,
     pub family: u32,
     pub limits: vk::PhysicalDeviceLimits,
     /// Invocations that run together.
@@ -56,6 +56,10 @@ pub(crate) struct Shared {
     pub budget: MemoryBudget,
     /// None of a borrowed device.
     instance: Option<Instance>,
+    /// What must outlive this: of [`Device::with_shaders`] the device's own.
+    #[cfg(feature = "other-shaders")]
+    #[allow(dead_code)]
+    opened: Option<Arc<Shared>>,
 }
 
 impl Device {
@@ -131,6 +135,39 @@ impl Device {
             pipelines.source = Some(shaders);
         }
         Ok(device)
+    }
+
+    /// The same device with pipelines of its own, made of the SPIR-V that `shaders` gives; it keeps
+    /// this value alive.
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] of Vulkan.
+    ///
+    /// # Safety
+    /// As of [`Device::borrow_with_shaders`], of `shaders`.
+    #[cfg(feature = "other-shaders")]
+    pub unsafe fn with_shaders(&self, shaders: super::ShaderSource) -> Result<Self> {
+        let shared = &self.shared;
+        let mut pipelines = Pipelines::new(shared.raw.clone(), None)?;
+        pipelines.source = Some(shaders);
+        let own = Shared {
+            allocator: shared.allocator.clone(),
+            pipelines: Some(pipelines),
+            raw: shared.raw.clone(),
+            queue: shared.queue.clone(),
+            family: shared.family,
+            limits: shared.limits,
+            subgroup_size: shared.subgroup_size,
+            timestamp_bits: shared.timestamp_bits,
+            anisotropy: shared.anisotropy,
+            report: shared.report.clone(),
+            budget: MemoryBudget::default(),
+            instance: None,
+            opened: Some(shared.clone()),
+        };
+        Ok(Self {
+            shared: Arc::new(own),
+        })
     }
 
     /// Bounds the bytes of all buffers and images on the device, those of pictures included;
@@ -329,7 +366,7 @@ impl Shared {
         Ok(Self {
             allocator: Some(allocator),
             pipelines: Some(pipelines),
-            queue: queue.map(Mutex::new),
+            queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
             family: chosen.family,
             limits,
             subgroup_size: chosen.subgroup_size,
@@ -341,6 +378,8 @@ impl Shared {
             report: chosen.report.clone(),
             raw,
             instance: None,
+            #[cfg(feature = "other-shaders")]
+            opened: None,
         })
     }
 

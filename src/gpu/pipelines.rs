@@ -38,9 +38,11 @@ pub(crate) struct Pipelines {
     raw: ash::Device,
 }
 
-/// Gives the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros.
+/// Gives the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros; `None`:
+/// the words that the library holds.
 #[cfg(feature = "other-shaders")]
-pub type ShaderSource = Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Vec<u32>> + Send + Sync>;
+pub type ShaderSource =
+    Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
 
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {

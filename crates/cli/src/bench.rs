@@ -101,7 +101,9 @@ impl Bench {
             plan.add_meshes(meshes);
         }
         plan.add_rbm_baseline();
-        let (session, measured, album) = self.measured(&plan, &budget, |_| true, &mut |_| {})?;
+        plan.add_floors();
+        let (session, measured, album) =
+            self.measured(&plan, &budget, |s| s.method != Method::Floor, &mut |_| {})?;
         overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
         print(&text::summary(&measured.rows));
         session.finish(&plan, &measured)
@@ -147,6 +149,7 @@ impl Bench {
             &self.axes(&papers::SIZES, &plan::USUAL).combinations(),
         );
         plan.add_rbm_baseline();
+        plan.add_floors();
         plan.mixed = true;
         let (session, measured, album) =
             self.measured(&plan, &self.limits(), is_rbm_baseline, &mut |_| {})?;

@@ -6,7 +6,7 @@ use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::Result;
-use revmap_lab::method::MethodSettings;
+use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::measure::{RenderedCase, TimeBudget};
 use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::suite::Extent;
@@ -81,6 +81,7 @@ impl Chart {
             all
         };
         plan.add_rbm_baseline();
+        plan.add_floors();
         let session = Session::open(lists)?;
         let size = plan
             .cases
@@ -129,5 +130,6 @@ fn worth_a_picture(settings: &MethodSettings) -> bool {
     let plain = settings.map_rows.is_none()
         && settings.map_source.is_none()
         && settings.map_format == MethodSettings::default().map_format;
-    is_rbm_baseline(settings) || (plain && matches!(settings.max_steps, None | Some(64)))
+    let drawn = settings.method != Method::Floor;
+    is_rbm_baseline(settings) || (drawn && plain && matches!(settings.max_steps, None | Some(64)))
 }

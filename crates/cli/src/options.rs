@@ -166,6 +166,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
         Method::Search(Solver::Relaxed) => &["--solver", "--device", "--max-steps", "--map-rows"],
         Method::Search(Solver::Cone) => &["--solver", "--device", "--map-rows"],
         Method::Search(_) => &["--solver", "--device", "--tolerance"],
+        Method::Floor => &["--solver", "--device", "--tolerance"],
         Method::Mesh { .. } | Method::MeshLevels => &["--solver", "--device"],
     }
 }
@@ -193,16 +194,17 @@ impl TypedValueParser for MethodParser {
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
     ) -> Result<Method, clap::Error> {
-        if value.to_str().is_some_and(|text| text.starts_with("mesh")) {
-            let mesh = |text: &str| text.parse::<Method>();
-            return mesh.parse_ref(command, argument, value);
+        let own = |text: &str| text.starts_with("mesh") || text == Method::Floor.name();
+        if value.to_str().is_some_and(own) {
+            let method = |text: &str| text.parse::<Method>();
+            return method.parse_ref(command, argument, value);
         }
         named(&SOLVERS).parse_ref(command, argument, value)
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let names = SOLVERS.iter().map(|(name, _)| *name);
-        let all = names.chain(["mesh:SEGMENTSxRINGS"]);
+        let all = names.chain(["mesh:SEGMENTSxRINGS", Method::Floor.name()]);
         Some(Box::new(all.map(PossibleValue::new)))
     }
 }

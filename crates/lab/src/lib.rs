@@ -6,11 +6,14 @@
 //! | [`mod@compare`] | two frames: errors in numbers, FLIP, silhouettes, heat maps |
 //! | [`method`] | what is measured: a search, or a mesh |
 //! | `mesh` | the mesh baseline: the same solids as triangles (feature `mesh`) |
+//! | `floor` | frames without a search: what is left of a frame's time (feature `mesh`) |
 //! | `renderer` | one renderer for every method (feature `mesh`) |
 //! | `report` | views and ways to draw them: times beside errors, as tables, charts and one page (feature `report`) |
 //! | `stability` | cases in which methods fail, and how each search fares (feature `report`) |
 
 pub mod compare;
+#[cfg(feature = "mesh")]
+pub mod floor;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 pub mod method;

@@ -1,4 +1,4 @@
-//! What is measured: a search of [`revmap`], or the mesh baseline.
+//! What is measured: a search of [`revmap`], the mesh baseline, or the floor.
 
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
@@ -21,6 +21,8 @@ pub enum Method {
     /// Triangles, each copy of a solid by one of [`Method::MESH_LEVELS`], and copies beside the
     /// picture left out.
     MeshLevels,
+    /// The default search's frame without the search: each pixel returns its first possible point.
+    Floor,
 }
 
 impl Method {
@@ -65,12 +67,12 @@ impl Method {
         Ok(Self::Mesh { segments, rings })
     }
 
-    /// The search; `None` of a mesh.
+    /// The search; `None` of a mesh and of the floor.
     #[must_use]
     pub const fn solver(self) -> Option<Solver> {
         match self {
             Self::Search(solver) => Some(solver),
-            Self::Mesh { .. } | Self::MeshLevels => None,
+            Self::Mesh { .. } | Self::MeshLevels | Self::Floor => None,
         }
     }
 
@@ -87,7 +89,7 @@ impl Method {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
             Self::MeshLevels => Self::MESH_LEVELS[0].0 as u64 * Self::MESH_LEVELS[0].1 as u64,
-            Self::Search(_) => 0,
+            Self::Search(_) | Self::Floor => 0,
         }
     }
 
@@ -98,6 +100,7 @@ impl Method {
         match self {
             Self::Search(solver) => solver.name(),
             Self::Mesh { .. } | Self::MeshLevels => "mesh",
+            Self::Floor => "floor",
         }
     }
 
@@ -116,7 +119,11 @@ impl Method {
     /// As [`Solver::follows_tolerance`]; a mesh does not.
     #[must_use]
     pub const fn follows_tolerance(self) -> bool {
-        matches!(self, Self::Search(solver) if solver.follows_tolerance())
+        match self {
+            Self::Search(solver) => solver.follows_tolerance(),
+            Self::Floor => Solver::DEFAULT.follows_tolerance(),
+            Self::Mesh { .. } | Self::MeshLevels => false,
+        }
     }
 
     /// As [`Solver::may_run_out`]; a mesh makes no steps.
@@ -156,6 +163,7 @@ impl fmt::Display for Method {
             Self::Search(solver) => solver.fmt(f),
             Self::Mesh { segments, rings } => write!(f, "mesh:{segments}x{rings}"),
             Self::MeshLevels => f.write_str("mesh:levels"),
+            Self::Floor => f.write_str("floor"),
         }
     }
 }
@@ -174,8 +182,10 @@ impl FromStr for Method {
         if let Ok(solver) = text.parse() {
             return Ok(Self::Search(solver));
         }
-        if text == "mesh:levels" {
-            return Ok(Self::MeshLevels);
+        match text {
+            "mesh:levels" => return Ok(Self::MeshLevels),
+            "floor" => return Ok(Self::Floor),
+            _ => {}
         }
         let numbers = text
             .strip_prefix("mesh:")
@@ -186,7 +196,7 @@ impl FromStr for Method {
             None => Err(Error::new(
                 Stage::Usage,
                 format!(
-                    "{text:?} is no search; give one of {}, or a mesh as mesh:64x128",
+                    "{text:?} is no search; give one of {}, a mesh as mesh:64x128, or floor",
                     Solver::ALL.map(Solver::name).join(", ")
                 ),
             )),
@@ -238,7 +248,8 @@ impl Default for MethodSettings {
     }
 }
 
-/// The renderer's settings. A mesh leaves the default search, for a picture without objects.
+/// The renderer's settings. A mesh leaves the default search, for a picture without objects; so does
+/// the floor, whose frame is that search's.
 impl From<&MethodSettings> for Settings {
     fn from(settings: &MethodSettings) -> Self {
         Self {
@@ -267,6 +278,7 @@ mod tests {
         for text in [
             "mesh:3x2",
             "mesh:levels",
+            "floor",
             "mesh:64x128",
             "mesh:2048x2048",
             "quadric",

@@ -1,17 +1,20 @@
 //! One renderer for every method: searches and meshes behind the same calls.
 
+use crate::floor;
 use crate::mesh::{MeshOffscreen, MeshPipelines};
-use crate::method::MethodSettings;
+use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, ObjectCost, Offscreen, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A device, and what drawing by any method shares on it.
 pub struct MethodDevice {
     device: Device,
+    /// With the floor's shaders, once they are wanted.
+    floor: OnceLock<Device>,
     pipelines: Arc<MeshPipelines>,
 }
 
@@ -39,7 +42,11 @@ impl MethodDevice {
     /// Of Vulkan.
     pub fn new(device: Device) -> Result<Self> {
         let pipelines = MeshPipelines::new(&device)?;
-        Ok(Self { device, pipelines })
+        Ok(Self {
+            device,
+            floor: OnceLock::new(),
+            pipelines,
+        })
     }
 
     /// Makes all ready to draw a scene.
@@ -52,8 +59,23 @@ impl MethodDevice {
             MethodRenderer::Mesh(Box::new(mesh))
         } else {
             let own = Settings::from(settings);
-            MethodRenderer::Search(Box::new(Offscreen::new(&self.device, scene, &own)?))
+            let device = self.device_of(scene, settings.method)?;
+            MethodRenderer::Search(Box::new(Offscreen::new(device, scene, &own)?))
         })
+    }
+
+    fn device_of(&self, scene: &Scene, method: Method) -> Result<&Device> {
+        if method != Method::Floor {
+            return Ok(&self.device);
+        }
+        floor::check(scene)?;
+        match self.floor.get() {
+            Some(made) => Ok(made),
+            None => {
+                let made = floor::device(&self.device)?;
+                Ok(self.floor.get_or_init(|| made))
+            }
+        }
     }
 
     /// Draws a scene once, as [`revmap::gpu::draw`].
@@ -80,7 +102,7 @@ impl MethodDevice {
 
 /// A scene on a device and a picture that it is drawn into, by either kind of method.
 pub enum MethodRenderer {
-    /// By a search.
+    /// By a search, or by the floor.
     Search(Box<Offscreen>),
     /// As meshes.
     Mesh(Box<MeshOffscreen>),

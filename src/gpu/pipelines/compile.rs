@@ -47,7 +47,9 @@ impl Pipelines {
         #[cfg(feature = "other-shaders")]
         if let Some(source) = &self.source {
             let module = crate::shader::listed(module).unwrap_or(*module);
-            return source(module.entry.file(), &module.macros());
+            if let Some(words) = source(module.entry.file(), &module.macros())? {
+                return Ok(words);
+            }
         }
         let none = || Error::new(Stage::Draw, format!("no shader is {}", module.name()));
         words(module).ok_or_else(none)

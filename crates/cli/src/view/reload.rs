@@ -196,7 +196,7 @@ impl Sources {
             let key = format!("{file} {macros:?}");
             let mut done = done.lock().map_err(|_| failed("the compiler has died"))?;
             if let Some(words) = done.get(&key) {
-                return Ok(words.clone());
+                return Ok(Some(words.clone()));
             }
             let (path, text) = self.text(file).map_err(failed)?;
             let include = |wanted: &str| {
@@ -212,7 +212,7 @@ impl Sources {
             };
             let words = made.map_err(wrong)?.as_binary().to_vec();
             done.insert(key, words.clone());
-            Ok(words)
+            Ok(Some(words))
         }))
     }
 }

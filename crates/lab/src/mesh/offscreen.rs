@@ -38,8 +38,8 @@ impl MeshOffscreen {
                 vec![(segments, rings, 0.0)]
             }
             Method::MeshLevels => Method::MESH_LEVELS.to_vec(),
-            Method::Search(_) => {
-                let message = format!("{method} is a search; give a mesh as mesh:64x128");
+            Method::Search(_) | Method::Floor => {
+                let message = format!("{method} is no mesh; give a mesh as mesh:64x128");
                 return Err(Error::new(Stage::Usage, message).at_key("--solver"));
             }
         };

@@ -10,6 +10,7 @@ use super::page::Page;
 use super::picture_groups;
 use super::pictures::{Album, heat_key};
 use super::plan::Plan;
+use super::ratios::above_floor;
 use super::row::{CLOCKS_APART, Row};
 use super::series_style::SeriesStyles;
 use super::table::Table;
@@ -101,6 +102,7 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], styles: &SeriesStyles) {
         record.extend([
             time.map_or("clocks disagree".into(), |t| number(t.value, 3)),
             time.map(|t| text::ends(&t)).unwrap_or_default(),
+            num(above_floor(rows, r)),
             num(time.map(|t| 1e3 / t.value)),
             num(steps.map(|s| s.mean)),
             num(steps.map(|s| s.p99)),
@@ -140,13 +142,14 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], styles: &SeriesStyles) {
 pub(super) const EXCLUDED: [&str; 5] = ["row", "scene", "stage", "method", "reason"];
 
 /// Columns of the table of times.
-pub(super) const TIMES: [&str; 12] = [
+pub(super) const TIMES: [&str; 13] = [
     "scene",
     "method",
     "stage",
     "size",
     "time (ms)",
     "95 % interval",
+    "above the floor (ms)",
     "frames / s",
     "look-ups mean",
     "look-ups p99",

@@ -18,7 +18,7 @@ use super::names;
 use super::plan::{RBM_BASELINE, is_rbm_baseline};
 use super::ratios::Ratio;
 use super::row::Row;
-use super::series_style::{of_source, style};
+use super::series_style::{floor_line, of_source, style};
 use super::stats::Interval;
 use super::sweep::{has_budget, has_rows};
 use crate::method::{Method, MethodSettings};
@@ -54,7 +54,9 @@ fn add_swept(
     time: &Interval,
     y: f64,
 ) {
-    let (name, style) = if is_rbm_baseline(s) {
+    let (name, style) = if s.method == Method::Floor {
+        return;
+    } else if is_rbm_baseline(s) {
         (RBM_BASELINE, style(s))
     } else if over_budgets(s, base) {
         (s.method.name(), style(s))
@@ -96,7 +98,21 @@ pub fn searches(title: &str, rows: &[&Row], measure: Measure, base: &MethodSetti
             add_swept(&mut series, &row.settings, base, &time, error);
         }
     }
-    against_time(title, Axis::log(TIME), measure, series, |_| false)
+    let floors = rows.iter().map(|row| (&row.settings, row.time()));
+    against_time(
+        title,
+        (Axis::log(TIME), floors_of(floors)),
+        measure,
+        series,
+        |_| false,
+    )
+}
+
+/// The lines of the floors among these ways.
+fn floors_of<'a>(all: impl Iterator<Item = (&'a MethodSettings, Option<Interval>)>) -> Vec<Guide> {
+    all.filter(|(s, _)| s.method == Method::Floor)
+        .filter_map(|(s, time)| Some(floor_line(s, time?.value)))
+        .collect()
 }
 
 /// Error against time over the sources and rows of maps, one stage, every search.
@@ -120,7 +136,13 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
         let (name, style) = (names::source(source), of_source(source));
         add(&mut series, name, style, false, point);
     }
-    against_time(title, Axis::log(TIME), measure, series, |_| false)
+    against_time(
+        title,
+        (Axis::log(TIME), Vec::new()),
+        measure,
+        series,
+        |_| false,
+    )
 }
 
 /// The chart that sums `views` up: error against the ratio to the RBM baseline.
@@ -141,18 +163,21 @@ pub fn summed(views: &str, ratios: &[Ratio], measure: Measure, base: &MethodSett
     let title = format!("{views}: {} against time", measure.name());
     let x = Axis::log("time / time of the RBM baseline").with(1.0);
     // Of meshes there are few: each keeps its word.
-    against_time(&title, x, measure, series, |label| label.contains('x'))
+    let floors = floors_of(ratios.iter().map(|r| (&r.settings, Some(r.time))));
+    against_time(&title, (x, floors), measure, series, |label| {
+        label.contains('x')
+    })
 }
 
 /// The name of the axis of times.
 const TIME: &str = "time of a frame (ms)";
 
-/// A chart over an axis of times, with the front over all points. Words are for what is on the
+/// A chart over an axis of times and the lines of floors, with the front over all points. Words are for what is on the
 /// front, for both ends of each line, and for what is to `keep`; of all points the chart would
 /// drown in them.
 fn against_time(
     title: &str,
-    x: Axis,
+    (mut x, floors): (Axis, Vec<Guide>),
     measure: Measure,
     mut series: Vec<Series>,
     keep: fn(&str) -> bool,
@@ -173,12 +198,17 @@ fn against_time(
             }
         }
     }
+    for place in floors.iter().filter_map(|floor| floor.points.first()) {
+        x = x.with(place.0);
+    }
     XyChart {
         title: title.to_owned(),
         x,
         y: measure.axis(),
         series,
-        guides: vec![Guide::dashed("Pareto front", stairs(&best))],
+        guides: std::iter::once(Guide::dashed("Pareto front", stairs(&best)))
+            .chain(floors)
+            .collect(),
     }
     .figure()
 }

@@ -9,6 +9,7 @@ use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
 use super::plan::Plan;
+use super::ratios::above_floor;
 use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use super::table::Table;
 use revmap::error::{Error, Result, Stage};
@@ -182,7 +183,10 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
 /// `results.csv`: one record a row, with the columns of [`COLUMNS`].
 #[must_use]
 pub fn results(rows: &[Row], machine: &Machine) -> Table {
-    let record = |row: &Row| row.record(&machine.device, &machine.driver);
+    let record = |row: &Row| {
+        let above = above_floor(rows, row);
+        row.record(&machine.device, &machine.driver, above)
+    };
     Table::new(COLUMNS, rows.iter().map(record).collect())
 }
 

@@ -35,6 +35,9 @@ pub fn meaning(method: Method) -> &'static str {
         Method::MeshLevels => {
             "the mesh baseline with levels of detail: 16 x 32, 32 x 64 or 64 x 128 by the height of each copy on the screen (to 40, to 160 pixels, above); copies beside the picture are left out"
         }
+        Method::Floor => {
+            "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment; in compute the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, depth, shading and store. No search of this kind of frame is faster"
+        }
         Method::Mesh { .. } => {
             "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
         }
@@ -52,7 +55,7 @@ const SOURCES: [&str; 4] = [
 ];
 
 /// What the columns of tables and of results.csv mean.
-const COLUMNS: [(&str, &str); 40] = [
+const COLUMNS: [(&str, &str); 42] = [
     (
         "scene, picture",
         "name of the view: the scene, with @ the elevation of the camera in degrees, with : a framing",
@@ -104,6 +107,14 @@ const COLUMNS: [(&str, &str); 40] = [
     (
         "frame_ms_median",
         "wall clock from submission to completion, without reading back, milliseconds: geometric mean of the passes' medians",
+    ),
+    (
+        "above the floor (ms), above_floor_ms",
+        "time less that of the floor in the same picture and stage, milliseconds: what the search itself takes",
+    ),
+    (
+        "above the floor / RBM baseline",
+        "time above the floor over the whole time of the RBM baseline in the same picture and stage: mean over the pictures",
     ),
     (
         "frames / s, fps",
@@ -207,6 +218,9 @@ pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     }
     let mesh = rows.iter().map(|r| r.settings.method).find(|s| s.is_mesh());
     all.extend(mesh.map(|mesh| ("mesh", meaning(mesh).to_owned())));
+    if occurs(&|r| r.settings.method == Method::Floor) {
+        all.push((Method::Floor.name(), meaning(Method::Floor).to_owned()));
+    }
     if occurs(&|r| is_rbm_baseline(&r.settings)) {
         all.push((RBM_BASELINE, PAPERS.to_owned()));
     }

@@ -16,9 +16,10 @@ use super::picture_groups::pictures_of;
 use super::pictures::Album;
 use super::plan::Plan;
 use super::row::Row;
-use super::series_style::SeriesStyles;
+use super::series_style::{SeriesStyles, floor_line};
 use super::stats::Interval;
 use super::summary;
+use crate::method::Method;
 use revmap::error::Result;
 use std::path::Path;
 
@@ -79,6 +80,9 @@ pub fn error_chart(title: &str, rows: &[&Row], styles: &SeriesStyles) -> Figure 
         .iter()
         .filter_map(|r| Some((*r, r.time()?, r.errors.depth?.p99)))
         .collect();
+    let (floors, points): (Vec<_>, Vec<_>) = points
+        .into_iter()
+        .partition(|(row, ..)| row.settings.method == Method::Floor);
     let point = |time: &Interval, y: f64, label: Option<String>| Point {
         x: time.value,
         y,
@@ -124,10 +128,20 @@ pub fn error_chart(title: &str, rows: &[&Row], styles: &SeriesStyles) -> Figure 
         .collect();
     XyChart {
         title: title.to_owned(),
-        x: Axis::log("time of a frame (ms)"),
+        x: floors
+            .iter()
+            .fold(Axis::log("time of a frame (ms)"), |axis, (_, time, _)| {
+                axis.with(time.value)
+            }),
         y: Measure::Depth.axis(),
         series,
-        guides: vec![Guide::dashed("Pareto front", stairs(&best))],
+        guides: std::iter::once(Guide::dashed("Pareto front", stairs(&best)))
+            .chain(
+                floors
+                    .iter()
+                    .map(|(row, time, _)| floor_line(&row.settings, time.value)),
+            )
+            .collect(),
     }
     .figure()
 }
@@ -169,7 +183,7 @@ pub fn write(
         page.figure(
             &figure,
             "Each marker is a search, filled in the fragment stage and hollow in the compute stage, or a mesh; lower is more exact, further left is faster, and bars are 95 % intervals of \
-             times. No method is better in both than one on the dashed line, the Pareto front. Depth errors are the 99th percentile over the pixels hit, in h/512, 1/512 of the solid's height.",
+             times. No method is better in both than one on the dashed line, the Pareto front; upright lines are the floor, a frame without a search. Depth errors are the 99th percentile over the pixels hit, in h/512, 1/512 of the solid's height.",
         );
     }
     page.chapter("Times");

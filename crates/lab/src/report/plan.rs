@@ -2,6 +2,7 @@
 
 use super::names;
 use super::view::View;
+use crate::floor;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
@@ -145,6 +146,19 @@ impl Plan {
         }
     }
 
+    /// Adds, for every view, size and stage of the plan, the floor, where the program holds it and it
+    /// is made for the view.
+    pub fn add_floors(&mut self) {
+        if !floor::is_available() {
+            return;
+        }
+        for case in self.cases.clone() {
+            if floor::check(&self.views[case.view].scene).is_ok() {
+                self.add(case.view, plain(&case.settings, Method::Floor));
+            }
+        }
+    }
+
     /// Adds, for every view and size that is measured in the fragment stage, the rival in these
     /// segments and rings.
     pub fn add_meshes(&mut self, meshes: &[(u32, u32)]) {
@@ -277,10 +291,11 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Labels for these ways; the RBM baseline and meshes have their own names and do not count.
+    /// Labels for these ways; the RBM baseline, meshes and the floor have their own names and do not count.
     #[must_use]
     pub fn new<'a>(ways: impl IntoIterator<Item = &'a MethodSettings>) -> Self {
-        let counts = |s: &&MethodSettings| !is_rbm_baseline(s) && !s.method.is_mesh();
+        let own = |s: &MethodSettings| s.method.is_mesh() || s.method == Method::Floor;
+        let counts = |s: &&MethodSettings| !is_rbm_baseline(s) && !own(s);
         let ways: Vec<_> = ways.into_iter().filter(counts).collect();
         fn differs<T: PartialEq>(
             ways: &[&MethodSettings],
@@ -304,7 +319,7 @@ impl Labels {
             return RBM_BASELINE.to_owned();
         }
         let mut name = s.method.to_string();
-        if s.method.is_mesh() {
+        if s.method.is_mesh() || s.method == Method::Floor {
             return name; // which has neither steps nor a map
         }
         // A search without a loop has no bound to tell.

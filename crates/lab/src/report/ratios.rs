@@ -26,6 +26,9 @@ pub struct Ratio {
     pub depth_worst: Option<f64>,
     /// The worst root mean square of the normals' angles, degrees.
     pub normal_rms: Option<f64>,
+    /// Time above the floor over the rival's whole time: the mean over the pictures of which the
+    /// floor is known.
+    pub above_floor: Option<f64>,
 }
 
 /// Every way's ratio to the RBM baseline, in the order in which the ways first appear. Rows whose
@@ -166,6 +169,10 @@ fn of_way<'a>(
         depth_p99: typical_depth(pairs.iter().map(|(a, _)| *a)),
         depth_worst: worst(|r| r.errors.depth.map(|d| d.p99)),
         normal_rms: worst(|r| r.errors.normal.map(|n| n.rms)),
+        above_floor: mean(pairs.iter().filter_map(|(row, rival)| {
+            let above = above_floor(rows, row)?;
+            Some(above / rival.time()?.value)
+        })),
     })
 }
 
@@ -178,6 +185,25 @@ fn baseline_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
                 == (row.settings.width, row.settings.height, row.settings.stage)
             && r.time().is_some()
     })
+}
+
+/// The time of a row above the floor of its picture and stage, ms; `None` where the floor is not
+/// known, and of the floor itself.
+#[must_use]
+pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
+    let of_this = |r: &&Row| {
+        r.settings.method == Method::Floor
+            && same_picture(r, row)
+            && r.settings.stage == row.settings.stage
+    };
+    let floor = rows.iter().find(of_this)?;
+    let above = row.time()?.value - floor.time()?.value;
+    (row.settings.method != Method::Floor).then_some(above)
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 /// Whether two rows show the same view at the same size.
@@ -280,6 +306,23 @@ mod tests {
         let mut compute = row(&[&[(None, 20.0)]]);
         compute.settings.stage = DrawStage::Compute;
         assert_eq!(over_rbm_baseline(&[compute, fine]).len(), 1);
+    }
+
+    /// 8 ms against 20 where 5 go without a search: 3 of the 20 are above the floor.
+    #[test]
+    fn the_floor_is_taken_off() {
+        let timed = |ms: f64| row(&[&[(None, ms)], &[(None, ms)]]);
+        let mut floor = timed(5.0);
+        floor.settings.method = Method::Floor;
+        let mut compute = timed(6.0);
+        compute.settings.stage = DrawStage::Compute;
+        let rows = [timed(8.0), floor, papers(timed(20.0)), compute];
+        let above = |k: usize| above_floor(&rows, &rows[k]).map(|ms| ms.round());
+        assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
+        let ratios = over_rbm_baseline(&rows);
+        let share = ratios[0].above_floor;
+        assert!(share.is_some_and(|s| (s - 0.15).abs() < 1e-12), "{share:?}");
+        assert_eq!(ratios[1].above_floor, None);
     }
 
     /// A run that was ended in its second pass: the picture that lacks the pass must not shift the

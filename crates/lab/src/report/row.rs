@@ -13,7 +13,7 @@ use revmap::scene::Offset;
 
 /// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of
 /// the passes' medians.
-pub const COLUMNS: [&str; 34] = [
+pub const COLUMNS: [&str; 35] = [
     "scene",
     "technique",
     "extend",
@@ -48,6 +48,7 @@ pub const COLUMNS: [&str; 34] = [
     "gpu_ms_low",
     "gpu_ms_high",
     "tolerance_px",
+    "above_floor_ms",
 ];
 
 /// Those that every version writes, in this order before all others.
@@ -261,9 +262,10 @@ impl Row {
     }
 
     /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are
-    /// empty: a number there would be believed.
+    /// empty: a number there would be believed. `above_floor`: as
+    /// [`ratios::above_floor`](super::ratios::above_floor).
     #[must_use]
-    pub fn record(&self, device: &str, driver: &str) -> Vec<String> {
+    pub fn record(&self, device: &str, driver: &str, above_floor: Option<f64>) -> Vec<String> {
         let gpu = match self.clocks() {
             Clocks::Agree => self.gpu_ms(),
             Clocks::Wall | Clocks::Disagree { .. } => Vec::new(),
@@ -317,6 +319,7 @@ impl Row {
             num(time.and_then(|t| t.ends()).map(|(low, _)| low)),
             num(time.and_then(|t| t.ends()).map(|(_, high)| high)),
             num(follows.then(|| s.tolerance.pixels())),
+            num(above_floor),
         ]
     }
 }

@@ -2,6 +2,7 @@
 //! report.
 
 use super::chart::style::{Dash, Marker, Style, color};
+use super::chart::xy::Guide;
 use super::names::stage;
 use super::plan::{Labels, is_rbm_baseline, variant};
 use super::row::Row;
@@ -25,6 +26,7 @@ fn search(method: Method) -> Style {
         Method::Search(Solver::Hull) => (color::ORANGE, Marker::Disk, Dash::Solid),
         Method::MeshLevels => (color::BLUE, Marker::Cross, Dash::Long),
         Method::Mesh { .. } => (color::BLUE, Marker::Square, Dash::Solid),
+        Method::Floor => (color::BLACK, Marker::Plus, Dash::Solid),
     };
     Style {
         dash,
@@ -44,6 +46,25 @@ pub fn style(s: &MethodSettings) -> Style {
     Style {
         filled: s.stage != DrawStage::Compute,
         ..look
+    }
+}
+
+/// The line of the floor's time in a chart over times: solid in the fragment stage, dotted in
+/// compute.
+#[must_use]
+pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
+    let dash = if s.stage == DrawStage::Compute {
+        Dash::Dots
+    } else {
+        Dash::Solid
+    };
+    Guide {
+        dash,
+        // Over every axis of errors.
+        ..Guide::dashed(
+            &format!("floor, {}", stage(s.stage)),
+            vec![(time, 1e-12), (time, 1e12)],
+        )
     }
 }
 

@@ -68,7 +68,7 @@ pub fn speed_and_error(page: &mut Page, folder: &Path, rows: &[Row]) -> Result<(
             &format!(
                 "{}: time of each method over that of the RBM baseline in the same stage, and its depth error (geometric means over the pictures). Filled markers: fragment \
                  stage; hollow markers: compute stage; bars: 95 % intervals. Lower is more exact, further left is faster. No method is better in both than one on the \
-                 dashed line, the Pareto front.",
+                 dashed line, the Pareto front; upright lines are the floor, a frame without a search.",
                 part.heading()
             ),
         );

@@ -25,7 +25,7 @@ pub fn interval(i: &Interval, digits: usize) -> String {
 }
 
 /// Columns of the table of times over the RBM baseline's.
-pub const RATIOS: [&str; 10] = [
+pub const RATIOS: [&str; 11] = [
     "method",
     "stage",
     "time / RBM baseline",
@@ -36,6 +36,7 @@ pub const RATIOS: [&str; 10] = [
     "depth p99 (h/512)",
     "worst depth p99 (h/512)",
     "worst normal rms (°)",
+    "above the floor / RBM baseline",
 ];
 
 /// Times over the RBM baseline's.
@@ -53,6 +54,7 @@ pub fn ratio_table(ratios: &[Ratio], labels: &Labels) -> Table {
             maybe(r.depth_p99),
             maybe(r.depth_worst),
             maybe(r.normal_rms),
+            maybe(r.above_floor),
         ]
     };
     Table::new(RATIOS, ratios.iter().map(record).collect())

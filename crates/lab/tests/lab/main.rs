@@ -5,6 +5,8 @@
 mod benchmark;
 #[cfg(feature = "report")]
 mod crowds;
+#[cfg(feature = "shaderc")]
+mod floor;
 #[cfg(feature = "mesh")]
 mod mesh;
 #[cfg(feature = "mesh")]

@@ -1,7 +1,7 @@
 //! The pages of a chart run: one for each view, and one that sums up.
 
 use super::{Measure, maps, most_exact, resolution, searches, summed};
-use crate::method::MethodSettings;
+use crate::method::{Method, MethodSettings};
 use crate::report::chapters;
 use crate::report::chart::front::{WORTH, front};
 use crate::report::folder::{keep_figure, write_text};
@@ -57,7 +57,7 @@ pub fn write(
             page.figure(
                 &figure,
                 "Each line is a search in one stage (filled markers: fragment, hollow: compute), its bound on steps (of `cone`, the rows of its table) growing from marker to marker (numbers: at both ends, and on the front), or the mesh, growing finer; bars are 95 % intervals of times. No \
-                 method is better in both time and error than one on the dashed line, the Pareto front.",
+                 method is better in both time and error than one on the dashed line, the Pareto front; upright lines are the floor, a frame without a search.",
             );
         }
         page.chapter("Maps");
@@ -129,7 +129,7 @@ fn summary(
             page.figure(
                 &figure,
                 "Each line is a search in one stage (filled markers: fragment, hollow: compute) over its bound on steps, or the mesh over its segments x rings (numbers: at meshes, at both ends, and on the front), its time over that of the RBM baseline in the same stage; bars are 95 % intervals. No \
-                 method is better in both than one on the dashed line, the Pareto front.",
+                 method is better in both than one on the dashed line, the Pareto front; upright lines are the floor, a frame without a search.",
             );
         }
     }
@@ -164,7 +164,9 @@ fn fronts(rows: &[Row]) -> Table {
             .iter()
             .map(|r| {
                 (
-                    r.time().map_or(f64::NAN, |t| t.value),
+                    r.time()
+                        .filter(|_| r.settings.method != Method::Floor)
+                        .map_or(f64::NAN, |t| t.value),
                     Measure::Depth.of(r).unwrap_or(f64::NAN),
                 )
             })

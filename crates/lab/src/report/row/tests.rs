@@ -55,7 +55,7 @@ fn clocks_that_disagree_are_told() {
 #[test]
 fn a_record_has_the_columns_of_the_contract() {
     let fine = row(&[&[(Some(20.0), 21.0), (Some(30.0), 31.0), (Some(10.0), 11.0)]]);
-    let record = fine.record("dev", "drv");
+    let record = fine.record("dev", "drv", Some(1.5));
     assert_eq!(record.len(), COLUMNS.len());
     let at = |name: &str| &record[COLUMNS.iter().position(|c| *c == name).unwrap()];
     for (column, wanted) in [
@@ -83,6 +83,7 @@ fn a_record_has_the_columns_of_the_contract() {
         ("gpu_ms_low", ""),
         ("gpu_ms_high", ""),
         ("tolerance_px", ""),
+        ("above_floor_ms", "1.5"),
     ] {
         assert_eq!(at(column), wanted, "{column}");
     }
@@ -92,12 +93,15 @@ fn a_record_has_the_columns_of_the_contract() {
         &[(Some(22.0), 23.0)],
         &[(Some(21.0), 22.0)],
     ]);
-    let (record, time) = (passes.record("dev", "drv"), passes.time().unwrap());
+    let (record, time) = (
+        passes.record("dev", "drv", Some(1.5)),
+        passes.time().unwrap(),
+    );
     let number = |k: usize| record[k].parse::<f64>().unwrap();
     assert!((number(14) - time.value).abs() < 1e-3 && (number(14) - 20.98).abs() < 0.01);
     assert!((number(31) - time.low).abs() < 1e-3 && (number(32) - time.high).abs() < 1e-3);
     assert!(time.low < 20.0 && time.high > 22.0);
-    let lies = row(&[&[(Some(0.036), 20.0)]]).record("dev", "drv");
+    let lies = row(&[&[(Some(0.036), 20.0)]]).record("dev", "drv", Some(1.5));
     assert_eq!(
         (lies[14].as_str(), lies[15].as_str(), lies[16].as_str()),
         ("", "", "20")

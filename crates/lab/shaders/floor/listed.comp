@@ -1,0 +1,34 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The floor of tiles with lists of patches: a ray hits where it enters the solid's bounding cylinder. No list is read.
+#include "stage/tile_patches.glsl"
+#include "stage/stores.glsl"
+
+void main()
+{
+    uint corner = bin_words[list_tiles(pushed.list) + 2u * gl_WorkGroupID.x];
+    begin();
+    uvec2 pixel = uvec2(corner & 0xffffu, corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
+    vec3 o = ray_origin(single_rays, pixel);
+    vec3 v = ray_direction(single_rays, pixel);
+    float a = dot(v.xy, v.xy);
+    float b = dot(o.xy, v.xy);
+    float inside = b * b - a * (dot(o.xy, o.xy) - solid.bounds.y * solid.bounds.y);
+    Nearest nearest;
+    nearest.hit.t = -(b + sqrt(max(inside, 0.0))) / a;
+    nearest.hit.point = o + nearest.hit.t * v;
+    nearest.hit.normal = vec3(nearest.hit.point.xy, 0.0);
+    nearest.hit.sense = vec3(1.0);
+    nearest.hit.at_border = false;
+    nearest.instance = 0u;
+    nearest.steps = 0u;
+    nearest.exhausted = false;
+    nearest.depth = depth_of(single_rays.base + nearest.hit.t);
+    if (all(lessThan(pixel, frame.size.xy))) {
+        count_steps(pixel, nearest);
+        if (DEPTH_TEST == 0u || nearest.depth < uintBitsToFloat(pixel_words[depth_word(pixel)])) {
+            keep_depth(pixel, nearest);
+            store(pixel, shade_nearest(pixel, nearest));
+        }
+    }
+}

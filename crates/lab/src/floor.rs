@@ -1,0 +1,72 @@
+//! The floor: a frame of the default search in which nothing is searched. Each pixel returns its
+//! first possible point: in the fragment stage where the hull's own triangle is, in compute where
+//! its ray enters the solid's bounding cylinder. Corners, tiles, depth, shading and store are those
+//! of the frame itself, so what a search takes is its time above the floor.
+//!
+//! Its shaders stand in `shaders/floor/` and are compiled with the feature `shaderc`; the renderer
+//! holds nothing of them.
+
+use revmap::error::{Error, Result, Stage};
+use revmap::gpu::Device;
+use revmap::scene::{Scene, Shadow};
+
+include!(concat!(env!("OUT_DIR"), "/floor.rs"));
+
+/// Whether the program was built with it.
+#[must_use]
+pub fn is_available() -> bool {
+    !MODULES.is_empty()
+}
+
+/// The device with the floor's shaders in place of the search's.
+///
+/// # Errors
+/// [`Stage::Usage`] where the program was built without `shaderc`; of Vulkan.
+pub fn device(device: &Device) -> Result<Device> {
+    if !is_available() {
+        return refused("this program was built without the feature `shaderc`, which compiles it");
+    }
+    // SAFETY: the shaders are built on the renderer's own includes, so their interface is that of
+    // the shaders that they stand for.
+    #[allow(unsafe_code)]
+    unsafe {
+        device.with_shaders(Box::new(words))
+    }
+}
+
+/// What the floor is not made for.
+///
+/// # Errors
+/// [`Stage::Usage`] for shadows, for replicas and for several copies of a solid.
+pub fn check(scene: &Scene) -> Result<()> {
+    let plain = |o: &revmap::scene::Object| o.repeat == [1; 3] && o.placements().len() == 1;
+    if scene.shadow == Shadow::Off && scene.objects.iter().all(plain) {
+        return Ok(());
+    }
+    refused("it is measured of single solids without shadows and replicas")
+}
+
+fn refused<T>(why: &str) -> Result<T> {
+    Err(Error::new(Stage::Usage, format!("no floor: {why}")).at_key("--solver"))
+}
+
+/// The floor's module in place of a search's; `None` of boxes' vertices and of lists of tiles.
+fn words(file: &str, macros: &[(&str, &str)]) -> Result<Option<Vec<u32>>> {
+    let of = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
+    if file != "hull.vert" && (file.ends_with(".vert") || of("SEARCH").is_none()) {
+        return Ok(None);
+    }
+    let output = of("OUTPUT").unwrap_or("OUTPUT_COLOR");
+    let dispatch = of("DISPATCH").unwrap_or("DISPATCH_RECTANGLE");
+    // Every plane is stored by one module, which shades textures or not.
+    let textured = if output == "OUTPUT_PLANES" {
+        "1"
+    } else {
+        of("TEXTURED").unwrap_or("0")
+    };
+    let name = format!("{file} {output} {dispatch} {textured}");
+    match MODULES.iter().find(|(known, _)| *known == name) {
+        Some((_, words)) => Ok(Some(words.to_vec())),
+        None => refused(&format!("there is no {name}")),
+    }
+}

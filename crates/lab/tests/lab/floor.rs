@@ -1,0 +1,69 @@
+//! The floor: no search can return less. All under the validation layers.
+
+use crate::mesh::{eye, scene_of};
+use crate::shapes;
+use revmap::error::Stage;
+use revmap::frame::Frame;
+use revmap::gpu::Device;
+use revmap::scene::{Scene, Shadow};
+use revmap::settings::{DrawStage, Planes, Solver};
+use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::renderer::MethodDevice;
+
+fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Frame {
+    let device = Device::open_validated(None).unwrap();
+    let settings = MethodSettings {
+        width: 240,
+        height: 180,
+        method,
+        stage,
+        planes,
+        ..MethodSettings::default()
+    };
+    let drawn = MethodDevice::new(device).unwrap().draw(scene, &settings);
+    drawn.unwrap().frame
+}
+
+/// Each pixel that the search hits is hit, no farther away, without a look-up.
+#[test]
+fn the_floor_is_the_first_possible_point() {
+    let scene = scene_of(shapes::vase(), eye(25.0, 2.6));
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let floor = drawn(&scene, Method::Floor, stage, Planes::All);
+        let found = drawn(&scene, Solver::Hull.into(), stage, Planes::All);
+        let mut nearer = 0;
+        for (k, (first, hit)) in floor.distance.iter().zip(&found.distance).enumerate() {
+            assert!(
+                *first <= hit + 1e-4,
+                "{stage:?}, pixel {k}: {first} > {hit}"
+            );
+            nearer += usize::from(*first < hit - 1e-3);
+        }
+        // It is no search: most of its points lie before the surface.
+        let hits = found.distance.iter().filter(|d| d.is_finite()).count();
+        assert!(
+            hits > 2000 && nearer > hits / 4,
+            "{stage:?}: {nearer} of {hits}"
+        );
+        assert!(floor.steps.iter().all(|steps| *steps == 0.0));
+        // Frames that are timed hold colour alone.
+        let color = drawn(&scene, Method::Floor, stage, Planes::Color);
+        for (k, (a, b)) in color.color.iter().zip(&floor.color).enumerate() {
+            assert!((a[3] - b[3]).abs() < 1e-3, "{stage:?}, pixel {k}");
+        }
+    }
+}
+
+#[test]
+fn what_has_no_floor_is_refused() {
+    let device = MethodDevice::new(Device::open_validated(None).unwrap()).unwrap();
+    let mut scene = scene_of(shapes::vase(), eye(25.0, 2.6));
+    scene.shadow = Shadow::Hard;
+    let settings = MethodSettings {
+        method: Method::Floor,
+        ..MethodSettings::default()
+    };
+    let error = device.draw(&scene, &settings).err().unwrap();
+    assert_eq!(error.stage, Stage::Usage);
+    assert!(error.to_string().contains("shadows"), "{error}");
+}
