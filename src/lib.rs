@@ -116,6 +116,7 @@
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
 //! | [`frame`] | the planes of a picture, PNG and EXR |
 //!
@@ -133,6 +134,7 @@
 //! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in
 //! `revmap-lab`; the program is `revmap-cli`.
 
+pub mod antialias;
 pub mod error;
 pub mod frame;
 pub mod gpu;

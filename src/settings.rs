@@ -197,6 +197,9 @@ pub struct Settings {
     /// Whether copies are left out that others are proven to hide. No pixel differs; false is there
     /// to show it.
     pub occlusion_culling: bool,
+    /// Whether silhouettes are smoothed in frames that are read back ([`crate::antialias`]). Else
+    /// every colour is that of the ray through the pixel's middle. Embedded renderers do without.
+    pub antialias: bool,
 }
 
 /// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage
@@ -293,6 +296,7 @@ impl Default for Settings {
             proxy_min_pixels: 150,
             tolerance: Tolerance::DEFAULT,
             occlusion_culling: true,
+            antialias: false,
         }
     }
 }

@@ -117,7 +117,7 @@ impl Compiler {
             DrawStage::Compute => Output::Compute(planes),
             DrawStage::Fragment => Output::Pass(PassFormats {
                 begun: PassKind::RenderPass {
-                    pass: self.pipelines.own_pass(planes)?,
+                    pass: self.pipelines.own_pass(planes, false)?,
                     subpass: 0,
                 },
                 samples: 1,

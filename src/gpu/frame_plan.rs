@@ -169,7 +169,7 @@ impl Renderer {
 
     /// Gives an entry the pipeline and the tables that its work asks for.
     fn apply(&mut self, number: u32, work: Work) -> Result<()> {
-        let several = self.order.len() > 1;
+        let several = self.order.len() > 1 || self.keeps_depths;
         let in_pass = self.draws_hulls();
         let casts = self.lighting.shadow != Shadow::Off;
         let Some(entry) = &mut self.entries[number as usize] else {

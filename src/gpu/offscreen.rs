@@ -10,6 +10,7 @@ use super::plan::DrawPath;
 use super::renderer::Renderer;
 use super::target::Target;
 use super::view::View;
+use crate::antialias::Solids;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Growth, Object, Placement, Scene};
@@ -44,6 +45,8 @@ pub struct Offscreen {
     settings: Settings,
     /// Whether a guest draws the scene's objects.
     guests_only: bool,
+    /// What silhouettes are smoothed by, where they are.
+    solids: Option<(Solids, CameraFrame)>,
     /// From the first thing that an update changes to the last: what one that failed in between has
     /// left must not be drawn.
     stale: bool,
@@ -101,13 +104,24 @@ impl Offscreen {
         }
         let size = (settings.width, settings.height);
         let view = view_of(scene, size)?;
+        // Distances are among all planes.
+        let keeps_depths = settings.antialias && settings.planes == Planes::Color;
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
         let raw = match settings.stage {
             DrawStage::Compute => vk::RenderPass::null(),
-            _ => shared.pipelines()?.own_pass(settings.planes)?,
+            _ => shared
+                .pipelines()?
+                .own_pass(settings.planes, keeps_depths)?,
         };
-        let target = Target::new(&shared, raw, settings.stage, settings.planes, size)?;
+        let target = Target::new(
+            &shared,
+            raw,
+            settings.stage,
+            settings.planes,
+            keeps_depths,
+            size,
+        )?;
         let output = match settings.stage {
             DrawStage::Compute => Output::Compute(settings.planes),
             _ => Output::Pass(PassFormats {
@@ -122,6 +136,7 @@ impl Offscreen {
         };
         let mut renderer = Renderer::new(device, output, &SearchSettings::from(settings), 1)?;
         renderer.set_target(target.for_shaders());
+        renderer.keeps_depths = keeps_depths && settings.stage == DrawStage::Compute;
         let mut offscreen = Self {
             renderer,
             target,
@@ -132,6 +147,7 @@ impl Offscreen {
             background: scene.background,
             settings: *settings,
             guests_only,
+            solids: None,
             stale: true,
             pass: raw,
             device: shared,
@@ -154,6 +170,13 @@ impl Offscreen {
         self.background = scene.background;
         self.stale = true;
         self.renderer.plan(&self.view)?;
+        if self.settings.antialias {
+            let (width, height) = (self.settings.width, self.settings.height);
+            let camera = CameraFrame::new(&scene.camera, width, height)?;
+            let mut solids = self.solids.take().map_or_else(Solids::default, |s| s.0);
+            solids.update(scene);
+            self.solids = Some((solids, camera));
+        }
         self.stale = false;
         Ok(())
     }
@@ -319,7 +342,23 @@ impl Offscreen {
     pub fn read(&self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
-        super::read_back::frame(&self.settings, self.background, &planes)
+        let mut frame = super::read_back::frame(&self.settings, self.background, &planes)?;
+        if let Some((solids, camera)) = &self.solids {
+            match self.settings.planes {
+                Planes::All => solids.smooth(camera, &mut frame),
+                _ => {
+                    // Compute's words begin with depths; fragments' come behind their colours.
+                    let bytes = planes.last().map_or(&[][..], Vec::as_slice);
+                    let view = &self.view;
+                    let depth = |pixel: usize| {
+                        let word = &bytes[4 * pixel..4 * pixel + 4];
+                        view.along_at(bytemuck::pod_read_unaligned(word))
+                    };
+                    solids.smooth_by(camera, &depth, &mut frame);
+                }
+            }
+        }
+        Ok(frame)
     }
 
     /// As [`Renderer::map_bytes`].

@@ -30,7 +30,7 @@ pub(crate) struct Pipelines {
     compiled: AtomicU64,
     owners: AtomicU64,
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
-    passes: Mutex<HashMap<Planes, vk::RenderPass>>,
+    passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
     /// Where modules come from that are not those embedded.
     #[cfg(feature = "other-shaders")]
@@ -203,16 +203,16 @@ impl Pipelines {
     }
 
     /// The render pass of off-screen frames.
-    pub fn own_pass(&self, planes: Planes) -> Result<vk::RenderPass> {
+    pub fn own_pass(&self, planes: Planes, keeps_depths: bool) -> Result<vk::RenderPass> {
         let mut passes = self
             .passes
             .lock()
             .map_err(|_| Error::new(Stage::Draw, "the render passes' lock is poisoned"))?;
-        if let Some(known) = passes.get(&planes) {
+        if let Some(known) = passes.get(&(planes, keeps_depths)) {
             return Ok(*known);
         }
-        let made = render_pass(&self.raw, planes)?;
-        passes.insert(planes, made);
+        let made = render_pass(&self.raw, planes, keeps_depths)?;
+        passes.insert((planes, keeps_depths), made);
         Ok(made)
     }
 

@@ -119,7 +119,8 @@ impl Renderer {
         let of = |solver| Variant::new(settings, planes, solver, &self.lighting, object, self.met);
         let fallback = matches!(solver, Solver::Quadric | Solver::Hull).then(|| of(FALLBACK));
         let wraps = settings.proxy_min_pixels != u32::MAX && object.repeat == [1; 3];
-        let (several, copies) = (self.order.len() > 1, object.placements().len() > 1);
+        let several = self.order.len() > 1 || self.keeps_depths;
+        let copies = object.placements().len() > 1;
         let compute = (!self.draws_hulls()).then_some(several);
         // An offset may move the size of tables across the limit.
         let own = surface.map_or(0, |s| s.tables().own);

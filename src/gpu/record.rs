@@ -118,10 +118,10 @@ impl Renderer {
         }
     }
 
-    /// Whether compute compares depths: there is more than one dispatch.
+    /// Whether compute compares depths: there is more than one dispatch, or they are read back.
     pub(crate) fn compares_depths(&self) -> bool {
         let several = |e: &Entry| matches!(&e.draw.work, Some(Work::Beams(all)) if all.len() > 1);
-        self.order.len() > 1 || self.ordered().any(several)
+        self.keeps_depths || self.order.len() > 1 || self.ordered().any(several)
     }
 
     /// Lists the tiles that a single instance's rays may meet, then traces those.

@@ -16,8 +16,13 @@ pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
 
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// Cleared at its start; its colours are left ready to be copied from.
-pub(crate) fn render_pass(raw: &ash::Device, planes: Planes) -> Result<vk::RenderPass> {
+/// Cleared at its start; its colours are left ready to be copied from, and its depths where they
+/// are kept.
+pub(crate) fn render_pass(
+    raw: &ash::Device,
+    planes: Planes,
+    keeps_depths: bool,
+) -> Result<vk::RenderPass> {
     let mut attachments: Vec<_> = color_formats(planes)
         .iter()
         .map(|format| {
@@ -40,13 +45,24 @@ pub(crate) fn render_pass(raw: &ash::Device, planes: Planes) -> Result<vk::Rende
     let depth = vk::AttachmentReference::default()
         .attachment(u32::try_from(colors.len()).unwrap_or(0))
         .layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+    let (store, layout) = if keeps_depths {
+        (
+            vk::AttachmentStoreOp::STORE,
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+        )
+    } else {
+        (
+            vk::AttachmentStoreOp::DONT_CARE,
+            vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+        )
+    };
     attachments.push(
         vk::AttachmentDescription::default()
             .format(DEPTH_FORMAT)
             .samples(vk::SampleCountFlags::TYPE_1)
             .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::DONT_CARE)
-            .final_layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL),
+            .store_op(store)
+            .final_layout(layout),
     );
     let subpasses = [vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
@@ -55,6 +71,11 @@ pub(crate) fn render_pass(raw: &ash::Device, planes: Planes) -> Result<vk::Rende
     use vk::AccessFlags as A;
     use vk::PipelineStageFlags as S;
     let fragment_tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
+    let (left, written) = if keeps_depths {
+        (fragment_tests, A::DEPTH_STENCIL_ATTACHMENT_WRITE)
+    } else {
+        (S::empty(), A::empty())
+    };
     let dependencies = [
         // The last frame's copies and depth tests are over before this one's clears.
         vk::SubpassDependency::default()
@@ -69,12 +90,12 @@ pub(crate) fn render_pass(raw: &ash::Device, planes: Planes) -> Result<vk::Rende
                     | A::DEPTH_STENCIL_ATTACHMENT_READ
                     | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
             ),
-        // This frame's colours are there before they are copied.
+        // What this frame leaves is there before it is copied.
         vk::SubpassDependency::default()
             .dst_subpass(vk::SUBPASS_EXTERNAL)
-            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT)
+            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | left)
             .dst_stage_mask(S::TRANSFER)
-            .src_access_mask(A::COLOR_ATTACHMENT_WRITE)
+            .src_access_mask(A::COLOR_ATTACHMENT_WRITE | written)
             .dst_access_mask(A::TRANSFER_READ),
     ];
     let info = vk::RenderPassCreateInfo::default()

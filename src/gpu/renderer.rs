@@ -73,6 +73,8 @@ pub struct Renderer {
     pub(super) lists: (Vec<u32>, usize, u32),
     /// In compute, and where every plane is drawn: what shaders write to, and how often it was set.
     pub(super) target: Option<(ComputeTarget, u64)>,
+    /// Whether compute leaves the depths of all pixels, also of one object alone.
+    pub(super) keeps_depths: bool,
     /// What frames in flight may still read, with the frame after which none does.
     pub(super) retired: VecDeque<(u64, Box<dyn Any + Send>)>,
     /// Frames prepared so far.
@@ -151,6 +153,7 @@ impl Renderer {
             listed: vec![0; frames],
             lists: (Vec::new(), 0, 0),
             target: None,
+            keeps_depths: false,
             retired: VecDeque::new(),
             frame: 0,
             rebuilds: 0,

@@ -59,6 +59,7 @@ impl Target {
         render_pass: vk::RenderPass,
         stage: DrawStage,
         planes: Planes,
+        keeps_depths: bool,
         (width, height): (u32, u32),
     ) -> Result<Self> {
         let limits = &device.limits;
@@ -116,7 +117,13 @@ impl Target {
             }
         }
         if stage != DrawStage::Compute {
-            let depth = image("depth", DEPTH_FORMAT, U::DEPTH_STENCIL_ATTACHMENT)?;
+            let copied = if keeps_depths {
+                U::TRANSFER_SRC
+            } else {
+                U::empty()
+            };
+            let usage = U::DEPTH_STENCIL_ATTACHMENT | copied;
+            let depth = image("depth", DEPTH_FORMAT, usage)?;
             let views: Vec<_> = target
                 .images
                 .iter()
@@ -263,7 +270,8 @@ impl Target {
         }
     }
 
-    /// Copies images and words to the host: one `Vec` of bytes each, the words last.
+    /// Copies images, depths that are kept, and words to the host: one `Vec` of bytes each, in this
+    /// order.
     pub fn read(&self, commands: &Commands) -> Result<Vec<Vec<u8>>> {
         let pixels = u64::from(self.width) * u64::from(self.height);
         let mut out = Vec::new();
@@ -276,17 +284,17 @@ impl Target {
                 MemoryLocation::GpuToCpu,
             )
         };
-        for image in &self.images {
-            let texel = if image.kind.format == vk::Format::R8G8B8A8_SRGB {
-                4
-            } else {
-                16
+        let copied = |i: &&Image| i.kind.usage.contains(vk::ImageUsageFlags::TRANSFER_SRC);
+        for image in self.images.iter().chain(self.depth.iter().filter(copied)) {
+            let texel = match image.kind.format {
+                vk::Format::R32G32B32A32_SFLOAT => 16,
+                _ => 4,
             };
             let mut buffer = host(pixels * texel)?;
             let region = vk::BufferImageCopy::default()
                 .image_subresource(
                     vk::ImageSubresourceLayers::default()
-                        .aspect_mask(vk::ImageAspectFlags::COLOR)
+                        .aspect_mask(image.kind.aspect())
                         .layer_count(1),
                 )
                 .image_extent(vk::Extent3D {

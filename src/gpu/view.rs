@@ -243,6 +243,16 @@ impl View {
         }
     }
 
+    /// How far along the view the depth buffer's value lies; infinite where nothing is drawn. Of
+    /// perspective and normal depths.
+    pub(crate) fn along_at(&self, depth: f32) -> f64 {
+        if depth < 1.0 {
+            self.depth[1] / (f64::from(depth) - self.depth[0])
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth
     /// along the view.
     pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {

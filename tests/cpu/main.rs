@@ -4,6 +4,7 @@
 #[path = "../common/cpu.rs"]
 mod common;
 
+mod antialias;
 mod contours;
 #[cfg(all(
     feature = "drawing",

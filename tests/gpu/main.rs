@@ -7,6 +7,7 @@ mod common;
 mod accuracy;
 mod agreement;
 mod agreement_textures;
+mod antialias;
 #[cfg(feature = "drawing")]
 mod bitmaps;
 mod bumps;

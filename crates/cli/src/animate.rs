@@ -130,7 +130,9 @@ impl Animate {
         first: &Scene,
         progress: &Progress,
     ) -> Result<Vec<Row>> {
-        let settings = self.drawing.settings(Planes::Color);
+        let mut settings = self.drawing.settings(Planes::Color);
+        // Nothing is smoothed where no picture is kept.
+        settings.antialias = self.samples.antialias(false) && self.output.is_some();
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.prewarm()?;

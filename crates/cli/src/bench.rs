@@ -17,7 +17,8 @@ use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::Extent;
 use revmap_lab::report::{
-    DeviceBench, budget, compare_runs, crowds, folder, overview, papers, scaling, text,
+    DeviceBench, antialiasing, budget, compare_runs, crowds, folder, overview, papers, scaling,
+    text,
 };
 use std::path::PathBuf;
 
@@ -50,8 +51,12 @@ pub struct Bench {
     /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them
     #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget"])]
     crowds: bool,
+    /// Anti-aliasing: eight solids by one ray per pixel, with smoothed silhouettes and by several
+    /// rays, against 64 rays
+    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget", "crowds"])]
+    antialiasing: bool,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds"])]
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing"])]
     compare: Vec<PathBuf>,
 }
 
@@ -74,6 +79,9 @@ impl Bench {
         }
         if self.crowds {
             return self.crowds();
+        }
+        if self.antialiasing {
+            return self.antialiasing();
         }
         let (budget, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
             (TimeBudget::QUICK, Extent::One, &[25.0], &[(800, 600)])
@@ -189,6 +197,27 @@ impl Bench {
         crowds::write(&session.out, &plan, &measured, &flights, &session.machine)?;
         print(&crowds::as_text(&measured.rows, &flights));
         session.finish(&plan, &measured)
+    }
+
+    fn antialiasing(&self) -> Result<()> {
+        let stages = self.axes(&[], &[]).stages;
+        let (extent, rounds) = if self.quick {
+            (Extent::One, 5)
+        } else {
+            (Extent::All, 25)
+        };
+        let rounds = self.lists.rounds.map_or(rounds, usize::from);
+        let session = Session::open(&self.lists)?;
+        let device = MethodDevice::new(session.device.clone())?;
+        let progress = Progress::start("measuring", session.quiet);
+        let say = |done, all| progress.report(done, all);
+        let lines = antialiasing::measure(&device, &stages, extent, rounds, &say)?;
+        drop(progress);
+        antialiasing::write(&session.out, &lines, rounds, &session.machine)?;
+        print(&antialiasing::as_text(&lines));
+        let report = session.out.join("report.html");
+        output::result(&format!("{}: {} rows", report.display(), lines.len()));
+        Ok(())
     }
 
     fn scaling(&self) -> Result<()> {

@@ -118,6 +118,7 @@ impl Drawing {
             map_format: self.map_format,
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
+            antialias: false,
         }
     }
 

@@ -5,6 +5,7 @@ use super::progress::Progress;
 use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
+use revmap::antialias;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::{self, Frame};
 use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
@@ -84,6 +85,8 @@ impl Render {
         if floats && self.drawing.tolerance.is_none() {
             settings.tolerance = Tolerance::EXACT;
         }
+        let reference = self.drawing.stage == Tracing::Reference;
+        settings.antialias = self.samples.antialias(floats || reference);
         let mut picture = match self.drawing.stage {
             Tracing::Reference => self.on_cpu(&scene, &settings)?,
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
@@ -166,11 +169,14 @@ impl Render {
     fn on_cpu(&self, scene: &Scene, settings: &MethodSettings) -> Result<Picture> {
         let begin = Instant::now();
         let progress = Progress::start("drawing the reference", self.drawing.quiet);
-        let settings = settings.into();
+        let drawn = settings.into();
         let frame = self.samples.draw(scene, |scene| {
-            reference::draw(scene, &settings, &|done, total| {
-                progress.report(done, total)
-            })
+            let mut frame =
+                reference::draw(scene, &drawn, &|done, total| progress.report(done, total))?;
+            if settings.antialias {
+                antialias::silhouettes(scene, &mut frame)?;
+            }
+            Ok(frame)
         })?;
         Ok(Picture {
             frame,
@@ -308,6 +314,7 @@ impl Render {
             "stage": options::name_of(&options::STAGES, &self.drawing.stage),
             "solver": device.map(|_| settings.method.to_string()),
             "samples": self.samples.count,
+            "antialias": settings.antialias,
             "device": device.map(|d| json!({ "name": d.name, "kind": d.kind, "driver": d.driver })),
             "gpu_ms": picture.times.gpu_ms,
             "frame_ms": picture.times.frame_ms,

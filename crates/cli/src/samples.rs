@@ -1,81 +1,39 @@
-//! Anti-aliasing: several rays in each pixel, spread evenly over its area.
+//! Anti-aliasing: several rays in each pixel, or smoothed silhouettes.
 
 use clap::Args;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::scene::Scene;
+use revmap_lab::samples::averaged;
 
-/// How many rays a pixel gets
+/// How edges are smoothed
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Samples {
     /// Rays per pixel. Colours are averaged; all other channels come from the middle ray
     #[arg(long = "samples", value_name = "N", default_value = "1", value_parser = super::options::named(&COUNTS))]
     pub count: u32,
+    /// Whether pixels that a silhouette cuts are blended by the part that lies beyond it; other
+    /// channels than colour stay [default: on, but off with more than one ray per pixel, where an
+    /// .exr is written, and in the stage reference]
+    #[arg(long, value_name = "WHETHER", value_parser = super::options::named(&SWITCH))]
+    pub antialias: Option<bool>,
 }
 
 const COUNTS: [(&str, u32); 4] = [("1", 1), ("4", 4), ("16", 16), ("64", 64)];
+const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 impl Samples {
-    /// Draws the scene through the middle of each pixel by `draw`, then once for each sample, and
-    /// averages the colours of these, linear and weighted by alpha.
+    /// Whether silhouettes are smoothed; `exact`: in pictures that others are compared with only
+    /// when told.
+    pub fn antialias(self, exact: bool) -> bool {
+        self.antialias.unwrap_or(self.count == 1 && !exact)
+    }
+
+    /// As [`averaged`].
     ///
     /// # Errors
     /// Of `draw`.
-    pub fn draw(
-        self,
-        scene: &Scene,
-        mut draw: impl FnMut(&Scene) -> Result<Frame>,
-    ) -> Result<Frame> {
-        let mut frame = draw(scene)?;
-        if self.count == 1 {
-            return Ok(frame);
-        }
-        let mut sums = vec![[0.0f32; 4]; frame.pixels()];
-        let mut shifted = scene.clone();
-        for i in 0..self.count {
-            let [x, y] = point(i, self.count);
-            shifted.camera.shift = [scene.camera.shift[0] + x, scene.camera.shift[1] + y];
-            for (sum, [r, g, b, a]) in sums.iter_mut().zip(draw(&shifted)?.color) {
-                for (sum, part) in sum.iter_mut().zip([r * a, g * a, b * a, a]) {
-                    *sum += part;
-                }
-            }
-        }
-        for (color, [r, g, b, a]) in frame.color.iter_mut().zip(sums) {
-            let weight = if a > 0.0 { a.recip() } else { 0.0 };
-            *color = [r * weight, g * weight, b * weight, a / self.count as f32];
-        }
-        Ok(frame)
-    }
-}
-
-/// Point `i` of `n`, as pixels from the middle: a Hammersley set. Each of `n` columns and, `n`
-/// being a power of two, each of `n` rows holds one point.
-fn point(i: u32, n: u32) -> [f64; 2] {
-    let inverse = f64::from(i.reverse_bits()) / 2f64.powi(32);
-    let half = 0.5 / f64::from(n);
-    [
-        f64::from(i) / f64::from(n) + half - 0.5,
-        inverse + half - 0.5,
-    ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_row_and_column_of_a_pixel_holds_one_point() {
-        for (_, n) in COUNTS {
-            for axis in 0..2 {
-                let mut places: Vec<f64> = (0..n).map(|i| point(i, n)[axis]).collect();
-                places.sort_by(f64::total_cmp);
-                for (k, place) in places.iter().enumerate() {
-                    let wanted = (k as f64 + 0.5) / f64::from(n) - 0.5;
-                    assert!((place - wanted).abs() < 1e-12, "{n}: {places:?}");
-                }
-            }
-        }
-        assert_eq!(point(0, 1), [0.0, 0.0]);
+    pub fn draw(self, scene: &Scene, draw: impl FnMut(&Scene) -> Result<Frame>) -> Result<Frame> {
+        averaged(self.count, scene, draw)
     }
 }

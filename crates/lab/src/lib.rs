@@ -8,6 +8,7 @@
 //! | `mesh` | the mesh baseline: the same solids as triangles (feature `mesh`) |
 //! | `floor` | frames without a search: what is left of a frame's time (feature `mesh`) |
 //! | `renderer` | one renderer for every method (feature `mesh`) |
+//! | [`samples`] | several rays per pixel |
 //! | `report` | views and ways to draw them: times beside errors, as tables, charts and one page (feature `report`) |
 //! | `stability` | cases in which methods fail, and how each search fares (feature `report`) |
 
@@ -21,5 +22,6 @@ pub mod method;
 pub mod renderer;
 #[cfg(feature = "report")]
 pub mod report;
+pub mod samples;
 #[cfg(feature = "report")]
 pub mod stability;

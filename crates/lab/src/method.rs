@@ -227,6 +227,8 @@ pub struct MethodSettings {
     pub planes: Planes,
     /// Allowed error of searches on patches.
     pub tolerance: Tolerance,
+    /// Whether silhouettes are smoothed.
+    pub antialias: bool,
 }
 
 impl Default for MethodSettings {
@@ -244,6 +246,7 @@ impl Default for MethodSettings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
+            antialias: settings.antialias,
         }
     }
 }
@@ -263,6 +266,7 @@ impl From<&MethodSettings> for Settings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
+            antialias: settings.antialias,
             ..Self::default()
         }
     }

@@ -126,6 +126,34 @@ fn maps_are_written_and_weighed() {
 /// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other
 /// channels are the plain picture's.
 #[test]
+fn silhouettes_are_smoothed_in_pictures_and_not_in_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, options: &[&str]| {
+        let file = folder.path().join(name);
+        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
+            .args(["render", &asset("scenes/pawn.toml"), "-q", "-o"])
+            .arg(&file)
+            .args(["--size", "64x48"])
+            .args(options)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        std::fs::read(&file).unwrap()
+    };
+    for stage in ["fragment", "compute", "reference"] {
+        let png = |how: &[&str]| draw("picture.png", &[&["--stage", stage], how].concat());
+        let [on, off] = ["on", "off"].map(|how| png(&["--antialias", how]));
+        assert!(on != off, "{stage}");
+        let default = if stage == "reference" { &off } else { &on };
+        assert!(png(&[]) == *default, "{stage}");
+        assert!(png(&["--samples", "4"]) == png(&["--samples", "4", "--antialias", "off"]));
+    }
+    let [plain, on] = [&[][..], &["--antialias", "on"]].map(|how| draw("frame.exr", how));
+    assert!(plain == draw("frame.exr", &["--antialias", "off"]));
+    assert!(plain != on);
+}
+
+#[test]
 fn samples_average_colours_alone() {
     let folder = tempfile::tempdir().unwrap();
     let draw = |name: &str, options: &[&str]| {

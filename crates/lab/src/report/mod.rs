@@ -4,6 +4,7 @@
 //! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
 //! are taken, [`stats`] for what their intervals mean.
 
+pub mod antialiasing;
 pub mod budget;
 mod chapters;
 pub mod chart;

@@ -69,6 +69,7 @@ impl Axes {
                                         map_format,
                                         planes: Planes::Color,
                                         tolerance: Tolerance::EXACT,
+                                        antialias: false,
                                     };
                                     let follows = method.follows_tolerance();
                                     let given = if follows {

@@ -1,0 +1,325 @@
+//! Anti-aliasing: how far pictures of one ray per pixel, of smoothed silhouettes and of several rays
+//! are from pictures of 64, and what each costs.
+
+use super::folder::write_text;
+use super::machine::Machine;
+use super::names::{number, stage};
+use super::page::Page;
+use super::stats;
+use super::suite::{Extent, views};
+use super::table::Table;
+use super::view::View;
+use crate::compare::{PIXELS_PER_DEGREE, flip_map};
+use crate::method::MethodSettings;
+use crate::renderer::{MethodDevice, MethodRenderer};
+use crate::samples::averaged;
+use revmap::error::Result;
+use revmap::frame::Frame;
+use revmap::scene::Scene;
+use revmap::settings::{DrawStage, Planes};
+use std::path::Path;
+use std::time::Instant;
+
+/// Rays per pixel of the pictures that are compared with.
+const TRUTH: u32 = 64;
+
+/// How edges are treated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// So many rays per pixel.
+    Rays(u32),
+    /// One ray, and silhouettes smoothed.
+    Silhouettes,
+}
+
+impl Way {
+    /// What is compared, one ray first.
+    pub const ALL: [Self; 4] = [
+        Self::Rays(1),
+        Self::Silhouettes,
+        Self::Rays(4),
+        Self::Rays(16),
+    ];
+
+    fn name(self) -> String {
+        match self {
+            Self::Rays(1) => "1 ray".into(),
+            Self::Rays(count) => format!("{count} rays"),
+            Self::Silhouettes => "silhouettes".into(),
+        }
+    }
+
+    fn rays(self) -> u32 {
+        match self {
+            Self::Rays(count) => count,
+            Self::Silhouettes => 1,
+        }
+    }
+}
+
+/// One picture, in one way.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// The solid.
+    pub scene: String,
+    /// Where rays are traced.
+    pub stage: DrawStage,
+    /// How edges are treated.
+    pub way: Way,
+    /// Mean FLIP against the picture of 64 rays.
+    pub flip: f64,
+    /// Milliseconds of drawing, and of reading beyond what one ray takes; median over the rounds.
+    pub ms: f64,
+    /// That over the time of one ray in the same round; median.
+    pub ratio: f64,
+}
+
+/// The renderers of one scene, planes and stage: without and with smoothed silhouettes.
+struct Drawers<'a> {
+    scene: &'a Scene,
+    plain: MethodRenderer,
+    smoothed: MethodRenderer,
+}
+
+impl<'a> Drawers<'a> {
+    fn new(
+        device: &MethodDevice,
+        scene: &'a Scene,
+        stage: DrawStage,
+        planes: Planes,
+    ) -> Result<Self> {
+        let renderer = |antialias| {
+            let settings = MethodSettings {
+                stage,
+                planes,
+                antialias,
+                ..MethodSettings::default()
+            };
+            device.renderer(scene, &settings)
+        };
+        Ok(Self {
+            scene,
+            plain: renderer(false)?,
+            smoothed: renderer(true)?,
+        })
+    }
+
+    fn renderer(&mut self, way: Way) -> &mut MethodRenderer {
+        match way {
+            Way::Silhouettes => &mut self.smoothed,
+            Way::Rays(_) => &mut self.plain,
+        }
+    }
+
+    fn picture(&mut self, way: Way) -> Result<Frame> {
+        let scene = self.scene;
+        let renderer = self.renderer(way);
+        averaged(way.rays(), scene, |scene| {
+            renderer.update(scene)?;
+            renderer.draw()?;
+            renderer.read()
+        })
+    }
+
+    /// Milliseconds of drawing and of reading back.
+    fn time(&mut self, way: Way) -> Result<[f64; 2]> {
+        let renderer = self.renderer(way);
+        let mut drawn = 0.0;
+        for _ in 0..way.rays() {
+            drawn += renderer.draw()?.frame_ms;
+        }
+        let start = Instant::now();
+        renderer.read()?;
+        Ok([drawn, start.elapsed().as_secs_f64() * 1e3])
+    }
+}
+
+/// Draws and times the program's solids in every way, `rounds` times in turn; says to `progress`
+/// how many of how many pictures are done.
+///
+/// # Errors
+/// Of the device, and of the solids that the program carries.
+pub fn measure(
+    device: &MethodDevice,
+    stages: &[DrawStage],
+    extent: Extent,
+    rounds: usize,
+    progress: &dyn Fn(usize, usize),
+) -> Result<Vec<Line>> {
+    let views = views(extent, &[25.0])?;
+    let mut lines = Vec::new();
+    for (number, view) in views.iter().enumerate() {
+        for (k, &stage) in stages.iter().enumerate() {
+            progress(number * stages.len() + k, views.len() * stages.len());
+            lines.extend(one(device, view, stage, rounds)?);
+        }
+    }
+    Ok(lines)
+}
+
+fn one(device: &MethodDevice, view: &View, stage: DrawStage, rounds: usize) -> Result<Vec<Line>> {
+    let mut pictures = Drawers::new(device, &view.scene, stage, Planes::All)?;
+    let truth = pictures.picture(Way::Rays(TRUTH))?;
+    let flip = |way| {
+        let map = flip_map(&truth, &pictures.picture(way)?, PIXELS_PER_DEGREE);
+        Ok(map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len().max(1) as f64)
+    };
+    let flips = Way::ALL
+        .into_iter()
+        .map(flip)
+        .collect::<Result<Vec<f64>>>()?;
+    let mut drawers = Drawers::new(device, &view.scene, stage, Planes::Color)?;
+    for way in Way::ALL {
+        drawers.time(way)?;
+    }
+    let mut times = vec![Vec::with_capacity(rounds); Way::ALL.len()];
+    for _ in 0..rounds {
+        for (times, way) in times.iter_mut().zip(Way::ALL) {
+            times.push(drawers.time(way)?);
+        }
+    }
+    let line = |k: usize| {
+        let way = Way::ALL[k];
+        // What a picture takes to be read is the same for all but what smoothing adds.
+        let spent = |round: usize| match way {
+            Way::Rays(_) => times[k][round][0],
+            Way::Silhouettes => times[k][round][0] + times[k][round][1] - times[0][round][1],
+        };
+        let all: Vec<f64> = (0..rounds).map(spent).collect();
+        let ratios: Vec<f64> = (0..rounds).map(|r| all[r] / times[0][r][0]).collect();
+        Line {
+            scene: view.name.clone(),
+            stage,
+            way,
+            flip: flips[k],
+            ms: stats::median(&all).unwrap_or(f64::NAN),
+            ratio: stats::median(&ratios).unwrap_or(f64::NAN),
+        }
+    };
+    Ok((0..Way::ALL.len()).map(line).collect())
+}
+
+/// FLIP over that of one ray in the same picture.
+fn gain(lines: &[Line], line: &Line) -> f64 {
+    let one = |l: &&Line| l.scene == line.scene && l.stage == line.stage && l.way == Way::Rays(1);
+    lines
+        .iter()
+        .find(one)
+        .map_or(f64::NAN, |l| line.flip / l.flip)
+}
+
+fn table(lines: &[Line]) -> Table {
+    let header = [
+        "scene",
+        "stage",
+        "way",
+        "flip",
+        "flip_over_1_ray",
+        "time_ms",
+        "time_over_1_ray",
+    ];
+    let record = |line: &Line| {
+        vec![
+            line.scene.clone(),
+            stage(line.stage).to_owned(),
+            line.way.name(),
+            number(line.flip, 3),
+            number(gain(lines, line), 3),
+            number(line.ms, 3),
+            number(line.ratio, 3),
+        ]
+    };
+    Table::new(header, lines.iter().map(record).collect())
+}
+
+/// Geometric means over the pictures of a stage.
+fn means(lines: &[Line]) -> Table {
+    let mut records = Vec::new();
+    for of in [DrawStage::Fragment, DrawStage::Compute] {
+        for way in Way::ALL {
+            let at: Vec<&Line> = lines
+                .iter()
+                .filter(|l| l.stage == of && l.way == way)
+                .collect();
+            let mean = |value: &dyn Fn(&Line) -> f64| {
+                let values: Vec<f64> = at.iter().map(|l| value(l)).collect();
+                let mean = stats::geometric(&values).map(|m| m.value);
+                mean.map(|m| number(m, 3)).unwrap_or_default()
+            };
+            if !at.is_empty() {
+                records.push(vec![
+                    stage(of).to_owned(),
+                    way.name(),
+                    mean(&|l| l.flip),
+                    mean(&|l| gain(lines, l)),
+                    mean(&|l| l.ratio),
+                ]);
+            }
+        }
+    }
+    let header = ["stage", "way", "FLIP", "FLIP / 1 ray", "time / 1 ray"];
+    Table::new(header, records)
+}
+
+/// All tables as text.
+#[must_use]
+pub fn as_text(lines: &[Line]) -> String {
+    table(lines).aligned() + "\nGeometric means over the pictures:\n" + &means(lines).aligned()
+}
+
+/// Writes `antialiasing.csv` and the page.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(folder: &Path, lines: &[Line], rounds: usize, machine: &Machine) -> Result<()> {
+    write_text(&folder.join("antialiasing.csv"), &table(lines).csv())?;
+    let mut page = Page::new("revmap: anti-aliasing");
+    page.facts(&machine.lines());
+    page.chapter("Geometric means over the pictures");
+    page.text(&format!(
+        "FLIP is the mean over all pixels, against a picture of {TRUTH} rays per pixel by the same search, all in floats. Times are of pictures of colour alone and count from submission to completion, medians of {rounds} \
+         rounds in which all ways are drawn in turn. Of smoothed silhouettes reading back counts, too, by what it takes longer than of one ray: there they are smoothed. \
+         Several rays are as many pictures; adding them up is not counted.",
+    ));
+    page.table(&means(lines), &[0, 1]);
+    page.chapter("Every picture");
+    page.table(&table(lines), &[0, 1, 2]);
+    write_text(&folder.join("report.html"), &page.html())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn planted_gains_are_told() {
+        let line = |scene: &str, way, flip, ratio| Line {
+            scene: scene.into(),
+            stage: DrawStage::Compute,
+            way,
+            flip,
+            ms: 3.0,
+            ratio,
+        };
+        let lines = [
+            line("a", Way::Rays(1), 0.004, 1.0),
+            line("a", Way::Silhouettes, 0.001, 1.2),
+            line("b", Way::Rays(1), 0.0004, 1.0),
+            line("b", Way::Silhouettes, 0.0004, 1.25),
+        ];
+        let found = table(&lines);
+        let gain = found.column("flip_over_1_ray").unwrap();
+        let told = |row: usize| found.records[row][gain].as_str();
+        assert_eq!(
+            [told(0), told(1), told(2), told(3)],
+            ["1", "0.25", "1", "1"]
+        );
+        let means = means(&lines);
+        assert_eq!(means.records.len(), 2);
+        assert_eq!(
+            means.records[1][1..],
+            ["silhouettes", "0.000632", "0.5", "1.22"]
+        );
+    }
+}

@@ -1,0 +1,130 @@
+//! From lines on the screen to parts of pixels: which pixels a line cuts, and how much of each lies
+//! beyond it.
+
+use super::lines::Point;
+use glam::{DVec2, Vec2Swizzles};
+
+/// A pixel whose colour is made from those of pixels about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Blend {
+    /// Number of the pixel.
+    pub pixel: u32,
+    /// How much of it shows what its middle does not.
+    pub part: f32,
+    /// Numbers of pixels, and their weights: beyond the line, at it, and one further in.
+    pub sources: [(u32, f32); 3],
+}
+
+/// How much of a pixel lies on its middle's side of a line: a line that passes the middle at
+/// `distance` pixels, measured along one axis, and climbs by `slope` along the other one, at most 1
+/// either way.
+#[must_use]
+pub fn coverage(distance: f64, slope: f64) -> f64 {
+    let (x, m) = (distance.abs(), slope.abs().min(1.0));
+    // Up to here the line leaves the pixel by the two sides that it cuts at right angles.
+    let whole = 0.5 * (1.0 - m);
+    let beyond = 0.5 * (1.0 + m) - x;
+    if x <= whole {
+        0.5 + x
+    } else if beyond > 0.0 {
+        1.0 - beyond * beyond / (2.0 * m)
+    } else {
+        1.0
+    }
+}
+
+/// The picture that lines are drawn into.
+pub(super) struct Screen<'a, D> {
+    pub width: u32,
+    pub height: u32,
+    /// Depth along the view of what a pixel shows; infinite where it shows nothing.
+    pub depth: &'a D,
+    /// A pixel's size at depth 1.
+    pub pixel_size: f64,
+}
+
+impl<D: Fn(usize) -> f64> Screen<'_, D> {
+    /// Appends the blends of the pixels on both sides of a line, where they show what it belongs
+    /// to.
+    pub fn line(&self, a: &Point, b: &Point, blends: &mut Vec<Blend>) {
+        let way = b.at - a.at;
+        let steep = way.y.abs() > way.x.abs();
+        // Along the longer side, and across.
+        let turned = |p: DVec2| if steep { p.yx() } else { p };
+        let (a, b) = if turned(way).x < 0.0 { (b, a) } else { (a, b) };
+        let (from, to) = (turned(a.at), turned(b.at));
+        let (length, width) = if steep {
+            (self.height, self.width)
+        } else {
+            (self.width, self.height)
+        };
+        // Pixels whose middle lies between the ends: of lines that join each once.
+        let first = (from.x - 0.5).ceil().max(0.0);
+        let last = (to.x - 0.5).ceil().min(f64::from(length));
+        if first >= last {
+            return;
+        }
+        let slope = (to.y - from.y) / (to.x - from.x);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the picture
+        for along in first as u32..last as u32 {
+            let beside = f64::from(along) + 0.5 - from.x;
+            let across = from.y + slope * beside - 0.5;
+            if !(0.0..f64::from(width) - 1.0).contains(&across) {
+                continue;
+            }
+            let number = |across: u32| {
+                let (x, y) = if steep {
+                    (across, along)
+                } else {
+                    (along, across)
+                };
+                y * self.width + x
+            };
+            let (low, rest) = (across as u32, across.fract());
+            let pair = [number(low), number(low + 1)];
+            let depths = pair.map(|pixel| (self.depth)(pixel as usize));
+            let s = beside / (to.x - from.x);
+            let depth = 1.0 / (a.depth.recip() * (1.0 - s) + b.depth.recip() * s);
+            let reach = a.reach + (b.reach - a.reach) * s + 2.0 * self.pixel_size * depth;
+            let apart = (depths[0].min(depths[1]) - depth).abs();
+            if apart > reach || apart.is_nan() {
+                continue;
+            }
+            // The pixel that shows the solid, how far its middle is from the line, the one beyond
+            // the line, and the one further in.
+            let (own, inside, other, further) = if depths[0] < depths[1] {
+                (pair[0], rest, pair[1], low.checked_sub(1))
+            } else {
+                (pair[1], 1.0 - rest, pair[0], Some(low + 2))
+            };
+            let further = further.filter(|across| *across < width).map(number);
+            let further = further.filter(|pixel| {
+                a.curved && ((self.depth)(*pixel as usize) - depth).abs() <= 2.0 * reach
+            });
+            for (pixel, beyond) in [(own, inside), (other, 1.0 - inside)] {
+                let covered = coverage(beyond, slope);
+                if covered >= 1.0 {
+                    continue;
+                }
+                let covered = if pixel == own { covered } else { 1.0 - covered };
+                let change = further.map_or(0.0, |_| curved(inside, covered));
+                let weights = [1.0 - covered, covered * (1.0 - change), covered * change];
+                let pixels = [other, own, further.unwrap_or(own)];
+                blends.push(Blend {
+                    pixel,
+                    part: (if pixel == own { 1.0 - covered } else { covered }) as f32,
+                    sources: std::array::from_fn(|k| (pixels[k], weights[k] as f32)),
+                });
+            }
+        }
+    }
+}
+
+/// How far the colour of a strip of a solid, which reaches from its silhouette so far into it, is
+/// from that at `inside` towards that a pixel further in.
+///
+/// Towards a silhouette the normal turns as the square root of the distance, and colours follow.
+fn curved(inside: f64, strip: f64) -> f64 {
+    let middle = 2.0 / 3.0 * strip.sqrt();
+    (middle - inside.sqrt()) / ((inside + 1.0).sqrt() - inside.sqrt())
+}

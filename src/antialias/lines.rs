@@ -1,0 +1,294 @@
+//! The lines of a solid that a view shows as edges: where its surface turns away from the eye, and
+//! its rims.
+//!
+//! On a quadric of revolution the points at which it turns away lie in one plane, the polar plane
+//! of the eye. At height `z` this gives the cosine of their azimuth, seen from the eye's, in closed
+//! form, and the heights at which it reaches 1 or -1 are the roots of a quadratic. Where two
+//! patches meet at an angle the surface turns away along an arc of their common circle.
+
+use crate::scene::{CameraFrame, Placement};
+use crate::surface::QuadricPatch;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// A point of a line, on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    /// Pixels from the upper left corner.
+    pub at: DVec2,
+    /// Depth along the view.
+    pub depth: f64,
+    /// By how much the depth may differ a pixel beside the line.
+    pub reach: f64,
+    /// Whether the solid lies beyond it, so that it is an edge; else the solid is before it.
+    pub bulges: bool,
+    /// Whether the surface turns away there, and is no rim.
+    pub curved: bool,
+}
+
+/// Cosine of the least angle at which two patches meet in a rim that is smoothed though both are
+/// seen.
+const RIM: f64 = 0.94;
+/// Pixels by which a line may pass beside the curve.
+const FLATNESS: f64 = 0.02;
+/// Halvings of a curve at most.
+const HALVINGS: u32 = 10;
+/// Least distance of the eye from the axis, object units.
+const OFF_AXIS: f64 = 1e-6;
+
+/// A copy of a solid as the eye sees it, in object units about its axis.
+pub(super) struct Sight {
+    /// The eye.
+    eye: DVec3,
+    /// Its distance from the axis, and the direction in which it lies.
+    distance: f64,
+    azimuth: DVec2,
+    /// The depth of a point is its way from the eye along this.
+    forward: DVec3,
+    /// Its place on the screen, times its depth, likewise.
+    right: DVec3,
+    down: DVec3,
+    middle: DVec2,
+    /// Ways to the next pixel at depth 1.
+    step: [DVec3; 2],
+    /// Largest difference of depths that is followed.
+    most: f64,
+}
+
+impl Sight {
+    pub fn new(camera: &CameraFrame, placement: &Placement, axis: DVec2) -> Self {
+        let back = placement.rotation.conjugate();
+        let scale = placement.scale;
+        let eye = (back * (camera.eye - placement.position)) / scale - axis.extend(0.0);
+        let beside = eye.truncate();
+        let distance = beside.length().max(OFF_AXIS);
+        let row = |v: DVec3| (back * v) * scale;
+        let step = |v: DVec3| (back * v) / scale;
+        Self {
+            eye,
+            distance,
+            azimuth: beside.try_normalize().unwrap_or(DVec2::X),
+            forward: row(camera.forward),
+            right: row(camera.right / camera.right.length_squared()),
+            down: row(-camera.up / camera.up.length_squared()),
+            middle: camera.middle.into(),
+            step: [step(camera.right), step(camera.up)],
+            most: 0.25 * scale.max_element(),
+        }
+    }
+
+    /// A surface's point from the eye, at radius, height, cosine and sine of the azimuth.
+    fn place(&self, p: DVec2, [cos, sin]: [f64; 2]) -> (DVec3, DVec3) {
+        let DVec2 { x: cx, y: cy } = self.azimuth;
+        let beside = p.x * DVec2::new(cx * cos - cy * sin, cy * cos + cx * sin);
+        let place = beside.extend(p.y);
+        (place, place - self.eye)
+    }
+
+    /// The point of the screen; `None` behind the eye.
+    fn point(&self, patches: [&QuadricPatch; 2], p: DVec2, turn: [f64; 2]) -> Option<Point> {
+        let (place, from_eye) = self.place(p, turn);
+        let depth = from_eye.dot(self.forward);
+        if depth <= 1e-9 || depth.is_nan() {
+            return None;
+        }
+        let at = DVec2::new(from_eye.dot(self.right), from_eye.dot(self.down)) / depth;
+        let ray = from_eye / depth;
+        let (mut reach, mut bulges) = (0.0f64, false);
+        for patch in patches {
+            // Along the ray G is `steep s + bend s^2` about the point, less what a pixel beside
+            // changes it by.
+            let [a, _, k1, k2] = patch.quadric;
+            let gradient = DVec3::new(
+                2.0 * a * place.x,
+                2.0 * a * place.y,
+                k1 + 2.0 * k2 * place.z,
+            );
+            let beside: f64 = self.step.iter().map(|s| gradient.dot(*s).abs()).sum();
+            let change = beside * depth;
+            let bend = a * ray.truncate().length_squared() + k2 * ray.z * ray.z;
+            let steep = gradient.dot(ray).abs();
+            let root = (steep * steep + 4.0 * bend.max(0.0) * change).sqrt();
+            let own = 2.0 * change / (steep + root);
+            reach = reach.max(if own < self.most { own } else { self.most });
+            bulges |= bend > 0.0;
+        }
+        Some(Point {
+            at: at + self.middle,
+            depth,
+            reach,
+            bulges,
+            curved: true,
+        })
+    }
+
+    /// Hands on the lines of one level of the solid, as pairs of points.
+    pub fn lines(&self, patches: &[QuadricPatch], emit: &mut impl FnMut(&Point, &Point)) {
+        for patch in patches {
+            self.turning(patch, emit);
+        }
+        for patch in patches {
+            if let Some(next) = patch.next {
+                self.rim(patch, &patches[next as usize], emit);
+            }
+        }
+    }
+
+    /// Where a patch turns away.
+    fn turning(&self, patch: &QuadricPatch, emit: &mut impl FnMut(&Point, &Point)) {
+        if patch.is_plane() {
+            return;
+        }
+        let [a, k0, k1, k2] = patch.quadric;
+        // a r distance cos = -(h0 + h1 z)
+        let h0 = k0 + 0.5 * k1 * self.eye.z;
+        let h1 = 0.5 * k1 + k2 * self.eye.z;
+        let e2 = self.distance * self.distance;
+        let quadratic = [
+            h0 * h0 + a * e2 * k0,
+            2.0 * h0 * h1 + a * e2 * k1,
+            h1 * h1 + a * e2 * k2,
+        ];
+        let [low, high] = patch.z;
+        let mut ends = vec![low];
+        ends.extend(
+            roots(quadratic)
+                .into_iter()
+                .filter(|z| *z > low && *z < high),
+        );
+        ends.push(high);
+        for pair in ends.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let middle = 0.5 * (from + to);
+            let [c0, c1, c2] = quadratic;
+            if c0 + middle * (c1 + middle * c2) > 0.0 || to <= from {
+                continue;
+            }
+            for side in [1.0, -1.0] {
+                // Close to the roots the azimuth goes as the square root of the height.
+                let at = |s: f64| {
+                    let z = from + (to - from) * 0.5 * (1.0 - (PI * s).cos());
+                    let r = patch.square_at(z).max(0.0).sqrt();
+                    let cos = (-(h0 + h1 * z) / (a * r * self.distance)).clamp(-1.0, 1.0);
+                    let sin = side * (1.0 - cos * cos).max(0.0).sqrt();
+                    if cos.is_nan() {
+                        return None;
+                    }
+                    self.point([patch; 2], DVec2::new(r, z), [cos, sin])
+                };
+                follow(&at, emit);
+            }
+        }
+    }
+
+    /// The circle in which two patches meet: where one is seen and the other is not, if the solid
+    /// is convex there; where both are, if they meet at an angle.
+    fn rim(
+        &self,
+        before: &QuadricPatch,
+        after: &QuadricPatch,
+        emit: &mut impl FnMut(&Point, &Point),
+    ) {
+        let p = before.end;
+        let normals = [before, after].map(|patch| patch.gradient(p).normalize_or_zero());
+        let turn = normals[0].perp_dot(normals[1]);
+        if p.x < 1e-9 || turn.abs() < 1e-12 {
+            return;
+        }
+        let [mut s, mut t] = normals.map(|n| self.seen(p, n));
+        if s[0] > t[0] || (s[0] == t[0] && s[1] > t[1]) {
+            (s, t) = (t, s);
+        }
+        let both = [s[0].max(t[0]), s[1].min(t[1])];
+        let sharp = normals[0].dot(normals[1]) < RIM;
+        let arcs = match (turn > 0.0, sharp) {
+            // Either is seen.
+            (true, true) if both[0] < both[1] => [[s[0], s[1].max(t[1])], [0.0; 2]],
+            (true, true) => [s, t],
+            (true, false) if both[0] < both[1] => [[s[0], both[0]], [both[1], s[1].max(t[1])]],
+            (true, false) => [s, t],
+            (false, true) => [both, [0.0; 2]],
+            (false, false) => return,
+        };
+        for [from, to] in arcs {
+            if from >= to {
+                continue;
+            }
+            for side in [1.0, -1.0] {
+                let at = |part: f64| {
+                    let (sin, cos) = (from + (to - from) * part).sin_cos();
+                    let mut point = self.point([before, after], p, [cos, side * sin])?;
+                    (point.bulges, point.curved) = (true, false);
+                    Some(point)
+                };
+                follow(&at, emit);
+            }
+        }
+    }
+
+    /// The azimuths, from 0 to pi off the eye's, at which a surface of this normal faces the eye.
+    fn seen(&self, p: DVec2, normal: DVec2) -> [f64; 2] {
+        let along = normal.y * (self.eye.z - p.y) - normal.x * p.x;
+        let across = normal.x * self.distance;
+        if across.abs() < 1e-12 {
+            return [0.0, if along > 0.0 { PI } else { 0.0 }];
+        }
+        let turn = (-along / across).clamp(-1.0, 1.0).acos();
+        if across > 0.0 {
+            [0.0, turn]
+        } else {
+            [turn, PI]
+        }
+    }
+}
+
+/// Hands on a curve, given over 0 to 1, as lines that it is near to.
+fn follow(at: &impl Fn(f64) -> Option<Point>, emit: &mut impl FnMut(&Point, &Point)) {
+    let mut last = at(0.0);
+    for k in 1..=4 {
+        let to = f64::from(k) / 4.0;
+        let next = at(to);
+        if let (Some(a), Some(b)) = (&last, &next) {
+            halve(at, [(to - 0.25, a), (to, b)], HALVINGS, emit);
+        }
+        last = next;
+    }
+}
+
+fn halve(
+    at: &impl Fn(f64) -> Option<Point>,
+    [(from, a), (to, b)]: [(f64, &Point); 2],
+    left: u32,
+    emit: &mut impl FnMut(&Point, &Point),
+) {
+    let way = b.at - a.at;
+    let length = way.length();
+    let middle = 0.5 * (from + to);
+    if left > 0
+        && length > 0.5
+        && let Some(m) = at(middle)
+        && (m.at - a.at).perp_dot(way).abs() > FLATNESS * length
+    {
+        halve(at, [(from, a), (middle, &m)], left - 1, emit);
+        halve(at, [(middle, &m), (to, b)], left - 1, emit);
+        return;
+    }
+    if a.bulges && b.bulges {
+        emit(a, b);
+    }
+}
+
+/// The real roots of `c0 + c1 x + c2 x^2`, in order.
+fn roots([c0, c1, c2]: [f64; 3]) -> Vec<f64> {
+    let square = c1 * c1 - 4.0 * c2 * c0;
+    if square < 0.0 || square.is_nan() {
+        return Vec::new();
+    }
+    let q = -0.5 * (c1 + square.sqrt().copysign(c1));
+    let mut all: Vec<f64> = [q / c2, c0 / q]
+        .into_iter()
+        .filter(|x| x.is_finite())
+        .collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all
+}

@@ -1,0 +1,63 @@
+//! What of an object's silhouettes does not depend on the view: its boundary as patches, as coarse
+//! as a copy's size on the screen allows.
+
+use crate::error::Result;
+use crate::scene::{GrownProfiles, Object, Placement};
+use crate::surface::{Contour, ContourSource, FitOptions, QuadricPatch, fit_patches};
+use glam::DVec2;
+use std::sync::OnceLock;
+
+/// Levels that are kept, each twice as coarse as the one before.
+const LEVELS: usize = 13;
+/// Pixels by which patches may differ from the boundary.
+const TOLERANCE: f64 = 1.0 / 32.0;
+
+/// The boundary of an object, prepared.
+pub(super) struct Meridian {
+    /// The object in the box that its offset has grown.
+    pub object: Object,
+    /// Where its axis stands in the box.
+    pub axis: DVec2,
+    contour: Contour,
+    levels: [OnceLock<Vec<QuadricPatch>>; LEVELS],
+}
+
+impl Meridian {
+    /// `None` of replicas, which their cells cut.
+    ///
+    /// # Errors
+    /// Where the contour does not close.
+    pub fn new(object: &Object) -> Result<Option<Self>> {
+        if object.repeat != [1; 3] {
+            return Ok(None);
+        }
+        let grown = GrownProfiles::default().grown(object);
+        let object = grown.map_or_else(|| object.clone(), |grown| grown.object);
+        let contour = ContourSource::new(&object.profile.outline)?.contour(&object.offset)?;
+        let radius = object.profile.radius;
+        Ok(Some(Self {
+            axis: DVec2::from(object.axis.map(|o| (2.0 * o - 1.0) * radius)),
+            object,
+            contour,
+            levels: Default::default(),
+        }))
+    }
+
+    /// The patches for a copy whose unit takes so many pixels.
+    pub fn patches(&self, pixels: f64) -> &[QuadricPatch] {
+        let exact = FitOptions::default().tolerance;
+        let coarser = (TOLERANCE / (pixels * exact)).log2().floor();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
+        let level = coarser.clamp(0.0, LEVELS as f64 - 1.0) as usize;
+        self.levels[level].get_or_init(|| {
+            let tolerance = exact * f64::from(1u32 << level);
+            fit_patches(&self.contour, &FitOptions { tolerance })
+        })
+    }
+
+    /// Distance from the middle of a copy's box to its corners.
+    pub fn size(&self, copy: &Placement) -> f64 {
+        let radius = self.object.profile.radius;
+        (glam::DVec3::new(radius, radius, 0.5) * copy.scale).length()
+    }
+}

@@ -1,0 +1,156 @@
+//! Anti-aliasing of silhouettes from the solids themselves, for a frame of one ray per pixel.
+//!
+//! A solid's silhouette, and the rims where its surface bends, are lines that its patches give in
+//! closed form. Each line is walked on the screen. A pixel that it cuts keeps the part of its own
+//! colour that lies on its middle's side, and takes the rest from the neighbour across. A line that
+//! something hides does nothing: the frame's distances tell.
+//!
+//! Nothing is traced, and pixels that no line cuts are not looked at. So the cost follows the length
+//! of the silhouettes. It works on the planes of a [`Frame`], whoever drew them: either stage, any
+//! search, the reference.
+//!
+//! Colours within a surface stay as they are: textures, highlights and shadows are not smoothed, nor
+//! where two solids cut each other, nor replicas.
+
+mod coverage;
+mod lines;
+mod meridian;
+
+pub use coverage::coverage;
+
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::scene::{CameraFrame, Object, Placement, Scene};
+use coverage::{Blend, Screen};
+use lines::Sight;
+use meridian::Meridian;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Smooths the silhouettes of a frame of this scene. It must have distances; where they are
+/// infinite, nothing is hit.
+///
+/// # Errors
+/// Of the scene's camera.
+pub fn silhouettes(scene: &Scene, frame: &mut Frame) -> Result<()> {
+    let mut solids = Solids::default();
+    solids.update(scene);
+    let camera = CameraFrame::new(&scene.camera, frame.width, frame.height)?;
+    solids.smooth(&camera, frame);
+    Ok(())
+}
+
+/// The solids of a scene, prepared; those that do not change are kept.
+#[derive(Default)]
+pub(crate) struct Solids {
+    of: Vec<(Object, Option<Arc<Meridian>>)>,
+}
+
+impl Solids {
+    /// Takes over a scene. Objects whose contour does not close are left out.
+    pub fn update(&mut self, scene: &Scene) {
+        self.of.truncate(scene.objects.len());
+        for (number, object) in scene.objects.iter().enumerate() {
+            let known = self.of.get(number).filter(|(old, _)| old.equals(object));
+            if known.is_none() {
+                let made = Meridian::new(object).ok().flatten().map(Arc::new);
+                let entry = (object.clone(), made);
+                match self.of.get_mut(number) {
+                    Some(old) => *old = entry,
+                    None => self.of.push(entry),
+                }
+            }
+        }
+    }
+
+    /// Smooths a frame by its distances.
+    pub fn smooth(&self, camera: &CameraFrame, frame: &mut Frame) {
+        let (size, distance) = ((frame.width, frame.height), &frame.distance);
+        #[allow(clippy::cast_possible_truncation)] // columns and rows
+        let depth = |pixel: usize| {
+            let (x, y) = (pixel as u32 % size.0, pixel as u32 / size.0);
+            f64::from(distance[pixel]) / camera.pixel(x, y).length()
+        };
+        let blends = self.blends(camera, size, &depth);
+        apply(&blends, &mut frame.color);
+    }
+
+    /// The same by depths along the view, of each pixel number, infinite where nothing is hit.
+    pub fn smooth_by<D>(&self, camera: &CameraFrame, depth: &D, frame: &mut Frame)
+    where
+        D: Fn(usize) -> f64 + Sync,
+    {
+        let blends = self.blends(camera, (frame.width, frame.height), depth);
+        apply(&blends, &mut frame.color);
+    }
+
+    /// The parts of pixels that show what is beside them; each pixel once.
+    fn blends<D>(&self, camera: &CameraFrame, size: (u32, u32), depth: &D) -> Vec<Blend>
+    where
+        D: Fn(usize) -> f64 + Sync,
+    {
+        let screen = Screen {
+            width: size.0,
+            height: size.1,
+            depth,
+            pixel_size: camera.right.length(),
+        };
+        let of = |solid: &Meridian, copy: &Placement| {
+            let mut blends = Vec::new();
+            let pixels = pixels_per_unit(solid, copy, camera);
+            if pixels > 0.0 {
+                Sight::new(camera, copy, solid.axis).lines(solid.patches(pixels), &mut |a, b| {
+                    screen.line(a, b, &mut blends)
+                });
+            }
+            blends
+        };
+        let solids = self.of.iter().filter_map(|(_, solid)| solid.as_deref());
+        let mut all: Vec<Blend> = solids
+            .flat_map(|solid| {
+                let copies = solid.object.placements().par_iter().with_min_len(16);
+                copies
+                    .flat_map_iter(|copy| of(solid, copy))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        // Where several lines cut a pixel, the one that takes most of it.
+        all.sort_unstable_by(|a, b| {
+            let parts = b.part.total_cmp(&a.part);
+            a.pixel.cmp(&b.pixel).then(parts)
+        });
+        all.dedup_by_key(|blend| blend.pixel);
+        all
+    }
+}
+
+/// The most pixels that a unit of a copy takes; 0 behind the eye.
+fn pixels_per_unit(solid: &Meridian, copy: &Placement, camera: &CameraFrame) -> f64 {
+    let up = copy.rotation * (0.5 * copy.scale * glam::DVec3::Z);
+    let depth = (copy.position + up - camera.eye).dot(camera.forward);
+    let size = solid.size(copy);
+    if depth <= -size {
+        return 0.0;
+    }
+    copy.scale.max_element() / (camera.right.length() * (depth - size).max(1e-3 * size))
+}
+
+/// Blends colours, weighted by alpha.
+fn apply(blends: &[Blend], colors: &mut [[f32; 4]]) {
+    let mixed = |blend: &Blend| {
+        let mut sum = [0.0; 4];
+        for (pixel, weight) in blend.sources {
+            let [r, g, b, a] = colors[pixel as usize];
+            for (sum, part) in sum.iter_mut().zip([r * a, g * a, b * a, a]) {
+                *sum += part * weight;
+            }
+        }
+        let [r, g, b, a] = sum.map(|v| v.max(0.0));
+        let scale = if a > 0.0 { a.recip() } else { 0.0 };
+        [r * scale, g * scale, b * scale, a.min(1.0)]
+    };
+    let mixed: Vec<_> = blends.iter().map(mixed).collect();
+    for (blend, color) in blends.iter().zip(mixed) {
+        colors[blend.pixel as usize] = color;
+    }
+}
