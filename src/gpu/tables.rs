@@ -37,12 +37,21 @@ impl GpuTables {
         for record in &tables.records {
             vectors.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
         }
+        let first_range = vectors.len();
+        let ranges = |pair: &[GpuPatch]| {
+            let range = |k: usize| {
+                pair.get(k)
+                    .map_or([0; 2], |r| [r.range[0], r.range[1]].map(f32::to_bits))
+            };
+            let [[a, b], [c, d]] = [range(0), range(1)];
+            [a, b, c, d]
+        };
+        vectors.extend(tables.records.chunks(2).map(ranges));
         let own = vectors.len();
-        vectors.extend(tables.records.iter().map(|r| r.range.map(f32::to_bits)));
         Self {
             vectors,
             own,
-            facts: [index(first_record), index(own), unit.to_bits()],
+            facts: [index(first_record), index(first_range), unit.to_bits()],
             beam_nodes: BEAM_FIRST_NODE / 4,
         }
     }

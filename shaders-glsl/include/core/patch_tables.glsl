@@ -3,7 +3,7 @@
 //   and the largest (rounded up, high half) in units of solid.patches.w; then the runs of the rows, first << RUN_BITS |
 //   count;
 // - records, two vectors each, from solid.patches.y on: a patch's quadric, its guard;
-// - from solid.patches.z on, a vector a record: the range of z.
+// - from solid.patches.z on, two records a vector: their ranges of z.
 // Of the envelope of a map BEAM_NODES nodes alone. Frusta of hulls stand by themselves (frusta.glsl).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
@@ -13,7 +13,7 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
 
-// The batch's own tables alone, but for the ranges: software drivers gather from uniform buffers several times as fast.
+// The batch's own tables alone: software drivers gather from uniform buffers several times as fast.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[PATCH_VECTORS];
 };

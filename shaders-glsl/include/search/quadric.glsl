@@ -48,7 +48,8 @@ bool starts_within(Meridian m)
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
         vec4 q = patch_vector(solid.patches.y + 2u * record);
-        vec2 range = uintBitsToFloat(patch_tables[solid.patches.x + solid.patches.z + record].xy);
+        vec4 ranges = patch_vector(solid.patches.z + (record >> 1));
+        vec2 range = (record & 1u) == 0u ? ranges.xy : ranges.zw;
         float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
     }
