@@ -15,7 +15,7 @@ use revmap_lab::report::measure::{Measured, Observer, RenderedCase, TimeBudget, 
 use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
-use revmap_lab::report::suite::Extent;
+use revmap_lab::report::suite::{self, Extent};
 use revmap_lab::report::{
     DeviceBench, antialiasing, budget, compare_runs, crowds, folder, overview, papers, scaling,
     text,
@@ -55,6 +55,13 @@ pub struct Bench {
     /// rays, against 64 rays
     #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget", "crowds"])]
     antialiasing: bool,
+    /// The solids by every technique: plain, extended, beveled, chamfered, textured
+    #[arg(long, conflicts_with_all = ["full", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing"])]
+    techniques: bool,
+    /// Prints a table of the default search in the runs of these folders: a row for each technique,
+    /// a column for each driver; measures nothing
+    #[arg(long, num_args = 1.., value_name = "DIR", conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing", "techniques", "compare"])]
+    drivers: Vec<PathBuf>,
     /// Holds the results in folder NEW against those in folder OLD; measures nothing
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing"])]
     compare: Vec<PathBuf>,
@@ -66,6 +73,10 @@ impl Bench {
         if let [old, new] = self.compare.as_slice() {
             let found = compare_runs::compare(old, new)?;
             print(&compare_runs::as_text(&found));
+            return Ok(());
+        }
+        if !self.drivers.is_empty() {
+            print(&compare_runs::drivers::markdown(&self.drivers)?);
             return Ok(());
         }
         if self.tables {
@@ -102,7 +113,10 @@ impl Bench {
         } else {
             (&plan::USUAL, &plan::MESHES)
         };
-        let views = self.lists.views(extent, elevations)?;
+        let mut views = self.lists.views(extent, elevations)?;
+        if self.techniques {
+            views = suite::techniques(&views)?;
+        }
         let axes = self.axes(sizes, methods);
         let mut plan = Plan::new(views, &axes.combinations());
         if self.lists.solver.is_empty() {

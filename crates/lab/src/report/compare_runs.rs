@@ -1,5 +1,6 @@
 //! Two folders of results held against each other: two versions of the program, or two devices.
 
+pub mod drivers;
 mod run;
 
 use super::names::number;

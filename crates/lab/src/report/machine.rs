@@ -78,7 +78,8 @@ impl Machine {
         lines
     }
 
-    /// A name for a folder of results: `2026-01-31-llvmpipe`.
+    /// A name for a folder of results, after day, device and the driver's version:
+    /// `2026-01-31-lavapipe-22.3.6`.
     #[must_use]
     pub fn folder(&self) -> String {
         let words: String = self
@@ -93,8 +94,13 @@ impl Machine {
         } else {
             name.join("-")
         };
+        let number = |word: &&str| {
+            word.contains('.') && word.chars().all(|c| c.is_ascii_digit() || c == '.')
+        };
+        let version = self.driver.split([' ', '-']).find(number);
+        let version = version.map(|v| format!("-{v}")).unwrap_or_default();
         format!(
-            "{}-{name}",
+            "{}-{name}{version}",
             self.date.split(' ').next().unwrap_or("undated")
         )
     }
@@ -149,11 +155,12 @@ mod tests {
         let mut here = Machine::here(
             "llvmpipe (LLVM 15.0.6, 256 bits)",
             "cpu",
-            "Mesa",
+            "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)",
             "revmap bench",
         );
         here.date = "2026-01-31 10:00 UTC".into();
-        assert_eq!(here.folder(), "2026-01-31-lavapipe");
+        assert_eq!(here.folder(), "2026-01-31-lavapipe-22.3.6");
+        here.driver = "NVIDIA".into();
         here.device = "NVIDIA GeForce RTX 4090".into();
         assert_eq!(here.folder(), "2026-01-31-nvidia-geforce-rtx");
         assert!(here.lines().iter().all(|(_, which)| !which.is_empty()) && here.threads > 0);

@@ -4,8 +4,9 @@
 use super::view::View;
 use glam::DVec3;
 use revmap::error::{Error, Result, Stage};
+use revmap::maps::ColorMap;
 use revmap::profile::{Profile, ProfileAxis};
-use revmap::scene::{Camera, Object, Scene};
+use revmap::scene::{Camera, Object, Offset, Scene};
 use std::sync::Arc;
 
 /// What a solid is turned from.
@@ -115,6 +116,76 @@ pub fn views(extent: Extent, elevations: &[f64]) -> Result<Vec<View>> {
     Ok(views)
 }
 
+/// What a technique makes of a plain solid's view.
+type Change = fn(&mut View) -> Result<()>;
+
+/// The techniques of [`techniques`]: names that end their views' names, and what they change.
+const TECHNIQUES: [(&str, Change); 5] = [
+    ("revolution", |_| Ok(())),
+    ("extended", |view| offset(view, 0.06, 0.0, 1.0)),
+    ("beveled", |view| offset(view, 0.0, 0.25, 1.0)),
+    ("chamfered", |view| offset(view, 0.0, 0.8, 0.2)),
+    (TEXTURED, |view| {
+        let texels = (0..64 * 64u32).map(|k| match (k / 8 + k / 512) % 2 {
+            0 => [190, 150, 90, 255],
+            _ => [90, 40, 20, 255],
+        });
+        let map = Arc::new(ColorMap::from_texels(64, 64, texels.collect())?);
+        for object in &mut view.scene.objects {
+            object.texturing.color_map = Some(map.clone());
+        }
+        Ok(())
+    }),
+];
+
+/// The technique that no offset tells.
+const TEXTURED: &str = "textured";
+
+fn offset(view: &mut View, extend: f64, bevel: f64, chamfer: f64) -> Result<()> {
+    for object in &mut view.scene.objects {
+        object.offset = Offset {
+            extend,
+            bevel,
+            chamfer,
+        };
+    }
+    Ok(())
+}
+
+/// Each view by every technique: plain, extended by 0.06, beveled by 0.25, beveled by 0.8 and
+/// chamfered to 0.2, and under a chequered colour map. Names end in the technique's.
+///
+/// # Errors
+/// Of the colour map.
+pub fn techniques(views: &[View]) -> Result<Vec<View>> {
+    let mut all = Vec::new();
+    for view in views {
+        for (name, change) in TECHNIQUES {
+            let mut view = view.clone();
+            change(&mut view)?;
+            view.name = format!("{}-{name}", view.name);
+            all.push(view);
+        }
+    }
+    Ok(all)
+}
+
+/// The technique that a row of `results.csv` shows: what its view is named after, else that of its
+/// offset.
+pub(super) fn technique_of<'a>(scene: &str, technique: &'a str) -> &'a str {
+    if scene.trim_end_matches(":close").ends_with(TEXTURED) {
+        TEXTURED
+    } else {
+        technique
+    }
+}
+
+/// Where a technique stands among all; one that is not among them stands last.
+pub(super) fn place_of(technique: &str) -> usize {
+    let known = TECHNIQUES.iter().position(|(name, _)| *name == technique);
+    known.unwrap_or(TECHNIQUES.len())
+}
+
 /// The first of the suite, for what is measured on one solid alone.
 ///
 /// # Errors
@@ -142,6 +213,13 @@ mod tests {
         for (i, view) in all.iter().enumerate() {
             view.scene.check().unwrap();
             assert!(all[..i].iter().all(|v| v.name != view.name));
+        }
+        let each = techniques(&all[..2]).unwrap();
+        assert_eq!((each.len(), each[1].name.as_str()), (10, "vase@0-extended"));
+        for view in each {
+            view.scene.check().unwrap();
+            let told = technique_of(&view.name, view.technique().name()).to_owned();
+            assert!(view.name.ends_with(&told), "{} is {told}", view.name);
         }
         assert_eq!(views(Extent::One, &[20.0]).unwrap().len(), 1);
         assert_eq!((all.len(), all[1].name.as_str()), (24, "vase@25"));

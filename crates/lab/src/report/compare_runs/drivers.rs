@@ -1,0 +1,161 @@
+//! One table of several runs: a row for each technique and stage, a column for each driver.
+
+use super::run::Run;
+use crate::method::Method;
+use crate::report::names::{number, percent};
+use crate::report::stats;
+use crate::report::suite::{place_of, technique_of};
+use revmap::error::Result;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What a cell is made of.
+#[derive(Default)]
+struct Cell {
+    /// Logarithms of times over the RBM baseline's, by picture.
+    logs: Vec<f64>,
+    /// Logarithms of depth errors, h/512.
+    depths: Vec<f64>,
+    wrong: f64,
+    pixels: f64,
+}
+
+impl Cell {
+    /// `0.45 (0.30 to 0.62); 0.008; 0.001 %`.
+    fn text(&self) -> String {
+        if self.logs.is_empty() {
+            return "–".to_owned();
+        }
+        let mean = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+        let end = |pick: fn(f64, f64) -> f64| self.logs.iter().copied().reduce(pick);
+        let ends = [f64::min, f64::max].map(|pick| end(pick).unwrap_or(0.0).exp());
+        let depth = match self.depths.as_slice() {
+            [] => "–".to_owned(),
+            some => number(mean(some), 2),
+        };
+        format!(
+            "**{}** ({} to {}); {depth}; {}",
+            number(mean(&self.logs), 2),
+            number(ends[0], 2),
+            number(ends[1], 2),
+            percent(self.wrong / self.pixels.max(1.0))
+        )
+    }
+}
+
+/// The default search in every run, as a Markdown table: its time over that of the RBM baseline in
+/// the same picture and stage (geometric mean, and the range over pictures), its depth error (99th
+/// percentile in h/512, geometric mean), and its wrong pixels over those of the picture.
+///
+/// # Errors
+/// Of reading the folders' files.
+pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
+    // By the technique's place, its name and tolerance, whether it is compute.
+    let mut rows: BTreeMap<(usize, String, bool), Vec<Cell>> = BTreeMap::new();
+    let mut drivers = Vec::new();
+    for (column, folder) in folders.iter().enumerate() {
+        let run = Run::load(folder.as_ref())?;
+        let table = &run.results;
+        let at = |name: &str| table.column(name);
+        let (solver, stage, tolerance) = (at("solver")?, at("stage")?, at("tolerance_px")?);
+        drivers.push(match table.records.first() {
+            Some(first) => first[at("driver")?].clone(),
+            None => String::new(),
+        });
+        for (index, record) in table.records.iter().enumerate() {
+            let ratio = run.over_baseline(index + 1);
+            let time = ratio.and_then(|passes| stats::geometric(&passes));
+            let (true, Some(time)) = (record[solver] == Method::DEFAULT.name(), time) else {
+                continue;
+            };
+            let technique = technique_of(&record[at("scene")?], &record[at("technique")?]);
+            let mut name = technique.to_owned();
+            if !matches!(record[tolerance].as_str(), "" | "0") {
+                name += &format!(", tolerance {} pixels", record[tolerance]);
+            }
+            let key = (place_of(technique), name, record[stage] == "compute");
+            let none = || folders.iter().map(|_| Cell::default()).collect();
+            let cell = &mut rows.entry(key).or_insert_with(none)[column];
+            let value = |name: &str| Ok(record[at(name)?].parse::<f64>().unwrap_or(0.0));
+            cell.logs.push(time.value.ln());
+            cell.wrong += value("missed")? + value("ghost")?;
+            cell.pixels += value("width")? * value("height")?;
+            let depth = value("depth_p99_texels")?;
+            cell.depths.extend((depth > 0.0).then(|| depth.ln()));
+        }
+    }
+    let mut out = format!("| technique | stage | {} |\n", drivers.join(" | "));
+    out += &format!("|---|---|{}\n", "---|".repeat(drivers.len()));
+    for ((_, name, compute), cells) in rows {
+        let stage = if compute { "compute" } else { "fragment" };
+        let cells: Vec<String> = cells.iter().map(Cell::text).collect();
+        out += &format!("| {name} | {stage} | {} |\n", cells.join(" | "));
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::report::folder::{raw, results, write_text};
+    use crate::report::machine::Machine;
+    use crate::report::plan::rbm_baseline;
+    use crate::report::row::Row;
+    use crate::report::row::tests::row;
+    use crate::report::view::tests::spindle;
+    use revmap::settings::DrawStage;
+
+    /// A run of one driver: the default takes `ms`, the RBM baseline 20.
+    fn run(driver: &str, ms: &[(&str, DrawStage, f64)]) -> tempfile::TempDir {
+        let mut rows: Vec<Row> = Vec::new();
+        for &(scene, stage, ms) in ms {
+            let mut ours = row(&[&[(None, ms)], &[(None, ms)]]);
+            ours.scene = scene.to_owned();
+            ours.settings.stage = stage;
+            ours.settings.method = Method::DEFAULT;
+            ours.errors.missed = 48;
+            let mut papers = row(&[&[(None, 20.0)], &[(None, 20.0)]]);
+            papers.scene = ours.scene.clone();
+            papers.settings = rbm_baseline(&spindle(), &ours.settings);
+            papers.source = papers.settings.map_source;
+            rows.extend([ours, papers]);
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let machine = Machine::here("device", "cpu", driver, "revmap bench");
+        for (file, table) in [
+            ("results.csv", results(&rows, &machine)),
+            ("raw.csv", raw(&rows)),
+        ] {
+            write_text(&folder.path().join(file), &table.csv()).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn each_driver_has_a_column_and_each_technique_a_row() {
+        let (fragment, compute) = (DrawStage::Fragment, DrawStage::Compute);
+        let first = run(
+            "one 1.2",
+            &[
+                ("vase-revolution", fragment, 5.0),
+                ("pawn-revolution:close", fragment, 20.0),
+                ("vase-textured", compute, 8.0),
+            ],
+        );
+        let second = run("two", &[("vase-revolution", fragment, 40.0)]);
+        let text = markdown(&[first.path(), second.path()]).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "| technique | stage | one 1.2 | two |");
+        assert_eq!(
+            lines[2],
+            "| revolution | fragment | **0.5** (0.25 to 1); –; 0.01 % | **2** (2 to 2); –; 0.01 % |"
+        );
+        assert_eq!(
+            lines[3],
+            "| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |"
+        );
+        assert_eq!(lines.len(), 4);
+        assert!(markdown(&[first.path().join("none")]).is_err());
+    }
+}
