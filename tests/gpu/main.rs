@@ -17,6 +17,7 @@ mod clip;
 mod cones;
 mod crowds;
 mod embedding;
+mod embedding_crowds;
 mod embedding_outputs;
 mod exhausted;
 mod extremes;

@@ -3,6 +3,7 @@
 
 pub mod memory;
 mod mesh;
+mod pass;
 mod stage;
 
 pub use mesh::Mesh;

@@ -8,6 +8,7 @@ mod layout;
 mod pictures;
 mod programs;
 mod recording;
+mod recording_compute;
 
 #[path = "../../../../examples/engine/host/mod.rs"]
 #[allow(dead_code, unused_imports)]

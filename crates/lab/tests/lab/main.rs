@@ -12,6 +12,8 @@ mod mesh;
 #[cfg(feature = "mesh")]
 mod mesh_levels;
 mod mesh_shaders;
+#[cfg(feature = "mesh")]
+mod mesh_shading;
 #[cfg(feature = "report")]
 mod planted_faults;
 #[cfg(feature = "mesh")]
