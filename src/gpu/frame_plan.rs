@@ -114,6 +114,7 @@ impl Renderer {
             view,
             limits: &self.device.limits,
             subgroup_size: self.device.subgroup_size,
+            software: self.device.report.kind == "cpu",
             least_pixels: self.settings.proxy_min_pixels,
         };
         let entries = &self.entries;
@@ -141,6 +142,7 @@ impl Renderer {
             view,
             limits: &self.device.limits,
             subgroup_size: self.device.subgroup_size,
+            software: self.device.report.kind == "cpu",
             least_pixels: self.settings.proxy_min_pixels,
         };
         let mut lists = Lists::default();

@@ -104,6 +104,8 @@ pub(crate) struct Planner<'a> {
     pub limits: &'a vk::PhysicalDeviceLimits,
     /// Invocations that run together.
     pub subgroup_size: u32,
+    /// Whether the device is a processor, on which triangles are dear.
+    pub software: bool,
     /// As [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
     pub least_pixels: u32,
 }
@@ -121,7 +123,14 @@ impl Planner<'_> {
         wrapped
             .filter(|_| copies <= MOST_WRAPPED)
             .filter(fits)
-            .and_then(|surface| hulls::frusta(object, surface, self.view, self.least_pixels))
+            .and_then(|surface| {
+                hulls::frusta(
+                    object,
+                    surface,
+                    self.view,
+                    self.least_pixels(object, surface),
+                )
+            })
             .map_or_else(
                 || {
                     if binned && copies > 1 && !self.view.parallel {
@@ -132,6 +141,16 @@ impl Planner<'_> {
                 },
                 Work::Hull,
             )
+    }
+
+    /// Pixels that the box covers for each frustum from which on the hull is cheaper. Measured of
+    /// single solids drawn by patches; others keep the setting as it is.
+    fn least_pixels(&self, object: &Object, surface: &OffsetSurface) -> u32 {
+        if self.software && surface.is_boundary() && object.placements().len() == 1 {
+            self.least_pixels.saturating_mul(SOFTWARE_FRUSTUM)
+        } else {
+            self.least_pixels
+        }
     }
 
     /// In compute.
@@ -202,6 +221,11 @@ const MOST_WRAPPED: usize = 64;
 /// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes 2.5 times as long
 /// over lists; llvmpipe has 8 and takes two thirds.
 const LEAST_SUBGROUP: u32 = 8;
+
+/// What a frustum costs a software driver, over what `proxy_min_pixels` says: its triangles are set
+/// up by the processor that shades. Of five solids the box with its tree is as fast at 600 to 800
+/// pixels a frustum.
+const SOFTWARE_FRUSTUM: u32 = 5;
 
 /// Tiles that each of several copies should cover for a list of its own to pay.
 const LEAST_TILES: u64 = 64;
