@@ -225,9 +225,9 @@ impl Bench {
         let device = MethodDevice::new(session.device.clone())?;
         let progress = Progress::start("measuring", session.quiet);
         let say = |done, all| progress.report(done, all);
-        let lines = antialiasing::measure(&device, &stages, extent, rounds, &say)?;
+        let (lines, sheets) = antialiasing::measure(&device, &stages, extent, rounds, &say)?;
         drop(progress);
-        antialiasing::write(&session.out, &lines, rounds, &session.machine)?;
+        antialiasing::write(&session.out, &lines, &sheets, rounds, &session.machine)?;
         print(&antialiasing::as_text(&lines));
         let report = session.out.join("report.html");
         output::result(&format!("{}: {} rows", report.display(), lines.len()));

@@ -14,7 +14,7 @@ use crate::method::MethodSettings;
 use crate::renderer::{MethodDevice, MethodRenderer};
 use crate::samples::averaged;
 use revmap::error::Result;
-use revmap::frame::Frame;
+use revmap::frame::{Frame, write_png};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes};
 use std::path::Path;
@@ -134,6 +134,49 @@ impl<'a> Drawers<'a> {
     }
 }
 
+/// A part of a picture, enlarged: by each of [`Way::ALL`], then by 64 rays.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// The solid.
+    pub scene: String,
+    /// Where rays are traced.
+    pub stage: DrawStage,
+    /// The parts beside each other.
+    pub frame: Frame,
+}
+
+/// Pixels of a sheet's part either way, and how often each is repeated.
+const PART: usize = 40;
+const ENLARGED: usize = 7;
+
+impl Sheet {
+    /// The part in which `flip`, of one ray, is largest.
+    fn new(view: &View, stage: DrawStage, flip: &[f32], pictures: &[Frame]) -> Result<Self> {
+        let width = pictures.first().map_or(0, |p| p.width as usize);
+        let columns = (width / PART).max(1);
+        let sum = |part: usize| {
+            let first = part / columns * PART * width + part % columns * PART;
+            let row = |y: usize| flip[first + y * width..][..PART].iter().sum::<f32>();
+            (first, (0..PART).map(row).sum::<f32>())
+        };
+        let parts = columns * (flip.len() / (width * PART).max(1));
+        let worst = (0..parts).map(sum).max_by(|a, b| a.1.total_cmp(&b.1));
+        let first = worst.map_or(0, |w| w.0);
+        let side = PART * ENLARGED;
+        let mut frame = Frame::new((side * pictures.len()) as u32, side as u32, [0.0; 4])?;
+        for (k, color) in frame.color.iter_mut().enumerate() {
+            let (x, y) = (k % (side * pictures.len()), k / (side * pictures.len()));
+            let from = first + y / ENLARGED * width + x % side / ENLARGED;
+            *color = pictures[x / side].color[from];
+        }
+        Ok(Self {
+            scene: view.name.clone(),
+            stage,
+            frame,
+        })
+    }
+}
+
 /// Draws and times the program's solids in every way, `rounds` times in turn; says to `progress`
 /// how many of how many pictures are done.
 ///
@@ -145,29 +188,39 @@ pub fn measure(
     extent: Extent,
     rounds: usize,
     progress: &dyn Fn(usize, usize),
-) -> Result<Vec<Line>> {
+) -> Result<(Vec<Line>, Vec<Sheet>)> {
     let views = views(extent, &[25.0])?;
-    let mut lines = Vec::new();
+    let (mut lines, mut sheets) = (Vec::new(), Vec::new());
     for (number, view) in views.iter().enumerate() {
         for (k, &stage) in stages.iter().enumerate() {
             progress(number * stages.len() + k, views.len() * stages.len());
-            lines.extend(one(device, view, stage, rounds)?);
+            let (more, sheet) = one(device, view, stage, rounds)?;
+            lines.extend(more);
+            sheets.push(sheet);
         }
     }
-    Ok(lines)
+    Ok((lines, sheets))
 }
 
-fn one(device: &MethodDevice, view: &View, stage: DrawStage, rounds: usize) -> Result<Vec<Line>> {
+fn one(
+    device: &MethodDevice,
+    view: &View,
+    stage: DrawStage,
+    rounds: usize,
+) -> Result<(Vec<Line>, Sheet)> {
     let mut pictures = Drawers::new(device, &view.scene, stage, Planes::All)?;
     let truth = pictures.picture(Way::Rays(TRUTH))?;
-    let flip = |way| {
-        let map = flip_map(&truth, &pictures.picture(way)?, PIXELS_PER_DEGREE);
-        Ok(map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len().max(1) as f64)
-    };
-    let flips = Way::ALL
-        .into_iter()
-        .map(flip)
-        .collect::<Result<Vec<f64>>>()?;
+    let mut drawn = Vec::new();
+    for way in Way::ALL {
+        drawn.push(pictures.picture(way)?);
+    }
+    let flips: Vec<_> = drawn
+        .iter()
+        .map(|picture| flip_map(&truth, picture, PIXELS_PER_DEGREE))
+        .collect();
+    drawn.push(truth);
+    let sheet = Sheet::new(view, stage, &flips[0], &drawn)?;
+    drop(drawn);
     let mut drawers = Drawers::new(device, &view.scene, stage, Planes::Color)?;
     for way in Way::ALL {
         drawers.time(way)?;
@@ -191,12 +244,12 @@ fn one(device: &MethodDevice, view: &View, stage: DrawStage, rounds: usize) -> R
             scene: view.name.clone(),
             stage,
             way,
-            flip: flips[k],
+            flip: flips[k].iter().map(|v| f64::from(*v)).sum::<f64>() / flips[k].len() as f64,
             ms: stats::median(&all).unwrap_or(f64::NAN),
             ratio: stats::median(&ratios).unwrap_or(f64::NAN),
         }
     };
-    Ok((0..Way::ALL.len()).map(line).collect())
+    Ok(((0..Way::ALL.len()).map(line).collect(), sheet))
 }
 
 /// FLIP over that of one ray in the same picture.
@@ -267,12 +320,22 @@ pub fn as_text(lines: &[Line]) -> String {
     table(lines).aligned() + "\nGeometric means over the pictures:\n" + &means(lines).aligned()
 }
 
-/// Writes `antialiasing.csv` and the page.
+/// Writes `antialiasing.csv`, the sheets as pictures, and the page.
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write(folder: &Path, lines: &[Line], rounds: usize, machine: &Machine) -> Result<()> {
+pub fn write(
+    folder: &Path,
+    lines: &[Line],
+    sheets: &[Sheet],
+    rounds: usize,
+    machine: &Machine,
+) -> Result<()> {
     write_text(&folder.join("antialiasing.csv"), &table(lines).csv())?;
+    for sheet in sheets {
+        let name = format!("antialiasing-{}-{}.png", sheet.scene, stage(sheet.stage));
+        write_png(&sheet.frame, folder.join(name))?;
+    }
     let mut page = Page::new("revmap: anti-aliasing");
     page.facts(&machine.lines());
     page.chapter("Geometric means over the pictures");
@@ -283,6 +346,7 @@ pub fn write(folder: &Path, lines: &[Line], rounds: usize, machine: &Machine) ->
     ));
     page.table(&means(lines), &[0, 1]);
     page.chapter("Every picture");
+    page.text("The pictures beside this page (antialiasing-SCENE-STAGE.png) show where one ray is worst, enlarged: 1 ray, silhouettes, 4, 16 and 64 rays.");
     page.table(&table(lines), &[0, 1, 2]);
     write_text(&folder.join("report.html"), &page.html())
 }
