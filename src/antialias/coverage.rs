@@ -33,6 +33,12 @@ pub fn coverage(distance: f64, slope: f64) -> f64 {
     }
 }
 
+/// Pixels by which the depth must change a pixel beside a silhouette for colours to be taken on
+/// from further in: about twice the root of the radius. What is rounder is seen in too few pixels.
+const ROUND: f64 = 2.0;
+/// Pixels either way of a copy that is looked for.
+const SMALL: f64 = 64.0;
+
 /// The picture that lines are drawn into.
 pub(super) struct Screen<'a, D> {
     pub width: u32,
@@ -44,6 +50,34 @@ pub(super) struct Screen<'a, D> {
 }
 
 impl<D: Fn(usize) -> f64> Screen<'_, D> {
+    /// Whether some pixel may show what lies around a point of the screen within `size` of its
+    /// depth; of what is large it is not asked.
+    pub fn may_show(&self, at: DVec2, depth: f64, size: f64) -> bool {
+        if depth <= 2.0 * size {
+            return true;
+        }
+        // Off the middle of the picture a sphere is seen longer.
+        let off = at - 0.5 * DVec2::new(f64::from(self.width), f64::from(self.height));
+        let stretch = 1.0 + (off * self.pixel_size).length_squared();
+        let half = 1.2 * stretch * size / ((depth - size) * self.pixel_size) + 1.5;
+        let [low, high] = [at - half, at + half];
+        let most = DVec2::new(f64::from(self.width), f64::from(self.height));
+        if low.cmpge(most).any() || high.cmple(DVec2::ZERO).any() {
+            return false;
+        }
+        if half > SMALL {
+            return true;
+        }
+        let [low, high] = [low, high].map(|p| p.clamp(DVec2::ZERO, most).as_uvec2());
+        (low.y..high.y).any(|y| {
+            let mut row = low.x..high.x;
+            row.any(|x| {
+                let shown = (self.depth)((y * self.width + x) as usize);
+                (shown - depth).abs() <= 1.5 * size
+            })
+        })
+    }
+
     /// Appends the blends of the pixels on both sides of a line, where they show what it belongs
     /// to.
     pub fn line(&self, a: &Point, b: &Point, blends: &mut Vec<Blend>) {
@@ -85,7 +119,8 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
             let depths = pair.map(|pixel| (self.depth)(pixel as usize));
             let s = beside / (to.x - from.x);
             let depth = 1.0 / (a.depth.recip() * (1.0 - s) + b.depth.recip() * s);
-            let reach = a.reach + (b.reach - a.reach) * s + 2.0 * self.pixel_size * depth;
+            let (bend, pixel_size) = (a.reach + (b.reach - a.reach) * s, self.pixel_size * depth);
+            let reach = bend + 2.0 * pixel_size;
             let apart = (depths[0].min(depths[1]) - depth).abs();
             if apart > reach || apart.is_nan() {
                 continue;
@@ -99,7 +134,8 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
             };
             let further = further.filter(|across| *across < width).map(number);
             let further = further.filter(|pixel| {
-                a.curved && ((self.depth)(*pixel as usize) - depth).abs() <= 2.0 * reach
+                let apart = ((self.depth)(*pixel as usize) - depth).abs();
+                a.curved && bend > ROUND * pixel_size && apart <= 2.0 * reach
             });
             for (pixel, beyond) in [(own, inside), (other, 1.0 - inside)] {
                 let covered = coverage(beyond, slope);

@@ -31,6 +31,8 @@ pub(super) struct Point {
 const RIM: f64 = 0.94;
 /// Pixels by which a line may pass beside the curve.
 const FLATNESS: f64 = 0.02;
+/// Pixels that a curve is long that is taken as a whole.
+const SHORT: f64 = 3.0;
 /// Halvings of a curve at most.
 const HALVINGS: u32 = 10;
 /// Least distance of the eye from the axis, object units.
@@ -244,12 +246,19 @@ impl Sight {
 
 /// Hands on a curve, given over 0 to 1, as lines that it is near to.
 fn follow(at: &impl Fn(f64) -> Option<Point>, emit: &mut impl FnMut(&Point, &Point)) {
-    let mut last = at(0.0);
-    for k in 1..=4 {
-        let to = f64::from(k) / 4.0;
-        let next = at(to);
+    let ends = [0.0, 0.5, 1.0].map(at);
+    let length = match &ends {
+        [Some(a), Some(m), Some(b)] => a.at.distance(m.at) + m.at.distance(b.at),
+        _ => f64::INFINITY,
+    };
+    // A longer one may bend twice.
+    let parts = if length < SHORT { 1 } else { 4 };
+    let [mut last, _, _] = ends;
+    for k in 1..=parts {
+        let [from, to] = [k - 1, k].map(|k| f64::from(k) / f64::from(parts));
+        let next = if k == parts { ends[2] } else { at(to) };
         if let (Some(a), Some(b)) = (&last, &next) {
-            halve(at, [(to - 0.25, a), (to, b)], HALVINGS, emit);
+            halve(at, [(from, a), (to, b)], HALVINGS, emit);
         }
         last = next;
     }

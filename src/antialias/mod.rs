@@ -22,6 +22,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Object, Placement, Scene};
 use coverage::{Blend, Screen};
+use glam::{DVec2, DVec3};
 use lines::Sight;
 use meridian::Meridian;
 use rayon::prelude::*;
@@ -97,8 +98,13 @@ impl Solids {
         };
         let of = |solid: &Meridian, copy: &Placement| {
             let mut blends = Vec::new();
-            let pixels = pixels_per_unit(solid, copy, camera);
-            if pixels > 0.0 {
+            let (size, middle) = (solid.size(copy), middle(copy) - camera.eye);
+            let depth = middle.dot(camera.forward);
+            let step = [camera.right, -camera.up].map(|v| middle.dot(v) / v.length_squared());
+            let at = DVec2::from(camera.middle) + DVec2::from(step) / depth;
+            if depth > -size && screen.may_show(at, depth, size) {
+                let nearest = (depth - size).max(1e-3 * size);
+                let pixels = copy.scale.max_element() / (camera.right.length() * nearest);
                 Sight::new(camera, copy, solid.axis).lines(solid.patches(pixels), &mut |a, b| {
                     screen.line(a, b, &mut blends)
                 });
@@ -124,28 +130,27 @@ impl Solids {
     }
 }
 
-/// The most pixels that a unit of a copy takes; 0 behind the eye.
-fn pixels_per_unit(solid: &Meridian, copy: &Placement, camera: &CameraFrame) -> f64 {
-    let up = copy.rotation * (0.5 * copy.scale * glam::DVec3::Z);
-    let depth = (copy.position + up - camera.eye).dot(camera.forward);
-    let size = solid.size(copy);
-    if depth <= -size {
-        return 0.0;
-    }
-    copy.scale.max_element() / (camera.right.length() * (depth - size).max(1e-3 * size))
+/// The middle of a copy's box.
+fn middle(copy: &Placement) -> DVec3 {
+    copy.position + copy.rotation * (0.5 * copy.scale * DVec3::Z)
 }
 
 /// Blends colours, weighted by alpha.
 fn apply(blends: &[Blend], colors: &mut [[f32; 4]]) {
     let mixed = |blend: &Blend| {
-        let mut sum = [0.0; 4];
-        for (pixel, weight) in blend.sources {
+        let [beyond, own, further] = blend.sources.map(|(pixel, weight)| {
             let [r, g, b, a] = colors[pixel as usize];
-            for (sum, part) in sum.iter_mut().zip([r * a, g * a, b * a, a]) {
-                *sum += part * weight;
-            }
-        }
-        let [r, g, b, a] = sum.map(|v| v.max(0.0));
+            ([r * a, g * a, b * a, a], weight)
+        });
+        let covered = own.1 + further.1;
+        let sum: [f32; 4] = std::array::from_fn(|c| {
+            let (a, b) = (own.0[c], further.0[c]);
+            let near = a * own.1 + b * further.1;
+            // What is taken on from further in stays near both.
+            let [least, most] = [0.5 * a.min(b), 1.5 * a.max(b)].map(|v| covered * v);
+            beyond.0[c] * beyond.1 + near.max(least).min(most)
+        });
+        let [r, g, b, a] = sum;
         let scale = if a > 0.0 { a.recip() } else { 0.0 };
         [r * scale, g * scale, b * scale, a.min(1.0)]
     };
