@@ -147,7 +147,7 @@ fn apply(blends: &[Blend], colors: &mut [[f32; 4]]) {
             let (a, b) = (own.0[c], further.0[c]);
             let near = a * own.1 + b * further.1;
             // What is taken on from further in stays near both.
-            let [least, most] = [0.5 * a.min(b), 1.5 * a.max(b)].map(|v| covered * v);
+            let [least, most] = [0.5 * a.min(b), a.max(b)].map(|v| covered * v);
             beyond.0[c] * beyond.1 + near.max(least).min(most)
         });
         let [r, g, b, a] = sum;
