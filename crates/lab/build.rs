@@ -3,7 +3,9 @@
 
 use std::error::Error;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+#[cfg(feature = "shaderc")]
+use std::path::Path;
+use std::path::PathBuf;
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
