@@ -97,13 +97,15 @@ impl Renderer {
             let Some(mut block) = entry.block(&self.settings) else {
                 continue;
             };
-            if let Some(copy) = entry.drawn().placements().first() {
+            let placements = entry.drawn().placements();
+            if let Some(copy) = placements.first() {
                 block.single = instance_block(entry.drawn(), copy, view);
             }
             to.write_block(number, &block)?;
-            let placements = entry.drawn().placements();
             let mut write = |copy: u32| {
-                let block = instance_block(entry.drawn(), &placements[copy as usize], view);
+                let of =
+                    |copy: u32| instance_block(entry.drawn(), &placements[copy as usize], view);
+                let block = if copy == 0 { block.single } else { of(copy) };
                 to.write_instance(entry.instances.start + copy, &block)
             };
             match &entry.draw.work {
