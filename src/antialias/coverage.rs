@@ -36,6 +36,9 @@ pub fn coverage(distance: f64, slope: f64) -> f64 {
 /// Pixels by which the depth must change a pixel beside a silhouette for colours to be taken on
 /// from further in: about twice the root of the radius. What is rounder is seen in too few pixels.
 const ROUND: f64 = 2.0;
+/// Pixels by which a line may pass on the wrong side of a pixel's middle: what patches and chords may
+/// differ by from the silhouette, and a rounding.
+const UNSURE: f64 = 0.1;
 /// Pixels either way of a copy that is looked for.
 const SMALL: f64 = 64.0;
 
@@ -114,13 +117,23 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
                 };
                 y * self.width + x
             };
-            let (low, rest) = (across as u32, across.fract());
-            let pair = [number(low), number(low + 1)];
-            let depths = pair.map(|pixel| (self.depth)(pixel as usize));
+            let (mut low, mut rest) = (across as u32, across.fract());
             let s = beside / (to.x - from.x);
             let depth = 1.0 / (a.depth.recip() * (1.0 - s) + b.depth.recip() * s);
             let (bend, pixel_size) = (a.reach + (b.reach - a.reach) * s, self.pixel_size * depth);
             let reach = bend + 2.0 * pixel_size;
+            // Close to a pixel's middle line and ray may disagree on the side that it is on.
+            let shows = |across: u32| (self.depth)(number(across) as usize) - depth <= reach;
+            let divides = |low: u32| low + 1 < width && shows(low) != shows(low + 1);
+            if rest.min(1.0 - rest) < UNSURE && !divides(low) {
+                if rest < 0.5 && low > 0 && divides(low - 1) {
+                    (low, rest) = (low - 1, 1.0);
+                } else if rest > 0.5 && divides(low + 1) {
+                    (low, rest) = (low + 1, 0.0);
+                }
+            }
+            let pair = [number(low), number(low + 1)];
+            let depths = pair.map(|pixel| (self.depth)(pixel as usize));
             let apart = (depths[0].min(depths[1]) - depth).abs();
             if apart > reach || apart.is_nan() {
                 continue;
