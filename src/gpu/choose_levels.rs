@@ -25,17 +25,17 @@ impl Renderer {
             return Ok(());
         }
         let tolerance = self.settings.tolerance;
+        let casts = self.lighting.shadow != Shadow::Off;
         let wanted = |&number: &u32| {
             let entry = self.entries[number as usize].as_ref()?;
             entry.prepared.as_ref()?.fitted()?;
-            Some((number, coarsest(tolerance, entry.pixels_per_unit(view))))
+            let pixels = entry.pixels_per_unit(view, casts);
+            // What does not show keeps what it has.
+            (casts || pixels > 0.0).then(|| (number, coarsest(tolerance, pixels)))
         };
-        let mut chosen: Vec<(u32, u8)> = if self.lighting.shadow == Shadow::Off {
-            numbers.iter().filter_map(wanted).collect()
-        } else {
-            self.order.iter().filter_map(wanted).collect()
-        };
-        if self.lighting.shadow != Shadow::Off {
+        let asked = if casts { &self.order[..] } else { numbers };
+        let mut chosen: Vec<(u32, u8)> = asked.iter().filter_map(wanted).collect();
+        if casts {
             let finest = chosen.iter().map(|c| c.1).min().unwrap_or(0);
             chosen.iter_mut().for_each(|c| c.1 = finest);
         }
@@ -90,9 +90,10 @@ impl Entry {
         self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
     }
 
-    /// The most pixels that one unit of the profile takes in a view.
-    pub(super) fn pixels_per_unit(&self, view: &View) -> f64 {
-        pixels_per_unit(self.drawn(), self.growth().height(), view)
+    /// The most pixels that one unit of the profile takes in a view; `all`: of copies that are
+    /// beside the picture, too.
+    pub(super) fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
+        pixels_per_unit(self.drawn(), self.growth().height(), view, all)
     }
 }
 

@@ -56,7 +56,7 @@ impl Entry {
         let prepared = self.prepared.as_ref();
         let fitted = prepared.and_then(|p| Some((p.level, p.fitted()?)));
         let error = view.zip(fitted).map(|(view, (level, _))| {
-            let seen = self.pixels_per_unit(view);
+            let seen = self.pixels_per_unit(view, false);
             levels::bound(level) * seen
         });
         let searched = prepared.and_then(|p| p.surface.as_ref());

@@ -2,12 +2,15 @@
 //! finest, number 0, is the exact one. Which of them an object is drawn by follows from the view
 //! alone, so that a picture does not depend on the frames before it.
 
+use super::bins::{Cylinder, Forms};
 use super::view::View;
 use crate::scene::{Object, Placement};
 use crate::settings::Tolerance;
 use crate::surface::FitOptions;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The coarsest level: patches within a 36th of the height.
 pub(crate) const COARSEST: u8 = 12;
@@ -35,7 +38,8 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
 
 /// The most pixels that one unit of an object can take, over the copies that lie in front of the
 /// eye; infinite where one may reach the eye. `height`: of the box in units of the profile's.
-pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View) -> f64 {
+/// `all`: also copies that are beside the picture, whose shadows may be in it.
+pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
     // Off the middle of the picture a length across the ray covers more pixels.
     let stretch = if view.parallel {
         1.0
@@ -65,9 +69,32 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View) -> f64 
             scale * stretch / (nearest.max(view.near) * pixel)
         }
     };
+    let shows = may_show(object, view, all);
+    // Of numbers that are not negative the largest has the largest bits.
+    let most = AtomicU64::new(0);
     let copies = object.placements().par_iter().with_min_len(4096);
-    let most = copies.map(of).reduce(|| 0.0, f64::max);
-    most / height
+    copies.for_each(|copy| {
+        let bits = of(copy).to_bits();
+        if bits > most.load(Ordering::Relaxed) && shows(copy) {
+            most.fetch_max(bits, Ordering::Relaxed);
+        }
+    });
+    f64::from_bits(most.into_inner()) / height
+}
+
+/// Whether a copy may be in the picture; `all`: taken for granted.
+fn may_show(object: &Object, view: &View, all: bool) -> impl Fn(&Placement) -> bool {
+    let forms = (!all && !view.parallel).then(|| Forms::new(view));
+    let shape = Cylinder {
+        axis: DVec2::ZERO,
+        radius: object.profile.radius * SQRT_2,
+        low: 0.0,
+        high: 1.0,
+    };
+    move |copy| {
+        let seen = |forms: &Forms| forms.see(&forms.spread(copy, shape.axis), &shape);
+        forms.as_ref().is_none_or(|forms| seen(forms).is_some())
+    }
 }
 
 /// Least and largest depth of a copy's box.
@@ -99,7 +126,7 @@ mod tests {
     fn pixels_of_a_unit_are_those_of_its_nearest_point() {
         for distance in [2.0, 20.0, 200.0] {
             let (object, view) = at(distance);
-            let found = pixels_per_unit(&object, 1.0, &view);
+            let found = pixels_per_unit(&object, 1.0, &view, false);
             // Any two near points on the box, one unit apart, are seen nearer to each other.
             let p = |y: f64, z: f64| view.project(DVec3::new(0.5, y, z)).0;
             for (a, b) in [(p(0.5, 0.0), p(-0.5, 0.0)), (p(0.0, 0.5), p(0.0, -0.5))] {
@@ -107,12 +134,22 @@ mod tests {
             }
         }
         let (mut object, view) = at(20.0);
-        let one = pixels_per_unit(&object, 1.0, &view);
+        let one = pixels_per_unit(&object, 1.0, &view, false);
         object.placement.scale = DVec3::new(1.0, 3.0, 1.0);
-        assert!((pixels_per_unit(&object, 1.0, &view) / one - 3.0).abs() < 1e-9);
-        assert!((pixels_per_unit(&object, 2.0, &view) / one - 1.5).abs() < 1e-9);
+        assert!((pixels_per_unit(&object, 1.0, &view, false) / one - 3.0).abs() < 1e-9);
+        assert!((pixels_per_unit(&object, 2.0, &view, false) / one - 1.5).abs() < 1e-9);
         object.placement.position.x = 100.0;
-        assert_eq!(pixels_per_unit(&object, 1.0, &view), 0.0, "behind the eye");
+        assert_eq!(
+            pixels_per_unit(&object, 1.0, &view, true),
+            0.0,
+            "behind the eye"
+        );
+        // Beside the picture, and around the eye's plane but below the picture.
+        for beside in [DVec3::new(0.0, 40.0, 0.0), DVec3::new(20.0, 0.0, -9.0)] {
+            object.placement.position = beside;
+            assert!(pixels_per_unit(&object, 1.0, &view, true) > 0.0);
+            assert_eq!(pixels_per_unit(&object, 1.0, &view, false), 0.0, "{beside}");
+        }
     }
 
     #[test]

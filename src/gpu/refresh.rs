@@ -152,7 +152,7 @@ impl Renderer {
             // Shadows' common level is known when all are planned.
             let level = match view {
                 Some(view) if self.has_levels() && self.lighting.shadow == Shadow::Off => {
-                    let pixels = levels::pixels_per_unit(object, growth.height(), view);
+                    let pixels = levels::pixels_per_unit(object, growth.height(), view, false);
                     levels::coarsest(self.settings.tolerance, pixels)
                 }
                 _ => 0,

@@ -17,7 +17,7 @@ mod inner;
 mod seen;
 
 pub(crate) use inner::Inner;
-pub(crate) use seen::Cylinder;
+pub(crate) use seen::{Cylinder, Forms};
 
 use super::view::View;
 use crate::scene::Placement;
@@ -25,7 +25,7 @@ use crate::shader::generated::{BIN_SPLIT, GROUP_PIXELS};
 use cover::{Cover, SIDE};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use seen::{Forms, Seen};
+use seen::Seen;
 use std::ops::Range;
 
 /// Copies of one object.

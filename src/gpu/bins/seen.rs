@@ -15,7 +15,7 @@ pub(crate) struct Cylinder {
 }
 
 /// The view as three linear forms: a point's pixel is the first two over the third, its depth.
-pub(super) struct Forms {
+pub(crate) struct Forms {
     eye: DVec3,
     rows: DMat3,
     /// First and last pixel centre, both axes.
@@ -25,7 +25,7 @@ pub(super) struct Forms {
 
 /// Ways along an object's axes, one object unit each, and the place of its axis at `z = 0`; as
 /// forms have them, and in the world.
-pub(super) struct Spread {
+pub(crate) struct Spread {
     pub middle: DVec3,
     pub along: [DVec3; 3],
     /// The eye in object space, about the axis.
@@ -34,7 +34,7 @@ pub(super) struct Spread {
 
 /// What a copy covers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     /// Left, top, right, bottom: pixels, all included.
     pub pixels: [u16; 4],
     /// No point of the copy is nearer.
