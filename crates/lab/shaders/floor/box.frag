@@ -16,7 +16,8 @@ void main()
     Hit hit;
     bool found = entry_hit(rays, pixel, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
-    if (!found) {
+    // The vertices hand patches over, and fragments must take what they are handed: without any nothing is hit.
+    if (!found || box_patches.z == 0u) {
         discard;
     }
     store(shade(varying_look(), rays, pixel, hit));
