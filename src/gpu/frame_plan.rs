@@ -21,8 +21,9 @@ use rayon::prelude::*;
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
-/// From so many objects on they are planned on all cores.
-const MANY: usize = 256;
+/// From so many objects on they are planned on all cores: to wake these takes as long as to plan a
+/// thousand.
+const MANY: usize = 4096;
 
 impl Renderer {
     /// Whether the output shows hulls.
