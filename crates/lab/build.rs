@@ -1,5 +1,5 @@
-//! Compiles the floor's shaders (`shaders/floor/`, on the renderer's own includes) where the feature `shaderc` is on. Nothing of them is
-//! kept: they are for measuring alone.
+//! Compiles the floor's shaders (`shaders/floor/`, on the renderer's own includes) where the feature
+//! `shaderc` is on. None of them is kept in the repository: they are for measuring alone.
 
 use std::error::Error;
 use std::fmt::Write as _;

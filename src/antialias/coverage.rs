@@ -1,7 +1,8 @@
 //! From lines on the screen to parts of pixels: which pixels a line cuts, and how much of each lies
 //! beyond it.
 
-use super::lines::Point;
+use super::lines::{FLATNESS, Point};
+use super::meridian::TOLERANCE;
 use glam::{DVec2, Vec2Swizzles};
 
 /// A pixel whose colour is made from those of pixels about it.
@@ -36,9 +37,9 @@ pub fn coverage(distance: f64, slope: f64) -> f64 {
 /// Pixels by which the depth must change a pixel beside a silhouette for colours to be taken on
 /// from further in: about twice the root of the radius. What is rounder is seen in too few pixels.
 const ROUND: f64 = 2.0;
-/// Pixels by which a line may pass on the wrong side of a pixel's middle: what patches and chords may
-/// differ by from the silhouette, and a rounding.
-const UNSURE: f64 = 0.1;
+/// Pixels by which a line may pass on the wrong side of a pixel's middle: what patches may differ by
+/// from the boundary, and chords from the curve.
+const UNSURE: f64 = TOLERANCE + FLATNESS;
 /// Pixels either way of a copy that is looked for.
 const SMALL: f64 = 64.0;
 

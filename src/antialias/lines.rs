@@ -30,7 +30,7 @@ pub(super) struct Point {
 /// seen.
 const RIM: f64 = 0.94;
 /// Pixels by which a line may pass beside the curve.
-const FLATNESS: f64 = 0.02;
+pub(super) const FLATNESS: f64 = 0.02;
 /// Pixels that a curve is long that is taken as a whole.
 const SHORT: f64 = 3.0;
 /// Halvings of a curve at most.

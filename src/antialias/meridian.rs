@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 /// Levels that are kept, each twice as coarse as the one before.
 const LEVELS: usize = 13;
 /// Pixels by which patches may differ from the boundary.
-const TOLERANCE: f64 = 1.0 / 16.0;
+pub(super) const TOLERANCE: f64 = 1.0 / 16.0;
 
 /// The boundary of an object, prepared.
 pub(super) struct Meridian {

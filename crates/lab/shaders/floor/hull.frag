@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The floor of proxy hulls: each fragment is a hit where its own triangle is, with the normal of its cell's first patch.
+// The floor of proxy hulls: each fragment is a hit where its own triangle is. The normal is that of its cell's first
+// patch.
 #include "stage/fragment.glsl"
 #include "search/quadric.glsl"
 #include "stage/outputs.glsl"

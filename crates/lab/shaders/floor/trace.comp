@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The floor of rectangles and of tiles without lists: a ray hits where it enters the solid's bounding cylinder, or where
-// its tile's beam first may meet the solid.
+// The floor of rectangles and of tiles without lists: a ray hits where it enters the solid's bounding cylinder, or
+// where its tile's beam may first meet the solid.
 #include "stage/bins.glsl"
 #include "stage/stores.glsl"
 #include "entry.glsl"
