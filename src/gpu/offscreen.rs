@@ -339,7 +339,7 @@ impl Offscreen {
     ///
     /// # Errors
     /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
-    pub fn read(&self) -> Result<Frame> {
+    pub fn read(&mut self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
         let mut frame = super::read_back::frame(&self.settings, self.background, &planes)?;
@@ -347,8 +347,7 @@ impl Offscreen {
             match self.settings.planes {
                 Planes::All => solids.smooth(camera, &mut frame),
                 _ => {
-                    // Compute's words begin with depths; fragments' come behind their colours.
-                    let bytes = planes.last().map_or(&[][..], Vec::as_slice);
+                    let bytes = planes.last().copied().unwrap_or_default();
                     let view = &self.view;
                     let depth = |pixel: usize| {
                         let word = &bytes[4 * pixel..4 * pixel + 4];

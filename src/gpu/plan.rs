@@ -218,7 +218,7 @@ impl Planner<'_> {
 const MOST_WRAPPED: usize = 64;
 
 /// Fewer invocations than these, run together, walk a tree faster than they test a list: few of
-/// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes 2.5 times as long
+/// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes twice as long
 /// over lists; llvmpipe has 8 and takes two thirds.
 const LEAST_SUBGROUP: u32 = 8;
 

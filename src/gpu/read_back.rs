@@ -3,41 +3,27 @@
 use super::srgb::linear_from_srgb;
 use crate::error::Result;
 use crate::frame::Frame;
-use crate::settings::{DrawStage, Planes, Settings};
+use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;
 
-/// `planes` as [`Target::read`](super::target::Target::read) gives them: images, then words.
-pub(crate) fn frame(
-    settings: &Settings,
-    background: [f32; 4],
-    planes: &[Vec<u8>],
-) -> Result<Frame> {
+/// `planes` as [`Target::read`](super::target::Target::read) gives them.
+pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]]) -> Result<Frame> {
     let mut frame = Frame::new(settings.width, settings.height, background)?;
-    let pixels = frame.color.len();
     match settings.planes {
         Planes::Color => {
-            // Compute keeps packed colours behind the depths.
-            let skip = if settings.stage == DrawStage::Compute {
-                4 * pixels
-            } else {
-                0
-            };
-            let bytes = planes.first().map_or(&[][..], |p| &p[skip..]);
-            for (color, rgba) in frame.color.iter_mut().zip(bytes.chunks_exact(4)) {
-                *color = [
-                    linear_from_srgb(rgba[0]),
-                    linear_from_srgb(rgba[1]),
-                    linear_from_srgb(rgba[2]),
-                    f32::from(rgba[3]) / 255.0,
-                ];
+            let linear: [f32; 256] = std::array::from_fn(|byte| linear_from_srgb(byte as u8));
+            let bytes = planes.first().copied().unwrap_or_default();
+            for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks().0) {
+                let &[r, g, b, a]: &[u8; 4] = rgba;
+                let [r, g, b] = [r, g, b].map(|byte| linear[usize::from(byte)]);
+                *color = [r, g, b, f32::from(a) / 255.0];
             }
         }
         Planes::Depth { .. } => {}
         Planes::All => {
-            let [color, normal, shading, albedo, words] = planes else {
+            let [color, normal, shading, albedo, steps, ..] = planes else {
                 return Ok(frame);
             };
-            let steps = &words[4 * pixels..];
             for (i, value) in frame.color.iter_mut().enumerate() {
                 *value = vec4(color, i);
                 let [x, y, z, distance] = vec4(normal, i);

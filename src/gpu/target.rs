@@ -50,7 +50,18 @@ pub(crate) struct Target {
     /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where
     /// fragments draw colour alone.
     pub words: Option<Buffer>,
+    /// Whether depths are read beside colours.
+    keeps_depths: bool,
+    /// What is read is copied to it; made by the first reading.
+    host: Option<Buffer>,
     device: Arc<Shared>,
+}
+
+/// What is copied to the host as a whole.
+enum Part<'a> {
+    Image(&'a Image),
+    /// Half of the words: depths are the first.
+    Words(&'a Buffer, u64),
 }
 
 impl Target {
@@ -94,6 +105,8 @@ impl Target {
             depth: None,
             framebuffer: vk::Framebuffer::null(),
             words: None,
+            keeps_depths,
+            host: None,
             device: device.clone(),
         };
         let image = |name, format, usage| {
@@ -270,90 +283,111 @@ impl Target {
         }
     }
 
-    /// Copies images, depths that are kept, and words to the host: one `Vec` of bytes each, in this
-    /// order.
-    pub fn read(&self, commands: &Commands) -> Result<Vec<Vec<u8>>> {
+    /// What is read, in order: the planes' images or the colours among the words; of all planes the
+    /// counts of look-ups; depths that are kept.
+    fn parts(&self) -> Vec<Part<'_>> {
+        let mut parts: Vec<_> = self.images.iter().map(Part::Image).collect();
+        if let Some(words) = &self.words {
+            parts.push(Part::Words(words, words.bytes / 2));
+        }
+        if self.keeps_depths {
+            parts.extend(match (&self.depth, &self.words) {
+                (Some(depth), _) => Some(Part::Image(depth)),
+                (None, Some(words)) => Some(Part::Words(words, 0)),
+                (None, None) => None,
+            });
+        }
+        parts
+    }
+
+    /// Copies what [`Target::parts`] names to the host: the bytes of each.
+    pub fn read(&mut self, commands: &Commands) -> Result<Vec<&[u8]>> {
         let pixels = u64::from(self.width) * u64::from(self.height);
-        let mut out = Vec::new();
-        let host = |bytes| {
-            Buffer::new(
+        let bytes = |part: &Part| match part {
+            Part::Image(image) if image.kind.format == vk::Format::R32G32B32A32_SFLOAT => 16,
+            Part::Image(_) | Part::Words(..) => 4,
+        } * pixels;
+        let kept = self.host.take();
+        let parts = self.parts();
+        let sizes: Vec<u64> = parts.iter().map(bytes).collect();
+        let host = match kept {
+            Some(host) => host,
+            None => Buffer::new(
                 &self.device,
                 "read back",
-                bytes,
+                sizes.iter().sum(),
                 vk::BufferUsageFlags::TRANSFER_DST,
                 MemoryLocation::GpuToCpu,
-            )
+            )?,
         };
-        let copied = |i: &&Image| i.kind.usage.contains(vk::ImageUsageFlags::TRANSFER_SRC);
-        for image in self.images.iter().chain(self.depth.iter().filter(copied)) {
-            let texel = match image.kind.format {
-                vk::Format::R32G32B32A32_SFLOAT => 16,
-                _ => 4,
-            };
-            let mut buffer = host(pixels * texel)?;
-            let region = vk::BufferImageCopy::default()
-                .image_subresource(
-                    vk::ImageSubresourceLayers::default()
-                        .aspect_mask(image.kind.aspect())
-                        .layer_count(1),
-                )
-                .image_extent(vk::Extent3D {
-                    width: self.width,
-                    height: self.height,
-                    depth: 1,
-                });
-            commands.run(|cmd| {
-                if self.stage == DrawStage::Compute {
-                    image_barrier(
-                        &self.device,
-                        cmd,
-                        image,
-                        Usage::ComputeWrite,
-                        Usage::TransferRead,
-                    );
+        commands.run(|cmd| {
+            let mut at = 0;
+            for (part, size) in parts.iter().zip(&sizes) {
+                self.copy(cmd, part, &host, at);
+                at += size;
+            }
+            let (from, to) = (Usage::TransferWrite, Usage::HostRead);
+            buffer_barrier(&self.device, cmd, &host, from, to);
+        })?;
+        drop(parts);
+        let mut rest: &[u8] = self.host.insert(host).mapped()?;
+        let mut out = Vec::with_capacity(sizes.len());
+        for size in sizes {
+            let (part, more) = rest.split_at(usize::try_from(size).unwrap_or(usize::MAX));
+            out.push(part);
+            rest = more;
+        }
+        Ok(out)
+    }
+
+    /// Records the copy of one part to `host`, from its byte `at` on.
+    fn copy(&self, cmd: vk::CommandBuffer, part: &Part, host: &Buffer, at: u64) {
+        let raw = &self.device.raw;
+        match part {
+            Part::Image(image) => {
+                let in_compute = self.stage == DrawStage::Compute;
+                if in_compute {
+                    let (from, to) = (Usage::ComputeWrite, Usage::TransferRead);
+                    image_barrier(&self.device, cmd, image, from, to);
                 }
-                // SAFETY: the region is the whole image, the buffer holds it.
+                let region = vk::BufferImageCopy::default()
+                    .buffer_offset(at)
+                    .image_subresource(
+                        vk::ImageSubresourceLayers::default()
+                            .aspect_mask(image.kind.aspect())
+                            .layer_count(1),
+                    )
+                    .image_extent(vk::Extent3D {
+                        width: self.width,
+                        height: self.height,
+                        depth: 1,
+                    });
+                // SAFETY: the region is the whole image, the buffer holds it from there on.
                 unsafe {
-                    self.device.raw.cmd_copy_image_to_buffer(
+                    raw.cmd_copy_image_to_buffer(
                         cmd,
                         image.raw,
                         vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-                        buffer.raw,
+                        host.raw,
                         &[region],
                     );
                 }
-                let (from, to) = (Usage::TransferWrite, Usage::HostRead);
-                buffer_barrier(&self.device, cmd, &buffer, from, to);
-                if self.stage == DrawStage::Compute {
+                if in_compute {
                     let (from, to) = (Usage::TransferRead, Usage::ComputeWrite);
                     image_barrier(&self.device, cmd, image, from, to);
                 }
-            })?;
-            out.push(buffer.mapped()?.to_vec());
-        }
-        if let Some(words) = &self.words {
-            let mut buffer = host(words.bytes)?;
-            commands.run(|cmd| {
-                buffer_barrier(
-                    &self.device,
-                    cmd,
-                    words,
-                    self.shader_use(),
-                    Usage::TransferRead,
-                );
-                let region = vk::BufferCopy::default().size(words.bytes);
+            }
+            Part::Words(words, from) => {
+                let (used, to) = (self.shader_use(), Usage::TransferRead);
+                buffer_barrier(&self.device, cmd, words, used, to);
+                let region = vk::BufferCopy::default()
+                    .src_offset(*from)
+                    .dst_offset(at)
+                    .size(words.bytes / 2);
                 // SAFETY: both buffers hold the region.
-                unsafe {
-                    self.device
-                        .raw
-                        .cmd_copy_buffer(cmd, words.raw, buffer.raw, &[region]);
-                }
-                let (from, to) = (Usage::TransferWrite, Usage::HostRead);
-                buffer_barrier(&self.device, cmd, &buffer, from, to);
-            })?;
-            out.push(buffer.mapped()?.to_vec());
+                unsafe { raw.cmd_copy_buffer(cmd, words.raw, host.raw, &[region]) };
+            }
         }
-        Ok(out)
     }
 }
 

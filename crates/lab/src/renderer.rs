@@ -146,7 +146,7 @@ impl MethodRenderer {
     ///
     /// # Errors
     /// Of Vulkan.
-    pub fn read(&self) -> Result<Frame> {
+    pub fn read(&mut self) -> Result<Frame> {
         match self {
             Self::Search(offscreen) => offscreen.read(),
             Self::Mesh(mesh) => mesh.read(),

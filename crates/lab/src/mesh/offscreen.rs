@@ -91,7 +91,7 @@ impl MeshOffscreen {
     ///
     /// # Errors
     /// Of Vulkan ([`Stage::Draw`]).
-    pub fn read(&self) -> Result<Frame> {
+    pub fn read(&mut self) -> Result<Frame> {
         self.offscreen.read()
     }
 
