@@ -2,6 +2,7 @@
 // src/surface/hull.rs, whose `trace` is this file's twin.
 #ifndef HULL_GLSL
 #define HULL_GLSL
+#extension GL_EXT_control_flow_attributes : require
 #include "stage/hull_varyings.glsl"
 #include "stage/fragment.glsl"
 #include "core/hit.glsl"
@@ -20,7 +21,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     m.c = dot(m.o.xy, m.o.xy);
     float best = 3e38;
     vec4 quadric = vec4(0.0);
-    for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+    [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
         take_nearer(m, hull_quadric[k], hull_guard[k], -rays.base, best, quadric);
     }
     hit.t = best;

@@ -16,7 +16,7 @@ float entering_root(Meridian m, vec4 q, float side)
     float ga = side * (q.x * m.c + (q.y + m.o.z * (q.z + m.o.z * q.w)));
     float root = sqrt(be * be - al * ga);
     bool towards = be <= 0.0;
-    return (towards ? ga : -(be + root)) / (towards ? root - be : al);
+    return mix(-(be + root), ga, towards) / mix(al, root - be, towards);
 }
 
 float square_at(Meridian m, float s)
@@ -32,11 +32,10 @@ void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, 
     float root = entering_root(m, q, 1.0);
     float z = m.o.z + root * m.v.z;
     float place = guard.x * z + guard.y * square_at(m, root);
-    bool valid = place >= guard.z && place <= guard.w && abs(z - 0.5) <= 0.5 + FLOOR && root > least;
-    if (valid && root < best) {
-        best = root;
-        quadric = q;
-    }
+    bvec3 within = lessThanEqual(vec3(guard.z, place, abs(z - 0.5)), vec3(place, guard.w, 0.5 + FLOOR));
+    bool nearer = all(within) && root > least && root < best;
+    best = mix(best, root, nearer);
+    quadric = mix(quadric, q, bvec4(nearer));
 }
 
 // Whether the start of the ray is in the solid: by the number of patches beyond it, away from the axis.
@@ -113,10 +112,10 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             ++steps;
             float root = entering_root(m, q, side);
             float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
-            if (place >= guard.z && place <= guard.w && root >= -slack && root < best && root <= m.s_end + slack) {
-                best = root;
-                hit_quadric = q;
-            }
+            bool within = all(lessThanEqual(vec4(guard.z, place, -slack, root), vec4(place, guard.w, root, m.s_end + slack)));
+            bool nearer = within && root < best;
+            best = mix(best, root, nearer);
+            hit_quadric = mix(hit_quadric, q, bvec4(nearer));
         }
         row = run == 0u ? row : (up ? border : border - 1);
         if (best <= leave || leave >= m.s_end || row < 0 || row >= rows) {
