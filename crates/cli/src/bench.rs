@@ -2,6 +2,7 @@
 
 use super::interrupt;
 use super::lists::Lists;
+use super::options::named;
 use super::output;
 use super::progress::Progress;
 use clap::Args;
@@ -20,7 +21,16 @@ use revmap_lab::report::{
     DeviceBench, antialiasing, budget, compare_runs, crowds, folder, overview, papers, scaling,
     text,
 };
+use revmap_lab::report::view::View;
 use std::path::PathBuf;
+
+/// Makes views of other techniques.
+type Techniques = fn(&[View]) -> Result<Vec<View>>;
+
+const TECHNIQUES: [(&str, Techniques); 2] = [
+    ("usual", suite::techniques),
+    ("tables", papers::all_techniques),
+];
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
 #[derive(Args)]
@@ -55,9 +65,10 @@ pub struct Bench {
     /// rays, against 64 rays
     #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget", "crowds"])]
     antialiasing: bool,
-    /// The solids by every technique: plain, extended, beveled, chamfered, textured
-    #[arg(long, conflicts_with_all = ["full", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing"])]
-    techniques: bool,
+    /// The solids by every technique. usual: plain, extended, beveled, chamfered, textured; tables:
+    /// plain and by every value of the published tables, whole and cut by the box
+    #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "usual", value_parser = named(&TECHNIQUES), conflicts_with_all = ["full", "tables", "scaling", "budget", "crowds", "antialiasing"])]
+    techniques: Option<Techniques>,
     /// Prints a table of the default search in the runs of these folders: a row for each technique,
     /// a column for each driver; measures nothing
     #[arg(long, num_args = 1.., value_name = "DIR", conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing", "techniques", "compare"])]
@@ -114,8 +125,8 @@ impl Bench {
             (&plan::USUAL, &plan::MESHES)
         };
         let mut views = self.lists.views(extent, elevations)?;
-        if self.techniques {
-            views = suite::techniques(&views)?;
+        if let Some(techniques) = self.techniques {
+            views = techniques(&views)?;
         }
         let axes = self.axes(sizes, methods);
         let mut plan = Plan::new(views, &axes.combinations());

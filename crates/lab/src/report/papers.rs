@@ -26,7 +26,7 @@ use crate::method::MethodSettings;
 use chart::{Scaled, chart};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::scene::Offset;
+use revmap::scene::{Clip, Offset};
 use std::path::Path;
 
 /// The slope of the bevel in table 3.
@@ -37,8 +37,32 @@ const CHAMFERED_BEVEL: f64 = 0.8;
 /// # Errors
 /// Of the solid that the program carries.
 pub fn views() -> Result<Vec<View>> {
-    let base = suite::one()?;
-    let largest = largest_distance(&base)?;
+    offset_views(&suite::one()?)
+}
+
+/// Each view plain and by every value of the tables, whole and cut by its box (names end in `-box`).
+///
+/// # Errors
+/// Of baking maps.
+pub fn all_techniques(views: &[View]) -> Result<Vec<View>> {
+    let mut all = Vec::new();
+    for base in views {
+        all.push(base.clone());
+        for whole in offset_views(base)? {
+            let mut cut = whole.clone();
+            cut.name += suite::CUT;
+            for object in &mut cut.scene.objects {
+                object.clip = Clip::Box;
+            }
+            all.extend([whole, cut]);
+        }
+    }
+    Ok(all)
+}
+
+/// A view by every value of the tables.
+fn offset_views(base: &View) -> Result<Vec<View>> {
+    let largest = largest_distance(base)?;
     let mut views = Vec::new();
     for table in &TABLES {
         for value in table.values {

@@ -170,19 +170,27 @@ pub fn techniques(views: &[View]) -> Result<Vec<View>> {
     Ok(all)
 }
 
+/// What ends the names of views whose box cuts the solid.
+pub(super) const CUT: &str = "-box";
+
 /// The technique that a row of `results.csv` shows: what its view is named after, else that of its
-/// offset.
-pub(super) fn technique_of<'a>(scene: &str, technique: &'a str) -> &'a str {
-    if scene.trim_end_matches(":close").ends_with(TEXTURED) {
-        TEXTURED
+/// offset; whether the box cuts it.
+pub(super) fn technique_of(scene: &str, technique: &str) -> String {
+    let scene = scene.trim_end_matches(":close");
+    if scene.ends_with(TEXTURED) {
+        TEXTURED.to_owned()
+    } else if scene.ends_with(CUT) {
+        format!("{technique}, cut by the box")
     } else {
-        technique
+        technique.to_owned()
     }
 }
 
 /// Where a technique stands among all; one that is not among them stands last.
 pub(super) fn place_of(technique: &str) -> usize {
-    let known = TECHNIQUES.iter().position(|(name, _)| *name == technique);
+    let known = TECHNIQUES
+        .iter()
+        .position(|(name, _)| technique.starts_with(name));
     known.unwrap_or(TECHNIQUES.len())
 }
 
@@ -218,7 +226,7 @@ mod tests {
         assert_eq!((each.len(), each[1].name.as_str()), (10, "vase@0-extended"));
         for view in each {
             view.scene.check().unwrap();
-            let told = technique_of(&view.name, view.technique().name()).to_owned();
+            let told = technique_of(&view.name, view.technique().name());
             assert!(view.name.ends_with(&told), "{} is {told}", view.name);
         }
         assert_eq!(views(Extent::One, &[20.0]).unwrap().len(), 1);

@@ -69,11 +69,11 @@ pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
                 continue;
             };
             let technique = technique_of(&record[at("scene")?], &record[at("technique")?]);
-            let mut name = technique.to_owned();
+            let mut name = technique.clone();
             if !matches!(record[tolerance].as_str(), "" | "0") {
                 name += &format!(", tolerance {} pixels", record[tolerance]);
             }
-            let key = (place_of(technique), name, record[stage] == "compute");
+            let key = (place_of(&technique), name, record[stage] == "compute");
             let none = || folders.iter().map(|_| Cell::default()).collect();
             let cell = &mut rows.entry(key).or_insert_with(none)[column];
             let value = |name: &str| Ok(record[at(name)?].parse::<f64>().unwrap_or(0.0));
@@ -141,6 +141,7 @@ mod tests {
                 ("vase-revolution", fragment, 5.0),
                 ("pawn-revolution:close", fragment, 20.0),
                 ("vase-textured", compute, 8.0),
+                ("vase-e0.25-box", compute, 30.0),
             ],
         );
         let second = run("two", &[("vase-revolution", fragment, 40.0)]);
@@ -155,7 +156,11 @@ mod tests {
             lines[3],
             "| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |"
         );
-        assert_eq!(lines.len(), 4);
+        assert_eq!(
+            lines[4],
+            "| revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |"
+        );
+        assert_eq!(lines.len(), 5);
         assert!(markdown(&[first.path().join("none")]).is_err());
     }
 }
