@@ -60,12 +60,11 @@ impl Renderer {
         };
         let mut binned = false;
         for (number, work) in numbers.into_iter().zip(planned) {
-            binned |= self.has_bins(number);
+            binned |= self.has_bins(number) || matches!(work, Work::Bins(_));
             self.apply(number, work)?;
-            binned |= self.has_bins(number);
         }
         if binned || !self.draws_hulls() {
-            self.place_bins(view);
+            self.place_bins(view)?;
         }
         Ok(())
     }
@@ -76,7 +75,7 @@ impl Renderer {
     }
 
     /// Finds the bins of all objects that are drawn from them; lists of tiles stand behind these.
-    fn place_bins(&mut self, view: &View) {
+    fn place_bins(&mut self, view: &View) -> Result<()> {
         let numbers: Vec<u32> = self
             .order
             .iter()
@@ -94,10 +93,7 @@ impl Renderer {
         let bins = Bins::new(view, &batches, self.draws_hulls());
         drop(batches);
         for (number, shown) in numbers.into_iter().zip(bins.shown) {
-            if let Some(entry) = &mut self.entries[number as usize] {
-                entry.draw.work = Some(Work::Bins(shown));
-            }
-            self.mark(number);
+            self.choose(number, Work::Bins(shown))?;
         }
         let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
         self.lists.0 = bins.words;
@@ -108,6 +104,7 @@ impl Renderer {
                 }
             }
         }
+        Ok(())
     }
 
     fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
@@ -170,8 +167,20 @@ impl Renderer {
         planned
     }
 
-    /// Gives an entry the pipeline and the tables that its work asks for.
+    /// Takes over what an entry is drawn by.
     fn apply(&mut self, number: u32, work: Work) -> Result<()> {
+        match (&mut self.entries[number as usize], &work) {
+            // What shows of it, which the pipeline depends on, is found with all others'.
+            (Some(entry), Work::Bins(_)) if entry.prepared.is_some() => {
+                entry.draw.work = Some(work);
+                Ok(())
+            }
+            _ => self.choose(number, work),
+        }
+    }
+
+    /// Gives an entry the pipeline and the tables that its work asks for.
+    fn choose(&mut self, number: u32, work: Work) -> Result<()> {
         let several = self.order.len() > 1 || self.keeps_depths;
         let in_pass = self.draws_hulls();
         let casts = self.lighting.shadow != Shadow::Off;
@@ -182,7 +191,16 @@ impl Renderer {
             entry.draw.work = None;
             return Ok(());
         };
+        let outside = match (&work, prepared.surface.as_deref(), &self.view) {
+            (Work::Bins(shown), _, _) => shown.outside,
+            (Work::Nothing, _, _) => true,
+            (_, Some(surface), Some(view)) => {
+                hulls::is_seen_from_outside(entry.drawn(), surface, view)
+            }
+            _ => false,
+        };
         let variant = prepared.variant;
+        let searched = variant.seen_from(outside);
         let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
         let large = |surface: Option<&Arc<OffsetSurface>>| {
             surface.is_some_and(|s| s.tables().own > PATCH_VECTORS as usize)
@@ -198,7 +216,7 @@ impl Renderer {
                     (Kind::ConvexHull, variant)
                 }
             }
-            Work::Box => (Kind::Box, variant.with_tables(!large(tables))),
+            Work::Box => (Kind::Box, searched.with_tables(!large(tables))),
             Work::Beams(copies) => {
                 let variant = variant.with_tables(!large(tables));
                 // Of an envelope beams alone read something.
@@ -206,13 +224,13 @@ impl Renderer {
                 let several = several || copies.len() > 1;
                 (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
             }
-            Work::Bins(_) if in_pass => (Kind::Bins, variant.with_tables(!large(tables))),
+            Work::Bins(_) if in_pass => (Kind::Bins, searched.with_tables(!large(tables))),
             Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
-                let variant = variant.with_tables(!large(tables));
+                let variant = searched.with_tables(!large(tables));
                 (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
             }
             Work::Rectangle(_) | Work::Bins(_) | Work::Nothing => {
-                let variant = variant.with_tables(!large(tables));
+                let variant = searched.with_tables(!large(tables));
                 (
                     Kind::Compute,
                     variant.dispatched(Dispatch::Rectangle, several),
@@ -298,7 +316,12 @@ impl Entry {
             .surface
             .as_ref()
             .filter(|_| settings.occlusion_culling);
+        let whole = prepared
+            .surface
+            .as_deref()
+            .filter(|s| s.is_boundary() && hulls::is_whole(object, s));
         Some(Batch {
+            whole,
             placements: object.placements(),
             first: self.instances.start,
             shape,

@@ -28,12 +28,28 @@ pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
 /// Whether rays of all of an object's copies can be taken between the ends that beams give: they
 /// begin outside the solid and no face of the box shows.
 pub(crate) fn takes_beams(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    is_whole(object, surface) && (!surface.is_boundary() || is_outside(object, surface, view))
+}
+
+/// Whether rays to all of an object's copies begin outside of the solid, of which the box cuts
+/// nothing.
+pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    surface.is_boundary()
+        && !view.parallel
+        && is_whole(object, surface)
+        && is_outside(object, surface, view)
+}
+
+fn is_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    let apart = |copy| is_apart(surface, seen_from(object, copy, view).0);
+    object.placements().iter().all(apart)
+}
+
+/// Whether a place of object space, relative to the axis, is clear of the solid's bounding cylinder.
+pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
     let [r_max, z_min, z_max] = surface.extent();
-    let apart = |copy: &Placement| {
-        let eye = flat(seen_from(object, copy, view).0);
-        eye.x > r_max + CLEARANCE || eye.y < z_min - CLEARANCE || eye.y > z_max + CLEARANCE
-    };
-    is_whole(object, surface) && (!surface.is_boundary() || object.placements().iter().all(apart))
+    let place = flat(place);
+    place.x > r_max + CLEARANCE || place.y < z_min - CLEARANCE || place.y > z_max + CLEARANCE
 }
 
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,

@@ -79,6 +79,8 @@ pub struct Variant {
     /// Bound of the papers' loop where it is their own, as the baseline must not lose by an option
     /// that it does not take; else 0, and the bound is data.
     pub papers_steps: u32,
+    /// 1 where the eye is outside of the solid, of which the box cuts nothing.
+    pub outside: u32,
 }
 
 impl Variant {
@@ -99,6 +101,7 @@ impl Variant {
         more_lights: 0,
         list_length: 0,
         papers_steps: 0,
+        outside: 0,
     };
 
     /// The variant that draws `object` by the search `solver`, which is that of the settings or
@@ -176,6 +179,7 @@ impl Variant {
                 // A shadow's ray takes the steps of what it meets.
                 if papers && !casts { own } else { 0 }
             },
+            outside: 0,
         };
         match planes {
             Planes::Depth { parallel } => shaded.depth_only(parallel),
@@ -210,6 +214,18 @@ impl Variant {
     pub fn with_tables(self, fit: bool) -> Self {
         Self {
             search: self.search.of_tables(fit),
+            ..self
+        }
+    }
+
+    /// The same where the eye is outside of the solid, of which the box cuts nothing, or not; one
+    /// where that makes no difference.
+    #[must_use]
+    pub fn seen_from(self, outside: bool) -> Self {
+        let searched = matches!(self.search, Search::Quadric | Search::QuadricLarge)
+            && matches!(self.dispatch, Dispatch::Rectangle | Dispatch::Bins);
+        Self {
+            outside: u32::from(outside && searched && self.cells == 0),
             ..self
         }
     }
@@ -323,6 +339,15 @@ impl Variant {
                 all.push((variant, Kind::Box));
             }
         }
+        let mut all: Vec<_> = all
+            .into_iter()
+            .flat_map(|(v, kind)| match kind {
+                Kind::Box | Kind::Bins | Kind::Compute if v.seen_from(true) != v => {
+                    vec![(v.seen_from(true), kind), (v, kind)]
+                }
+                _ => vec![(v, kind)],
+            })
+            .collect();
         if self.shadow == g::SHADOW_OFF {
             let lit = all
                 .iter()
@@ -372,7 +397,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 11] {
+    pub fn constants(&self) -> [(u32, u32); 12] {
         [
             (g::CELLS_ID, self.cells),
             (g::SHADOW_ID, self.shadow),
@@ -385,6 +410,7 @@ impl Variant {
             (g::MORE_LIGHTS_ID, self.more_lights),
             (g::LIST_LENGTH_ID, self.list_length),
             (g::PAPERS_STEPS_ID, self.papers_steps),
+            (g::OUTSIDE_ID, self.outside),
         ]
     }
 }

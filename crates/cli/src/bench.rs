@@ -17,11 +17,11 @@ use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
 use revmap_lab::report::scaling::Ranges;
 use revmap_lab::report::suite::{self, Extent};
+use revmap_lab::report::view::View;
 use revmap_lab::report::{
     DeviceBench, antialiasing, budget, compare_runs, crowds, folder, overview, papers, scaling,
     text,
 };
-use revmap_lab::report::view::View;
 use std::path::PathBuf;
 
 /// Makes views of other techniques.

@@ -135,7 +135,8 @@ impl Render {
         settings: &MethodSettings,
         progress: &Progress,
     ) -> Result<MethodDrawn> {
-        let mut renderer = MethodDevice::new(device.clone())?.renderer(scene, settings)?;
+        let method_device = MethodDevice::new(device.clone())?;
+        let mut renderer = method_device.renderer(scene, settings)?;
         renderer.draw()?;
         let mut times = Vec::new();
         let frame = self.samples.draw(scene, |scene| {
@@ -147,7 +148,13 @@ impl Render {
         let costs = renderer.object_costs();
         let device_bytes = renderer.device_bytes();
         if let Some(file) = &self.levels {
-            renderer.update(&levels::painted(scene, &costs))?;
+            // Colours stand for levels, and are not mixed.
+            let settings = MethodSettings {
+                antialias: false,
+                ..*settings
+            };
+            let painted = levels::painted(scene, &costs);
+            let mut renderer = method_device.renderer(&painted, &settings)?;
             renderer.draw()?;
             frame::write_png(&renderer.read()?, file)?;
         }

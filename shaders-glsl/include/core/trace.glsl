@@ -59,6 +59,13 @@ bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
 }
 #endif
 
+// Whether rays begin outside of the solid and the box cuts nothing of it. Those towards lights may begin anywhere.
+#if SHADOWED
+#define FROM_OUTSIDE (OUTSIDE != 0u && !casts)
+#else
+#define FROM_OUTSIDE (OUTSIDE != 0u)
+#endif
+
 // Whether the ray begins in the solid, as it does anyhow where it comes from within, `inside`; `f` is F there, of
 // searches on the map.
 bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
@@ -112,7 +119,7 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
-    if (!clip_ray(eye, v, base, m)) {
+    if (!clip_ray(eye, v, base, FROM_OUTSIDE, m)) {
         return false;
     }
     if (SPANS && !narrow(m, span)) {
@@ -120,7 +127,10 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     }
     float s = 0.0;
     float f;
-    bool within = begins_within(m, inside, hit.steps, f);
+    bool within = false;
+    if (!FROM_OUTSIDE) {
+        within = begins_within(m, inside, hit.steps, f);
+    }
     hit.at_border = false;
     if (within && !inside && m.face_in != FACE_NONE) {
         // The box cuts the solid, and the cut is closed.

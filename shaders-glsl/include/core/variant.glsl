@@ -78,6 +78,11 @@ layout(constant_id = 5) const uint REFINEMENT = 0u; // of the linear search: one
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
+#if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS
+layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the eye is outside of the solid, of which the box cuts nothing
+#else
+const uint OUTSIDE = 0u;
+#endif
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
 #endif

@@ -19,6 +19,8 @@ mod seen;
 pub(crate) use inner::Inner;
 pub(crate) use seen::{Cylinder, Forms};
 
+use super::hulls::is_apart;
+use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::scene::Placement;
 use crate::shader::generated::{BIN_SPLIT, GROUP_PIXELS};
@@ -27,6 +29,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use seen::Seen;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
@@ -36,6 +39,8 @@ pub(crate) struct Batch<'a> {
     pub shape: Cylinder,
     /// What each is sure to hide; none where that is not known.
     pub inner: Option<&'a Inner>,
+    /// The surface of solids of which the box cuts nothing.
+    pub whole: Option<&'a OffsetSurface>,
 }
 
 /// What a batch draws.
@@ -45,6 +50,8 @@ pub(crate) struct Shown {
     pub range: Range<u32>,
     /// Its copies that may show, by their place in the batch.
     pub copies: Vec<u32>,
+    /// Whether the eye is outside of all of them, and the box cuts none.
+    pub outside: bool,
 }
 
 /// Bins of all batches and their lists, as the shader's one buffer of words holds them
@@ -85,8 +92,6 @@ struct Part {
 
 /// From so many pixels on each of a square's copies covers it well enough for one list for all.
 const LEAST_PIXELS: u32 = 24;
-/// Fewer copies share one list in any case.
-const LEAST_SPLIT: usize = 3;
 
 impl Bins {
     /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as
@@ -94,7 +99,9 @@ impl Bins {
     pub fn new(view: &View, batches: &[Batch], in_runs: bool) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
+        let mut outside = Vec::with_capacity(batches.len());
         for (number, batch) in (0u32..).zip(batches) {
+            let apart = AtomicBool::new(batch.whole.is_some());
             const CHUNK: usize = 1024;
             items.par_extend(
                 batch
@@ -103,10 +110,13 @@ impl Bins {
                     .enumerate()
                     .flat_map_iter(|(chunk, copies)| {
                         let first = chunk * CHUNK;
-                        let forms = &forms;
+                        let (forms, apart) = (&forms, &apart);
                         copies.iter().enumerate().filter_map(move |(n, copy)| {
-                            let Seen { pixels, near } =
-                                forms.see(&forms.spread(copy, batch.shape.axis), &batch.shape)?;
+                            let spread = forms.spread(copy, batch.shape.axis);
+                            let Seen { pixels, near } = forms.see(&spread, &batch.shape)?;
+                            if batch.whole.is_some_and(|s| !is_apart(s, spread.eye)) {
+                                apart.store(false, Relaxed);
+                            }
                             Some(Item {
                                 near: near.to_bits(),
                                 batch: number,
@@ -116,6 +126,7 @@ impl Bins {
                         })
                     }),
             );
+            outside.push(apart.into_inner());
         }
         items.par_sort_unstable();
         let [_, full] = view.corners();
@@ -132,10 +143,10 @@ impl Bins {
                 fill(cover, across, &forms, batches, &items)
             })
             .collect();
-        Self::joined(&parts, batches, in_runs)
+        Self::joined(&parts, batches, &outside, in_runs)
     }
 
-    fn joined(parts: &[Vec<Part>], batches: &[Batch], in_runs: bool) -> Self {
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool], in_runs: bool) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
         let mut lists = 0;
         let mut shown = Vec::with_capacity(batches.len());
@@ -155,6 +166,7 @@ impl Bins {
             shown.push(Shown {
                 range: first..bins.len() as u32,
                 copies: copies.map(|(copy, _)| copy).collect(),
+                outside: outside[number],
             });
         }
         let mut runs: Vec<[u32; 4]> = Vec::new();
@@ -261,7 +273,7 @@ impl Part {
             let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
             let first = self.lists.len() as u32;
             let count = (end - begin) as u32;
-            let split = end - begin >= LEAST_SPLIT && pixels < LEAST_PIXELS * count;
+            let split = pixels < LEAST_PIXELS * count;
             if split {
                 self.split(here);
             } else {

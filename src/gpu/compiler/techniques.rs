@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
 use crate::profile::Profile;
-use crate::scene::{Lighting, Object, Shadow};
+use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
 use crate::shader::{Kind, Met, Variant};
 use std::sync::Arc;
@@ -51,6 +51,10 @@ impl Technique {
             .filter(|(v, kind)| {
                 matches!(kind, Kind::Beam | Kind::List)
                     || (v.search, v.more_lights) == (own.search, own.more_lights)
+            })
+            .filter(|(v, kind)| {
+                let searches = matches!(kind, Kind::Box | Kind::Bins | Kind::Compute);
+                !searches || v.outside == v.seen_from(self.object.clip == Clip::None).outside
             });
         let large = |(v, kind): &(Variant, Kind)| {
             (self.name == BARE && !matches!(kind, Kind::Hull | Kind::Listed))
@@ -85,6 +89,8 @@ pub(super) fn techniques() -> Result<Vec<Technique>> {
     };
     Ok(vec![
         bare(BARE),
+        // The same code draws what the eye is within.
+        changed("cut by the box", &|t| t.object.clip = Clip::Box),
         changed("beveled", &|t| t.object.offset.bevel = 0.25),
         changed("8-bit map", &|t| t.format = MapFormat::Rgba8),
         changed("many lights", &|t| {

@@ -154,11 +154,11 @@ mod tests {
         );
         assert_eq!(
             lines[3],
-            "| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |"
+            "| revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |"
         );
         assert_eq!(
             lines[4],
-            "| revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |"
+            "| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |"
         );
         assert_eq!(lines.len(), 5);
         assert!(markdown(&[first.path().join("none")]).is_err());
