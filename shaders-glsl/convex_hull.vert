@@ -8,7 +8,7 @@
 void main()
 {
     Instance i = begin();
-    gl_Position = clip_of(i, band_corner(this_band()));
+    gl_Position = clip_of(i, frustum_corner(this_frustum()));
     // Its corners stand out of the box, beyond which the far plane may be; no fragment takes its depth from here.
     float sense = frame.forward.w;
     float far = (1.0 - frame.ambient.w) * gl_Position.w;

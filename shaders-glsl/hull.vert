@@ -9,8 +9,8 @@
 void main()
 {
     Instance i = begin();
-    uint at = this_band();
-    gl_Position = clip_of(i, band_corner(at));
+    uint at = this_frustum();
+    gl_Position = clip_of(i, frustum_corner(at));
 
     hand_over(i, frame.forward.w);
     [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {

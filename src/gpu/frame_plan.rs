@@ -4,7 +4,6 @@ use super::bins::{Batch, Bins, Cylinder};
 use super::buffers::{indices, write_slice};
 use super::entry::Entry;
 use super::hulls;
-use super::offset_surface::OffsetSurface;
 use super::output::Output;
 use super::plan::{Lists, Planner, Work};
 use super::proxy_hull;
@@ -19,7 +18,6 @@ use crate::shader::{Dispatch, Kind, Variant};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::SQRT_2;
-use std::sync::Arc;
 
 /// From so many objects on they are planned on all cores: to wake these takes as long as to plan a
 /// thousand.
@@ -107,14 +105,18 @@ impl Renderer {
         Ok(())
     }
 
-    fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
-        let planner = Planner {
+    fn planner<'a>(&'a self, view: &'a View) -> Planner<'a> {
+        Planner {
             view,
             limits: &self.device.limits,
             subgroup_size: self.device.subgroup_size,
             software: self.device.report.kind == "cpu",
             least_pixels: self.settings.proxy_min_pixels,
-        };
+        }
+    }
+
+    fn plan_fragment(&self, view: &View, numbers: &[u32]) -> Vec<Work> {
+        let planner = self.planner(view);
         let entries = &self.entries;
         let plan = |number: &u32| {
             let entry = entries[*number as usize].as_ref();
@@ -136,13 +138,7 @@ impl Renderer {
 
     /// Plans all objects; the lists that they share are kept for [`Renderer::write`].
     fn plan_compute(&mut self, view: &View, numbers: &[u32]) -> Vec<Work> {
-        let planner = Planner {
-            view,
-            limits: &self.device.limits,
-            subgroup_size: self.device.subgroup_size,
-            software: self.device.report.kind == "cpu",
-            least_pixels: self.settings.proxy_min_pixels,
-        };
+        let planner = self.planner(view);
         let mut lists = Lists::default();
         let mut planned: Vec<Work> = numbers
             .iter()
@@ -200,11 +196,9 @@ impl Renderer {
             _ => false,
         };
         let variant = prepared.variant;
-        let searched = variant.seen_from(outside);
         let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
-        let large = |surface: Option<&Arc<OffsetSurface>>| {
-            surface.is_some_and(|s| s.tables().own > PATCH_VECTORS as usize)
-        };
+        let fit = tables.is_none_or(|s| s.tables().own <= PATCH_VECTORS as usize);
+        let searched = variant.seen_from(outside).with_tables(fit);
         let (kind, variant) = match &work {
             Work::Hull(_) => {
                 frusta = prepared.wrapped.as_ref();
@@ -216,25 +210,21 @@ impl Renderer {
                     (Kind::ConvexHull, variant)
                 }
             }
-            Work::Box => (Kind::Box, searched.with_tables(!large(tables))),
+            Work::Box => (Kind::Box, searched),
             Work::Beams(copies) => {
-                let variant = variant.with_tables(!large(tables));
+                let variant = searched.seen_from(false);
                 // Of an envelope beams alone read something.
                 tables = tables.or(prepared.wrapped.as_ref());
                 let several = several || copies.len() > 1;
                 (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
             }
-            Work::Bins(_) if in_pass => (Kind::Bins, searched.with_tables(!large(tables))),
+            Work::Bins(_) if in_pass => (Kind::Bins, searched),
             Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
-                let variant = searched.with_tables(!large(tables));
-                (Kind::Compute, variant.dispatched(Dispatch::Bins, several))
+                (Kind::Compute, searched.dispatched(Dispatch::Bins, several))
             }
             Work::Rectangle(_) | Work::Bins(_) | Work::Nothing => {
-                let variant = searched.with_tables(!large(tables));
-                (
-                    Kind::Compute,
-                    variant.dispatched(Dispatch::Rectangle, several),
-                )
+                let variant = searched.dispatched(Dispatch::Rectangle, several);
+                (Kind::Compute, variant)
             }
         };
         let mut replaced = Vec::new();
@@ -245,7 +235,7 @@ impl Renderer {
             }),
             None => Ok(None),
         };
-        let bands_at = put(frusta, Part::Frusta)?;
+        let frusta_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
         let listed = matches!(&work, Work::Beams(copies) if copies.iter().any(|c| c.listed));
         let patches_at = put(prepared.wrapped.as_ref().filter(|_| listed), Part::Patches)?;
@@ -267,7 +257,7 @@ impl Renderer {
                 }
             }
         }
-        entry.draw.frusta = bands_at.unwrap_or(0);
+        entry.draw.frusta = frusta_at.unwrap_or(0);
         entry.draw.tables = tables_at.unwrap_or(0);
         entry.draw.tables_offset = 16 * entry.draw.tables;
         entry.draw.patches = patches_at.unwrap_or(0);

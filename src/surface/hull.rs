@@ -211,12 +211,6 @@ impl ProxyHull {
         self.extents.push(extent);
     }
 
-    /// Patches of the largest cell.
-    #[must_use]
-    pub fn largest_cell(&self) -> u32 {
-        self.frusta.iter().map(|b| b.count).max().unwrap_or(0)
-    }
-
     /// Vertices of the whole draw.
     #[must_use]
     pub fn vertices(&self) -> u32 {

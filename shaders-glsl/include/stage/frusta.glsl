@@ -1,16 +1,16 @@
 // Frusta of hulls: two rings of HULL_SIDES corners each, a vertex for each corner.
-#ifndef BANDS_GLSL
-#define BANDS_GLSL
+#ifndef FRUSTA_GLSL
+#define FRUSTA_GLSL
 #include "core/patch_tables.glsl"
 
 // Where the frustum of this vertex stands in the tables.
-uint this_band()
+uint this_frustum()
 {
     return solid.hull.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
 }
 
 // The vertex's place in object space.
-vec3 band_corner(uint at)
+vec3 frustum_corner(uint at)
 {
     uint corner = uint(gl_VertexIndex) % (2u * HULL_SIDES);
     vec4 rings = uintBitsToFloat(patch_tables[at]);

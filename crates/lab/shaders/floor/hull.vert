@@ -9,8 +9,8 @@ layout(location = 11) flat out vec4 first_quadric;
 void main()
 {
     Instance i = begin();
-    uint at = this_band();
-    gl_Position = clip_of(i, band_corner(at));
+    uint at = this_frustum();
+    gl_Position = clip_of(i, frustum_corner(at));
 
     hand_over(i, frame.forward.w);
     first_quadric = uintBitsToFloat(patch_tables[at + 1u]);

@@ -29,12 +29,6 @@ impl Interval {
     pub fn ends(&self) -> Option<(f64, f64)> {
         self.high.is_finite().then_some((self.low, self.high))
     }
-
-    /// Whether the two have a point in common.
-    #[must_use]
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.low <= other.high && other.low <= self.high
-    }
 }
 
 /// The value below which the share `q` of all lie (nearest rank); `None` of nothing.

@@ -106,14 +106,6 @@ pub struct Outcome {
     pub glances: Vec<Glance>,
 }
 
-impl Outcome {
-    /// Whether the default failed a case that is not listed as known.
-    #[must_use]
-    pub fn default_failed(&self) -> bool {
-        (self.trials.iter()).any(|t| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed)
-    }
-}
-
 /// What is drawn.
 pub struct Plan<'a> {
     /// The cases.
