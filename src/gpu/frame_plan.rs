@@ -177,7 +177,7 @@ impl Renderer {
 
     /// Gives an entry the pipeline and the tables that its work asks for.
     fn choose(&mut self, number: u32, work: Work) -> Result<()> {
-        let several = self.order.len() > 1 || self.keeps_depths;
+        let (several, keeps) = (self.order.len() > 1, self.keeps_depths);
         let in_pass = self.draws_hulls();
         let casts = self.lighting.shadow != Shadow::Off;
         let Some(entry) = &mut self.entries[number as usize] else {
@@ -227,6 +227,7 @@ impl Renderer {
                 (Kind::Compute, variant)
             }
         };
+        let variant = variant.keeping(keeps && kind == Kind::Compute);
         let mut replaced = Vec::new();
         let mut put = |surface: Option<&_>, part| match surface {
             Some(surface) => self.arena.place(surface, part).map(|(begin, old)| {
@@ -251,9 +252,9 @@ impl Renderer {
             let kind = if listed { Kind::List } else { Kind::Beam };
             entry.draw.list = get(Variant::BEAM, kind)?;
             if listed {
-                let lists = variant.listed(variant.depth_keep != 0);
+                let lists = variant.listed(variant.depth_test != 0);
                 for (to, variant) in entry.draw.listed.iter_mut().zip(lists) {
-                    *to = get(variant, Kind::Listed)?;
+                    *to = get(variant.keeping(keeps), Kind::Listed)?;
                 }
             }
         }

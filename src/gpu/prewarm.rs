@@ -119,7 +119,7 @@ impl Renderer {
         let of = |solver| Variant::new(settings, planes, solver, &self.lighting, object, self.met);
         let fallback = matches!(solver, Solver::Quadric | Solver::Hull).then(|| of(FALLBACK));
         let wraps = settings.proxy_min_pixels != u32::MAX && object.repeat == [1; 3];
-        let several = self.order.len() > 1 || self.keeps_depths;
+        let several = self.order.len() > 1;
         let copies = object.placements().len() > 1;
         let compute = (!self.draws_hulls()).then_some(several);
         // An offset may move the size of tables across the limit.
@@ -128,6 +128,8 @@ impl Renderer {
         let fits = [own <= limit + limit / 2, own > limit - limit / 4];
         for (variant, kind) in of(solver).reachable(solver, wraps, copies, compute, fallback) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
+                let keeps = self.keeps_depths && matches!(kind, Kind::Compute | Kind::Listed);
+                let variant = variant.keeping(keeps);
                 let variant = match kind {
                     // These read none of the tree.
                     Kind::Hull | Kind::Listed => variant.in_shell(),

@@ -199,6 +199,15 @@ impl Variant {
         }
     }
 
+    /// The same where depths are read afterwards, though nothing is drawn that would compare them.
+    #[must_use]
+    pub fn keeping(self, keeps: bool) -> Self {
+        Self {
+            depth_keep: self.depth_keep | u32::from(keeps),
+            ..self
+        }
+    }
+
     /// The same of tiles whose patches are listed, by the length of lists.
     #[must_use]
     pub fn listed(self, several: bool) -> [Self; LIST_LENGTHS.len()] {

@@ -56,6 +56,20 @@ fn moved(mut scene: Scene, by: DVec3) -> Scene {
     scene
 }
 
+/// In the space of a box that is thin across the axis a ray's origin is far off, and where the ray enters the
+/// cylinder about the solid must not be found from there: the walls of
+/// the solid are where its bounds are.
+#[test]
+fn thin_plates_have_no_holes() {
+    let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.1, 0.9], [0.0, 0.9]];
+    let eye = DVec3::new(0.8, 1.4, 0.9);
+    for thin in [0.1, 0.01, 0.003, 0.001] {
+        let mut scene = scene_of(Profile::polygon(&cylinder, 0.4).unwrap(), eye);
+        scene.objects[0].placement.scale.y = thin;
+        in_both_stages(&scene, (8, 0.5), &format!("{thin} across"));
+    }
+}
+
 #[test]
 fn the_distance_from_the_origin_does_not_matter() {
     for far in [1e4, 1e6] {

@@ -74,6 +74,9 @@ impl Animate {
                 "the reference draws no animations; give fragment or compute",
             ));
         };
+        if self.turn.is_some_and(|turn| !turn.is_finite()) {
+            return Err(usage("--turn", "is no angle; give degrees"));
+        }
         if let Some(file) = &self.times {
             output::check(
                 std::slice::from_ref(file),
@@ -215,8 +218,16 @@ impl Animate {
         let late: u64 = settled.iter().map(|r| r.compiled).sum();
         let compiled = device.pipelines_compiled();
         let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
+        let (after, of_them) = if settled.is_empty() {
+            ("", String::new())
+        } else {
+            (
+                " after the tenth",
+                format!(", {late} of them after the tenth"),
+            )
+        };
         output::result(&format!(
-            "{} frames: median {median:.2} ms, slowest after the tenth {most:.2} ms ({:.2} of the median); {compiled} pipelines compiled, {late} of them after the tenth; {rebuilt} surfaces made",
+            "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
             rows.len(),
             most / median,
         ));

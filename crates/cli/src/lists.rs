@@ -56,14 +56,14 @@ pub struct Lists {
     pub map_format: Vec<MapFormat>,
     /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact
     /// [default: 0]
-    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Vec<Tolerance>,
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
     /// How much of the picture is solid: whole as the camera stands (the program's own solids fill
     /// 9 to 23 % of it); close: the field of view narrowed until the solid's box is a quarter
-    /// larger than a picture of 4:3 (30 to 80 %), views named so; a close picture takes two to four
+    /// larger than a picture of 4:3 (44 to 81 %), views named so; a close picture takes two to four
     /// times as long [default: whole]
     #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&FRAMINGS))]
     pub framing: Vec<Framing>,

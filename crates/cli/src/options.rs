@@ -80,7 +80,7 @@ pub struct Drawing {
     pub map_format: MapFormat,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an
     /// .exr is written]
-    #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
+    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
     /// before virtual before CPU]

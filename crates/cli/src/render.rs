@@ -62,7 +62,9 @@ impl Render {
     pub fn run(self) -> Result<()> {
         output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
         let levels: Vec<_> = self.levels.iter().cloned().collect();
-        output::check(&levels, "--levels", &["png"], &[&self.scene])?;
+        let pictures: Vec<_> = self.output.iter().chain(&levels).cloned().collect();
+        output::check(&pictures, "--levels", &["png", "exr"], &[&self.scene])?;
+        output::check(&levels, "--levels", &["png"], &[])?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
         let scene = file.scene(&self.drawing.set)?;

@@ -38,7 +38,12 @@ fn one_line(message: &str) -> String {
         .join(" ")
         .replace("error: ", "")
         .replace(" tip: ", "; ");
-    format!("{line}; see `revmap --help`")
+    let usage = message.split("\nUsage: ").nth(1).unwrap_or("revmap");
+    let command: Vec<&str> = usage
+        .split_whitespace()
+        .take_while(|word| word.starts_with(|c: char| c.is_ascii_lowercase()))
+        .collect();
+    format!("{line}; see `{} --help`", command.join(" "))
 }
 
 #[cfg(test)]
@@ -51,12 +56,12 @@ mod tests {
                     Usage: revmap render <SCENE>\n\nFor more information, try '--help'.\n";
         assert_eq!(
             one_line(text),
-            "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap --help`"
+            "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap render --help`"
         );
-        let text = "error: the following required arguments were not provided:\n  --output <FILE>\n\nUsage: x\n";
+        let text = "error: the following required arguments were not provided:\n  --output <FILE>\n\nUsage: revmap bake [OPTIONS]\n";
         assert_eq!(
             one_line(text),
-            "the following required arguments were not provided: --output <FILE>; see `revmap --help`"
+            "the following required arguments were not provided: --output <FILE>; see `revmap bake --help`"
         );
     }
 }

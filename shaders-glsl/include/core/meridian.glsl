@@ -30,8 +30,8 @@ vec2 point_rz(Meridian m, float s)
 
 // Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder about it. False: it meets none
 // of that. One way out: software drivers run both sides of a branch, and a return costs them a mask of lanes from there
-// on. `whole`: the box's sides cut nothing of the solid, and are not asked.
-bool clip_ray(vec3 eye, vec3 v, float base, bool whole, out Meridian m)
+// on.
+bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
 {
     float R = solid.bounds.x;
     vec3 low = vec3(-R - solid.axis.xy, solid.bounds.z);
@@ -45,10 +45,6 @@ bool clip_ray(vec3 eye, vec3 v, float base, bool whole, out Meridian m)
     bvec3 still = equal(v, vec3(0.0));
     near = mix(near, vec3(-1e30), still);
     far = mix(far, vec3(1e30), still);
-    if (whole) {
-        near.xy = vec2(-1e30);
-        far.xy = vec2(1e30);
-    }
     bvec3 beside = bvec3(uvec3(still) * (uvec3(lessThan(eye, low)) + uvec3(greaterThan(eye, high))));
 
     float t_in = max(near.x, max(near.y, near.z));

@@ -18,7 +18,7 @@ const float PENUMBRA = 0.06;
 float solid_openness(vec3 eye, vec3 v)
 {
     Meridian m;
-    if (!clip_ray(eye, v, 0.0, false, m)) {
+    if (!clip_ray(eye, v, 0.0, m)) {
         return 1.0;
     }
     float open = 1.0;

@@ -119,7 +119,7 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
-    if (!clip_ray(eye, v, base, FROM_OUTSIDE, m)) {
+    if (!clip_ray(eye, v, base, m)) {
         return false;
     }
     if (SPANS && !narrow(m, span)) {

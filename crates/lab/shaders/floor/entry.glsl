@@ -5,7 +5,7 @@
 bool entry_hit(PixelRays rays, uvec2 pixel, out Hit hit)
 {
     Meridian m;
-    bool found = clip_ray(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, OUTSIDE != 0u, m);
+    bool found = clip_ray(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, m);
     hit.t = m.t_start;
     hit.normal = vec3(m.o.xy, 0.0);
     hit.point = m.o;
