@@ -205,7 +205,7 @@ impl Renderer {
                 if frusta.is_some_and(|s| s.is_boundary()) {
                     // A hull's own fragments read none of the tree; shadows' rays do.
                     tables = tables.filter(|_| casts);
-                    (Kind::Hull, variant.in_shell())
+                    (Kind::Hull, variant.with_tables(true))
                 } else {
                     (Kind::ConvexHull, variant)
                 }

@@ -132,7 +132,7 @@ impl Renderer {
                 let variant = variant.keeping(keeps);
                 let variant = match kind {
                     // These read none of the tree.
-                    Kind::Hull | Kind::Listed => variant.in_shell(),
+                    Kind::Hull | Kind::Listed => variant.with_tables(true),
                     _ => variant.with_tables(fit),
                 };
                 if !all.contains(&(variant, kind)) {

@@ -306,7 +306,7 @@ fn depth_is_promised_greater_or_less() {
             .collect()
     };
     let hull = any(Solver::Hull, Planes::Color);
-    let hull = words(&hull.in_shell().module(Kind::Hull)).unwrap();
+    let hull = words(&hull.with_tables(true).module(Kind::Hull)).unwrap();
     let less = depth_less(&hull);
     assert_eq!(promises(&hull), [14]);
     assert_eq!(promises(&less), [15]);

@@ -239,12 +239,6 @@ impl Variant {
         }
     }
 
-    /// The same in fragments of proxy hulls, which solve their patches without tables.
-    #[must_use]
-    pub fn in_shell(self) -> Self {
-        self.with_tables(true)
-    }
-
     /// Depth alone, as a shadow map wants it; `ortho`: along parallel rays. Of boxes and hulls.
     #[must_use]
     fn depth_only(self, ortho: bool) -> Self {
@@ -336,7 +330,7 @@ impl Variant {
             }
         } else {
             if wraps && solver == Solver::Hull {
-                all.push((self.in_shell(), Kind::Hull));
+                all.push((self.with_tables(true), Kind::Hull));
             }
             for variant in searched {
                 if wraps && on_map(&variant) {
