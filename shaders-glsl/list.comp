@@ -4,6 +4,7 @@
 // share the patches out and keep those that the square's rays may meet; of these each then takes its own tile's.
 #include "stage/patch_lists.glsl"
 #include "stage/beam.glsl"
+#include "core/meridian.glsl"
 
 const uint LIST_WORDS = (LISTED_PATCHES + 31u) / 32u;
 shared uint met[LIST_WORDS]; // a bit a patch
@@ -36,6 +37,17 @@ void main()
 
     // The first and the last patch, and the widest gap between two that follow.
     Beam beam = beam_of(rays, tile * GROUP_PIXELS, GROUP_PIXELS, farthest, unit);
+    // Where the box cuts the solid, a tile of which some ray may have been in it before the box's sides has no list: that
+    // ray may meet a cut.
+    bool cut = false;
+    vec2 outer = vec2(-1e30, 1e30);
+    vec2 inner = vec2(-1e30, 1e30);
+    if (OUTSIDE == 0u) {
+        vec4 wider = beam.width * vec4(-1.0, -1.0, 1.0, 1.0);
+        outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
+        inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
+        inner.x = inner.x <= inner.y ? inner.x : 1e30;
+    }
     uint first = 0u;
     uint last = 0u;
     uvec2 gap = uvec2(0u);
@@ -47,7 +59,8 @@ void main()
             uint k = w << 5 | uint(findLSB(rest));
             rest &= rest - 1u;
             vec2 span;
-            bool meets = may_meet(beam, k, span);
+            bool meets = may_meet(beam, k, span) && span.x <= outer.y;
+            cut = cut || meets && span.x < inner.x;
             range = meets ? vec2(min(range.x, span.x), max(range.y, span.y)) : range;
             gap = meets && any_met && k - last > gap.y - gap.x ? uvec2(last, k) : gap;
             first = meets && !any_met ? k : first;
@@ -58,14 +71,15 @@ void main()
     bool split = gap.y - gap.x > 1u;
     uvec2 lengths = split ? uvec2(gap.x + 1u - first, last + 1u - gap.y) : uvec2(last + 1u - first, 0u);
     uint listed = lengths.x + lengths.y;
-    bool shows = any_met && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
-    if (shows && listed > LONGEST_LIST) {
+    bool shows = any_met && outer.x <= outer.y && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
+    bool is_long = cut || listed > LONGEST_LIST;
+    if (shows && is_long) {
         uint at = pushed.first_bin + 4u + 4u * atomicAdd(bin_words[pushed.first_bin], 1u);
         bin_words[at] = tile.x | tile.y << 16;
         bin_words[at + 1u] = floatBitsToUint(max(range.x, -rays.base));
         bin_words[at + 2u] = floatBitsToUint(range.y);
     }
-    if (shows && listed <= LONGEST_LIST) {
+    if (shows && !is_long) {
         uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
         uint at = list_tiles(n) + 2u * atomicAdd(bin_words[list_heads() + 4u * n], 1u);
         bin_words[at] = tile.x | tile.y << 16;

@@ -82,7 +82,8 @@ pub struct SolidBlock {
     /// Of the quadric search's tables: where they begin, first record, first range, bits of the
     /// unit of `r^2`; of the cone search's: where they begin, rows, bits of the largest radius.
     pub patches: [u32; 4],
-    /// Of the hull: its first frustum; the first vector of the nodes that beams are asked against.
+    /// Of the hull: its first frustum; the first vector of the nodes that beams are asked against;
+    /// the first of the patches that are listed; the first row of the box's sides.
     pub hull: [u32; 4],
     /// The batch's instance, where it has but one.
     pub single: InstanceBlock,

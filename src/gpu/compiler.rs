@@ -181,6 +181,7 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
     match (kind, variant.dispatch) {
         (Kind::Box, _) => "box",
         (Kind::Hull, _) => "hull",
+        (Kind::Sides, _) => "sides",
         (Kind::ConvexHull, _) => "convex hull",
         (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",

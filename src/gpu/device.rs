@@ -52,6 +52,8 @@ pub(crate) struct Shared {
     pub subgroup_size: u32,
     pub timestamp_bits: u32,
     pub anisotropy: Option<f32>,
+    /// As [`Candidate::clips`].
+    pub clips: bool,
     pub report: DeviceReport,
     pub budget: MemoryBudget,
     /// None of a borrowed device.
@@ -160,6 +162,7 @@ impl Device {
             subgroup_size: shared.subgroup_size,
             timestamp_bits: shared.timestamp_bits,
             anisotropy: shared.anisotropy,
+            clips: shared.clips,
             report: shared.report.clone(),
             budget: MemoryBudget::default(),
             instance: None,
@@ -374,6 +377,7 @@ impl Shared {
             anisotropy: chosen
                 .anisotropic()
                 .then_some(limits.max_sampler_anisotropy),
+            clips: chosen.clips(),
             budget: MemoryBudget::default(),
             report: chosen.report.clone(),
             raw,

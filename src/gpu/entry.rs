@@ -85,6 +85,8 @@ pub(super) struct Prepared {
 pub(super) struct Draw {
     pub work: Option<Work>,
     pub pipeline: vk::Pipeline,
+    /// The pipeline of the box's sides, where they cut a hull.
+    pub sides: vk::Pipeline,
     /// The pipeline that lists tiles, where the work is of beams.
     pub list: vk::Pipeline,
     /// The pipelines of tiles whose patches are listed.
@@ -97,6 +99,8 @@ pub(super) struct Draw {
     pub patches: u32,
     /// Vectors with which frusta, tables begin.
     pub frusta: u32,
+    /// How many vectors after the frusta the rows of the box's sides begin.
+    pub side_rows: u32,
     pub tables: u32,
 }
 
@@ -138,6 +142,7 @@ impl Entry {
         }
         block.hull[0] = self.draw.frusta;
         block.hull[2] = self.draw.patches;
+        block.hull[3] = self.draw.frusta + self.draw.side_rows;
         let walked = p.surface.as_ref().or(p.wrapped.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {
             block.patches = surface.tables().block(self.draw.tables);

@@ -13,7 +13,7 @@ use super::view::View;
 use crate::error::Result;
 use crate::scene::Shadow;
 use crate::settings::SearchSettings;
-use crate::shader::generated::PATCH_VECTORS;
+use crate::shader::generated::{FRUSTUM_VECTORS, PATCH_VECTORS};
 use crate::shader::{Dispatch, Kind, Variant};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -96,7 +96,7 @@ impl Renderer {
         let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
         self.lists.0 = bins.words;
         for entry in self.entries.iter_mut().flatten() {
-            if let Some(Work::Beams(copies)) = &mut entry.draw.work {
+            if let Some(Work::Beams { copies, .. }) = &mut entry.draw.work {
                 for tiles in copies {
                     tiles.at += begin;
                 }
@@ -110,6 +110,7 @@ impl Renderer {
             view,
             limits: &self.device.limits,
             subgroup_size: self.device.subgroup_size,
+            clips: self.device.clips,
             software: self.device.report.kind == "cpu",
             least_pixels: self.settings.proxy_min_pixels,
         }
@@ -153,7 +154,7 @@ impl Renderer {
         // Blocks of copies stand behind those of all objects.
         let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX);
         for work in &mut planned {
-            if let Work::Beams(copies) = work {
+            if let Work::Beams { copies, .. } = work {
                 for tiles in copies {
                     tiles.block = tiles.block.map(|n| blocks + n);
                 }
@@ -200,23 +201,22 @@ impl Renderer {
         let fit = tables.is_none_or(|s| s.tables().own <= PATCH_VECTORS as usize);
         let searched = variant.seen_from(outside).with_tables(fit);
         let (kind, variant) = match &work {
-            Work::Hull(_) => {
+            Work::Hull { cut, .. } => {
                 frusta = prepared.wrapped.as_ref();
                 if frusta.is_some_and(|s| s.is_boundary()) {
-                    // A hull's own fragments read none of the tree; shadows' rays do.
-                    tables = tables.filter(|_| casts);
-                    (Kind::Hull, variant.with_tables(true))
+                    // A hull's own fragments read none of the tree; sides and shadows' rays do.
+                    tables = tables.filter(|_| casts || *cut);
+                    (Kind::Hull, variant.with_tables(true).cut_by_sides(*cut))
                 } else {
                     (Kind::ConvexHull, variant)
                 }
             }
             Work::Box => (Kind::Box, searched),
-            Work::Beams(copies) => {
-                let variant = searched.seen_from(false);
+            Work::Beams { copies, cut } => {
                 // Of an envelope beams alone read something.
                 tables = tables.or(prepared.wrapped.as_ref());
                 let several = several || copies.len() > 1;
-                (Kind::Compute, variant.dispatched(Dispatch::Beams, several))
+                (Kind::Compute, searched.tiled(*cut, several))
             }
             Work::Bins(_) if in_pass => (Kind::Bins, searched),
             Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
@@ -238,27 +238,35 @@ impl Renderer {
         };
         let frusta_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
-        let listed = matches!(&work, Work::Beams(copies) if copies.iter().any(|c| c.listed));
+        let listed = matches!(&work, Work::Beams { copies, .. } if copies.iter().any(|c| c.listed));
         let patches_at = put(prepared.wrapped.as_ref().filter(|_| listed), Part::Patches)?;
         let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
+        if matches!(work, Work::Hull { cut: true, .. }) {
+            let pipelines = self.device.pipelines()?;
+            entry.draw.sides = pipelines.get(searched, Kind::Sides, &self.output, self.owner)?;
+        }
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
             entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
             entry.draw.key = Some((variant, kind));
         }
-        if matches!(work, Work::Beams(_)) {
+        if let Work::Beams { cut, .. } = work {
             let pipelines = self.device.pipelines()?;
             let get = |variant, kind| pipelines.get(variant, kind, &self.output, self.owner);
-            let kind = if listed { Kind::List } else { Kind::Beam };
-            entry.draw.list = get(Variant::BEAM, kind)?;
+            entry.draw.list = if listed {
+                get(Variant::BEAM.cut_by_sides(cut), Kind::List)?
+            } else {
+                get(Variant::BEAM, Kind::Beam)?
+            };
             if listed {
-                let lists = variant.listed(variant.depth_test != 0);
+                let lists = variant.listed(cut, variant.depth_test != 0);
                 for (to, variant) in entry.draw.listed.iter_mut().zip(lists) {
                     *to = get(variant.keeping(keeps), Kind::Listed)?;
                 }
             }
         }
         entry.draw.frusta = frusta_at.unwrap_or(0);
+        entry.draw.side_rows = most as u32 * FRUSTUM_VECTORS;
         entry.draw.tables = tables_at.unwrap_or(0);
         entry.draw.tables_offset = 16 * entry.draw.tables;
         entry.draw.patches = patches_at.unwrap_or(0);

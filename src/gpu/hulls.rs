@@ -4,7 +4,7 @@ use super::bins::{Rectangle, rectangle};
 use super::offset_surface::OffsetSurface;
 use super::reach::axis_offset;
 use super::view::View;
-use crate::scene::{Object, Placement};
+use crate::scene::{Clip, Object, Placement};
 use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -25,10 +25,16 @@ pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
 }
 
-/// Whether rays of all of an object's copies can be taken between the ends that beams give: they
-/// begin outside the solid and no face of the box shows.
+/// Whether the box's sides cut the solid, or come to do so by another offset.
+pub(crate) fn may_be_cut(object: &Object) -> bool {
+    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
+    object.clip == Clip::Box || axis_offset(object) != [0.0; 2] || widest > object.profile.radius
+}
+
+/// Whether beams can choose the tiles of all of an object's copies: rays begin outside the solid,
+/// or are searched on a map.
 pub(crate) fn takes_beams(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
-    is_whole(object, surface) && (!surface.is_boundary() || is_outside(object, surface, view))
+    object.repeat == [1; 3] && (!surface.is_boundary() || is_outside(object, surface, view))
 }
 
 /// Whether rays to all of an object's copies begin outside of the solid, of which the box cuts
@@ -78,16 +84,18 @@ const SAMPLES: usize = 64;
 
 /// The hull of `object`, around its boundary or the envelope of its map, if it shows from this
 /// camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
-/// object is large enough on the screen for its triangles to pay.
+/// object is large enough on the screen for its triangles to pay. Besides, whether the box's sides
+/// cut it.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
     view: &View,
     least_pixels: u32,
-) -> Option<Vec<Range<u32>>> {
-    if !is_whole(object, surface) {
+) -> Option<(Vec<Range<u32>>, bool)> {
+    if object.repeat != [1; 3] {
         return None;
     }
+    let cut = !is_whole(object, surface);
     let hull = &surface.hull().hull;
     let copies = object.placements();
     if surface.hull().touches || copies.iter().any(|copy| is_lopsided(object, copy)) {
@@ -103,8 +111,8 @@ pub(crate) fn frusta(
     let eyes: Vec<DVec2> = sampled
         .map(|copy| flat(seen_from(object, copy, view).0))
         .collect();
-    // Parallel rays come from everywhere.
-    let frusta = if eyes.len() == copies.len() && !view.parallel {
+    // Parallel rays come from everywhere, and a cut opens cavities.
+    let frusta = if eyes.len() == copies.len() && !view.parallel && !cut {
         hull.seen_from(&eyes)
     } else {
         std::iter::once(0..hull.frusta.len() as u32).collect()
@@ -113,8 +121,8 @@ pub(crate) fn frusta(
     if covered < u64::from(least_pixels) * (drawn * count) as u64 {
         return None;
     }
-    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view);
-    copies.iter().all(seen).then_some(frusta)
+    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view, cut);
+    copies.iter().all(seen).then_some((frusta, cut))
 }
 
 /// A point as the half-plane has it.
@@ -122,11 +130,13 @@ fn flat(p: DVec3) -> DVec2 {
     DVec2::new(p.truncate().length(), p.z)
 }
 
-/// Whether a copy's shells are all in front of the near plane, and the eye in none of them.
-fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View) -> bool {
+/// Whether a copy's shells, and the rows of the sides that cut them, are all in front of the near
+/// plane, and the eye is in none of the shells.
+fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View, cut: bool) -> bool {
     let aside = forward.truncate().length();
     let margin = CLEARANCE * forward.length();
-    let ahead = hull.extents.iter().all(|&[_, r, low, high]| {
+    let rows = cut.then(|| hull.extent());
+    let ahead = hull.extents.iter().chain(&rows).all(|&[_, r, low, high]| {
         let lowest = (forward.z * (low - eye.z)).min(forward.z * (high - eye.z));
         lowest - forward.truncate().dot(eye.truncate()) - r * aside >= view.near + margin
     });

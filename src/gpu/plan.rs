@@ -42,14 +42,22 @@ pub enum DrawPath {
 pub(crate) enum Work {
     Nothing,
     Box,
-    /// Runs of the hull's frusta that may be seen.
-    Hull(Vec<Range<u32>>),
+    Hull {
+        /// Runs of the hull's frusta that may be seen.
+        frusta: Vec<Range<u32>>,
+        /// Whether the box's sides cut it, and are drawn.
+        cut: bool,
+    },
     /// In work groups.
     Rectangle(Rectangle),
     /// What is shown is known once all objects are planned.
     Bins(Shown),
-    /// One an instance that shows.
-    Beams(Vec<Tiles>),
+    Beams {
+        /// One an instance that shows.
+        copies: Vec<Tiles>,
+        /// Whether the box's sides cut the solid.
+        cut: bool,
+    },
 }
 
 /// The tiles of one instance.
@@ -89,11 +97,11 @@ impl Work {
         match self {
             Self::Nothing => DrawPath::Nothing,
             Self::Box => DrawPath::Box,
-            Self::Hull(_) => DrawPath::Hull,
+            Self::Hull { .. } => DrawPath::Hull,
             Self::Rectangle(_) => DrawPath::Rectangle,
             Self::Bins(shown) if shown.range.is_empty() => DrawPath::Nothing,
             Self::Bins(_) => DrawPath::Bins,
-            Self::Beams(_) => DrawPath::Beams,
+            Self::Beams { .. } => DrawPath::Beams,
         }
     }
 }
@@ -104,6 +112,8 @@ pub(crate) struct Planner<'a> {
     pub limits: &'a vk::PhysicalDeviceLimits,
     /// Invocations that run together.
     pub subgroup_size: u32,
+    /// Whether the device clips triangles by a box's sides.
+    pub clips: bool,
     /// Whether the device is a processor, on which triangles are dear.
     pub software: bool,
     /// As [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
@@ -131,6 +141,7 @@ impl Planner<'_> {
                     self.least_pixels(object, surface),
                 )
             })
+            .filter(|(_, cut)| self.clips || !cut)
             .map_or_else(
                 || {
                     if binned && copies > 1 && !self.view.parallel {
@@ -139,7 +150,7 @@ impl Planner<'_> {
                         Work::Box
                     }
                 },
-                Work::Hull,
+                |(frusta, cut)| Work::Hull { frusta, cut },
             )
     }
 
@@ -166,6 +177,7 @@ impl Planner<'_> {
             && placements.len() <= MOST_WRAPPED
             && hulls::takes_beams(object, surface, self.view)
         {
+            let cut = !hulls::is_whole(object, surface);
             let shown: Vec<(usize, Rectangle)> = placements
                 .iter()
                 .enumerate()
@@ -183,8 +195,9 @@ impl Planner<'_> {
                     .iter()
                     .any(|copy| hulls::is_lopsided(object, copy));
             let tiles = lists.tiles(&shown, placements.len(), listed);
-            if self.beams_pay(&shown, &tiles, placements.len(), lists) {
-                return lists.beams(tiles);
+            // Of a solid that is cut, tiles without lists are searched as the rectangle is.
+            if (listed || !cut) && self.beams_pay(&shown, &tiles, placements.len(), lists) {
+                return lists.beams(tiles, cut);
             }
         }
         match placements {
@@ -258,9 +271,9 @@ impl Lists {
         shown.iter().map(of).collect()
     }
 
-    fn beams(&mut self, tiles: Vec<Tiles>) -> Work {
-        self.tiles += tiles.iter().map(|t| t.words() as usize).sum::<usize>();
-        self.copies += tiles.iter().filter(|t| t.block.is_some()).count() as u32;
-        Work::Beams(tiles)
+    fn beams(&mut self, copies: Vec<Tiles>, cut: bool) -> Work {
+        self.tiles += copies.iter().map(|t| t.words() as usize).sum::<usize>();
+        self.copies += copies.iter().filter(|t| t.block.is_some()).count() as u32;
+        Work::Beams { copies, cut }
     }
 }

@@ -132,7 +132,7 @@ impl Renderer {
                     let Some(entry) = &self.entries[number as usize] else {
                         continue;
                     };
-                    if let (Some(Work::Beams(copies)), Some(mut block)) =
+                    if let (Some(Work::Beams { copies, .. }), Some(mut block)) =
                         (&entry.draw.work, entry.block(&self.settings))
                     {
                         for tiles in copies {

@@ -2,6 +2,7 @@
 
 use super::device::Shared;
 use super::entry::Entry;
+use super::hulls;
 use super::output::Output;
 use super::refresh::FALLBACK;
 use super::renderer::Renderer;
@@ -50,7 +51,7 @@ impl Prewarm {
 impl Renderer {
     /// Every pipeline that the objects can reach while parameters, lights, placements and the view
     /// change. What makes others necessary is another technique: textures where there were none,
-    /// replicas, shadows; in compute also more objects or copies than one.
+    /// replicas, shadows, a box that cuts; in compute also more objects or copies than one.
     ///
     /// # Errors
     /// As [`Renderer::prepare`], of what was added and set.
@@ -126,7 +127,11 @@ impl Renderer {
         let own = surface.map_or(0, |s| s.tables().own);
         let limit = PATCH_VECTORS as usize;
         let fits = [own <= limit + limit / 2, own > limit - limit / 4];
-        for (variant, kind) in of(solver).reachable(solver, wraps, copies, compute, fallback) {
+        let clips = self.device.clips || !self.draws_hulls();
+        let may_be_cut = clips && hulls::may_be_cut(object);
+        let reachable = of(solver).reachable(solver, wraps, copies, compute, fallback);
+        let drawn = |(v, kind): &(Variant, Kind)| may_be_cut || !v.is_cut(*kind);
+        for (variant, kind) in reachable.into_iter().filter(drawn) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
                 let keeps = self.keeps_depths && matches!(kind, Kind::Compute | Kind::Listed);
                 let variant = variant.keeping(keeps);

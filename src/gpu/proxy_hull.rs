@@ -1,14 +1,14 @@
 //! Proxy hulls as the vertex shader grows them.
 
 use crate::maps::envelope::Envelope;
-use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL};
+use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics
-/// and guards.
-pub(crate) const COMPONENTS: u32 = 4 * (11 + 2 * PATCHES_PER_CELL);
+/// and guards, and the box's sides.
+pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
 
-/// A hull, and its frusta in the layout of `hull.vert`.
+/// A hull: its frusta in the layout of `hull.vert`, then the rows of `sides.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
@@ -25,7 +25,8 @@ impl GpuProxyHull {
             ..ProxyHullOptions::default()
         };
         let hull = ProxyHull::new(patches, &options);
-        let vectors = pack(&hull, patches);
+        let mut vectors = pack(&hull, patches);
+        vectors.extend(hull.rows::<{ SIDE_ROWS as usize }>().map(row));
         let touches = touches(patches);
         Self {
             hull,
@@ -44,6 +45,14 @@ impl GpuProxyHull {
             touches: false,
         }
     }
+}
+
+/// Vertices of the strips of all sides.
+pub(crate) const SIDE_VERTICES: u32 = 6 * 4 * SIDE_ROWS;
+
+/// A row of `sides.vert`.
+fn row([low, high, radius]: [f64; 3]) -> [u32; 4] {
+    [low as f32, high as f32, radius as f32, 0.0].map(f32::to_bits)
 }
 
 /// Points of an outline nearer than this are one, object units: what the union of loops rounds to.

@@ -6,7 +6,7 @@ use super::frame_slot::FrameSlot;
 use super::output::Output;
 use super::pipelines::PUSHED;
 use super::plan::{Tiles, Work};
-use super::proxy_hull;
+use super::proxy_hull::{self, SIDE_VERTICES};
 use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
 use crate::shader::LIST_LENGTHS;
@@ -39,14 +39,23 @@ impl Renderer {
             let Some(work) = &entry.draw.work else {
                 continue;
             };
-            self.bind(cmd, slot, entry, entry.draw.pipeline, number);
+            let first_drawn = match work {
+                Work::Hull { cut: true, .. } => entry.draw.sides,
+                _ => entry.draw.pipeline,
+            };
+            self.bind(cmd, slot, entry, first_drawn, number);
             let first = entry.instances.start;
             let count = entry.instances.end - first;
             // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as
             // the caller promised.
             unsafe {
                 match work {
-                    Work::Hull(frusta) => {
+                    Work::Hull { frusta, cut } => {
+                        if *cut {
+                            raw.cmd_draw(cmd, SIDE_VERTICES, count, 0, first);
+                            let hull = entry.draw.pipeline;
+                            raw.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, hull);
+                        }
                         let kind = vk::IndexType::UINT32;
                         raw.cmd_bind_index_buffer(cmd, self.corners.raw, 0, kind);
                         for run in frusta {
@@ -93,7 +102,7 @@ impl Renderer {
         };
         for (&number, entry) in self.order.iter().zip(self.ordered()) {
             match &entry.draw.work {
-                Some(Work::Beams(copies)) => {
+                Some(Work::Beams { copies, .. }) => {
                     for tiles in copies {
                         after_the_last();
                         self.record_beams(cmd, slot, entry, number, tiles);
@@ -113,14 +122,14 @@ impl Renderer {
                         self.dispatch(cmd, [start, 0, 0, 0], [1, count]);
                     }
                 }
-                Some(Work::Nothing | Work::Box | Work::Hull(_)) | None => {}
+                Some(Work::Nothing | Work::Box | Work::Hull { .. }) | None => {}
             }
         }
     }
 
     /// Whether compute compares depths: there is more than one dispatch, or they are read back.
     pub(crate) fn compares_depths(&self) -> bool {
-        let several = |e: &Entry| matches!(&e.draw.work, Some(Work::Beams(all)) if all.len() > 1);
+        let several = |e: &Entry| matches!(&e.draw.work, Some(Work::Beams { copies: all, .. }) if all.len() > 1);
         self.keeps_depths || self.order.len() > 1 || self.ordered().any(several)
     }
 

@@ -50,6 +50,13 @@ impl Candidate {
             && self.properties.device_type != vk::PhysicalDeviceType::CPU
     }
 
+    /// Whether triangles can be clipped by the four sides of a box: hulls are drawn of solids that
+    /// these cut.
+    pub fn clips(&self) -> bool {
+        self.features.shader_clip_distance == vk::TRUE
+            && self.properties.limits.max_clip_distances >= 4
+    }
+
     /// Whether it offers an extension.
     pub fn offers(&self, extension: &CStr) -> bool {
         let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
@@ -61,6 +68,7 @@ impl Candidate {
         vk::PhysicalDeviceFeatures {
             fragment_stores_and_atomics: vk::TRUE,
             sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
+            shader_clip_distance: vk::Bool32::from(self.clips()),
             ..Default::default()
         }
     }
@@ -265,6 +273,10 @@ pub(crate) fn inspect(
                 features.sampler_anisotropy == vk::TRUE
                     && basic.device_type != vk::PhysicalDeviceType::CPU,
             ),
+        ),
+        (
+            "hulls of solids that their box cuts".to_owned(),
+            yes_no(features.shader_clip_distance == vk::TRUE && limits.max_clip_distances >= 4),
         ),
         (
             "largest map".to_owned(),

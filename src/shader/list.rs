@@ -11,6 +11,10 @@ pub enum Entry {
     ConvexHullVertex,
     /// Corners of the proxy hulls of a solid's patches.
     HullVertex,
+    /// The same, clipped by the box's sides.
+    CutHullVertex,
+    /// Strips of a box's sides where they cut a proxy hull.
+    SidesVertex,
     /// Rectangles of runs of bins.
     BinsVertex,
     /// Lists of tiles.
@@ -37,6 +41,8 @@ impl Entry {
             Self::BoxVertex => "box.vert",
             Self::ConvexHullVertex => "convex_hull.vert",
             Self::HullVertex => "hull.vert",
+            Self::CutHullVertex => "cut_hull.vert",
+            Self::SidesVertex => "sides.vert",
             Self::BinsVertex => "bins.vert",
             Self::Beam => "beam.comp",
             Self::List => "list.comp",
@@ -216,7 +222,7 @@ impl Module {
     pub fn vertices(&self, entry: Entry) -> Self {
         use Search as S;
         let search = match self.search {
-            _ if entry == Entry::HullVertex => S::None,
+            _ if matches!(entry, Entry::HullVertex | Entry::CutHullVertex) => S::None,
             S::Quadric | S::QuadricLarge | S::Cone | S::ConeLarge => S::Quadric,
             S::Relaxed | S::RelaxedLarge => S::Relaxed,
             _ => S::Live,
@@ -367,6 +373,8 @@ pub fn modules() -> Vec<Module> {
         all.push(vertex(Entry::BoxVertex, Search::Quadric));
         all.push(vertex(Entry::ConvexHullVertex, Search::Live));
         all.push(vertex(Entry::HullVertex, Search::None));
+        all.push(vertex(Entry::CutHullVertex, Search::None));
+        all.push(vertex(Entry::SidesVertex, Search::Quadric));
     }
     for search in [Search::Live, Search::Quadric] {
         all.push(Module {

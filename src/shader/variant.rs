@@ -22,6 +22,8 @@ pub enum Kind {
     Box,
     /// Hulls of patches, rasterised.
     Hull,
+    /// Sides of shape boxes where they cut such hulls, in which fragments search as in boxes.
+    Sides,
     /// Convex hulls, in which fragments search as in boxes.
     ConvexHull,
     /// Pixels of the compute stage.
@@ -81,6 +83,8 @@ pub struct Variant {
     pub papers_steps: u32,
     /// 1 where the eye is outside of the solid, of which the box cuts nothing.
     pub outside: u32,
+    /// 1 where of a rectangle those tiles are searched that beams have listed.
+    pub tiled: u32,
 }
 
 impl Variant {
@@ -102,6 +106,7 @@ impl Variant {
         list_length: 0,
         papers_steps: 0,
         outside: 0,
+        tiled: 0,
     };
 
     /// The variant that draws `object` by the search `solver`, which is that of the settings or
@@ -180,6 +185,7 @@ impl Variant {
                 if papers && !casts { own } else { 0 }
             },
             outside: 0,
+            tiled: 0,
         };
         match planes {
             Planes::Depth { parallel } => shaded.depth_only(parallel),
@@ -208,13 +214,27 @@ impl Variant {
         }
     }
 
+    /// The same in compute, of the tiles that beams choose; `cut`: the box's sides cut the solid.
+    #[must_use]
+    pub fn tiled(self, cut: bool, several: bool) -> Self {
+        if cut && !self.search.is_live() {
+            let tiled = self.dispatched(Dispatch::Rectangle, several);
+            Self {
+                tiled: 1,
+                ..tiled.seen_from(false)
+            }
+        } else {
+            self.seen_from(false).dispatched(Dispatch::Beams, several)
+        }
+    }
+
     /// The same of tiles whose patches are listed, by the length of lists.
     #[must_use]
-    pub fn listed(self, several: bool) -> [Self; LIST_LENGTHS.len()] {
+    pub fn listed(self, cut: bool, several: bool) -> [Self; LIST_LENGTHS.len()] {
         LIST_LENGTHS.map(|list_length| Self {
             search: Search::Quadric,
             list_length,
-            ..self.dispatched(Dispatch::Lists, several)
+            ..self.dispatched(Dispatch::Lists, several).cut_by_sides(cut)
         })
     }
 
@@ -236,6 +256,26 @@ impl Variant {
         Self {
             outside: u32::from(outside && searched && self.cells == 0),
             ..self
+        }
+    }
+
+    /// The same of a proxy hull, or of tiles, where the box's sides cut the solid or do not.
+    #[must_use]
+    pub fn cut_by_sides(self, cut: bool) -> Self {
+        Self {
+            outside: u32::from(!cut),
+            ..self
+        }
+    }
+
+    /// Whether it draws a hull or tiles of a solid that the box's sides cut.
+    #[must_use]
+    pub fn is_cut(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::Sides => true,
+            Kind::Hull | Kind::List | Kind::Listed => self.outside == 0,
+            Kind::Compute => self.tiled != 0,
+            Kind::Box | Kind::ConvexHull | Kind::Bins | Kind::Beam => false,
         }
     }
 
@@ -313,12 +353,19 @@ impl Variant {
                 let held =
                     on_map(&variant) || (solver == Solver::Hull && variant.search.takes_beams());
                 if wraps && held {
-                    let beams = variant.dispatched(Dispatch::Beams, several || copies);
-                    all.extend([(beams, Kind::Compute), (Self::BEAM, Kind::Beam)]);
-                    if !on_map(&variant) {
-                        let lists = variant.listed(several || copies);
-                        all.extend(lists.map(|v| (v, Kind::Listed)));
-                        all.push((Self::BEAM, Kind::List));
+                    let several = several || copies;
+                    all.push((Self::BEAM, Kind::Beam));
+                    for cut in if on_map(&variant) {
+                        [false].as_slice()
+                    } else {
+                        &[false, true]
+                    } {
+                        all.push((variant.tiled(*cut, several), Kind::Compute));
+                        if !on_map(&variant) {
+                            let lists = variant.listed(*cut, several);
+                            all.extend(lists.map(|v| (v, Kind::Listed)));
+                            all.push((Self::BEAM.cut_by_sides(*cut), Kind::List));
+                        }
                     }
                 }
                 let dispatch = if copies {
@@ -330,7 +377,10 @@ impl Variant {
             }
         } else {
             if wraps && solver == Solver::Hull {
-                all.push((self.with_tables(true), Kind::Hull));
+                let hull = self.with_tables(true);
+                all.push((hull.cut_by_sides(false), Kind::Hull));
+                all.push((hull.cut_by_sides(true), Kind::Hull));
+                all.push((self, Kind::Sides));
             }
             for variant in searched {
                 if wraps && on_map(&variant) {
@@ -369,7 +419,9 @@ impl Variant {
     pub fn vertices(&self, kind: Kind) -> Option<Module> {
         let entry = match kind {
             Kind::Box => Entry::BoxVertex,
+            Kind::Hull if self.outside == 0 => Entry::CutHullVertex,
             Kind::Hull => Entry::HullVertex,
+            Kind::Sides => Entry::SidesVertex,
             Kind::Bins => Entry::BinsVertex,
             Kind::ConvexHull => Entry::ConvexHullVertex,
             Kind::Compute | Kind::Beam | Kind::List | Kind::Listed => return None,
@@ -383,7 +435,7 @@ impl Variant {
         let entry = match kind {
             Kind::Beam => return Module::plain(Entry::Beam),
             Kind::List => return Module::plain(Entry::List),
-            Kind::Box | Kind::ConvexHull => Entry::Box,
+            Kind::Box | Kind::ConvexHull | Kind::Sides => Entry::Box,
             Kind::Hull => Entry::Hull,
             Kind::Bins => Entry::Bins,
             Kind::Compute => Entry::Trace,
@@ -400,7 +452,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 12] {
+    pub fn constants(&self) -> [(u32, u32); 13] {
         [
             (g::CELLS_ID, self.cells),
             (g::SHADOW_ID, self.shadow),
@@ -414,6 +466,7 @@ impl Variant {
             (g::LIST_LENGTH_ID, self.list_length),
             (g::PAPERS_STEPS_ID, self.papers_steps),
             (g::OUTSIDE_ID, self.outside),
+            (g::TILED_ID, self.tiled),
         ]
     }
 }

@@ -13,8 +13,16 @@
 //!
 //! No ray is lost however flat it glides along the surface, whichever way the profile folds:
 //! chains, undercuts and cavities need no care, and what a fragment finds is a true point of the
-//! boundary in every case. It holds for eyes outside all shells ([`ProxyHull::clear_of`]) and
-//! solids that the box's side faces do not cut.
+//! boundary in every case. It holds for eyes outside all shells ([`ProxyHull::clear_of`]).
+//!
+//! # Solids that their box cuts
+//!
+//! Only what lies between the box's four sides is drawn; floor and ceiling cut the outline itself.
+//! Let Q be where a ray comes between the sides, or the eye, if it is there, and P the first hit
+//! from there on. If Q is outside the solid and all shells, the ray enters the shell of P's cell
+//! after Q, as it meets nothing in between. So triangles between the sides suffice, and hits
+//! between them. If Q is in the solid or a shell, it is on a side, no farther from the axis than
+//! [`ProxyHull::rows`] say. There the side is drawn, and searched by a search that begins at Q.
 //!
 //! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]):
 //! beyond it another sheet of a quadric can pass the guard.
@@ -215,6 +223,40 @@ impl ProxyHull {
     #[must_use]
     pub fn vertices(&self) -> u32 {
         self.frusta.len() as u32 * 6 * self.sides
+    }
+
+    /// What all shells occupy, as of each [`ProxyHull::extents`]; the least radius is 0.
+    #[must_use]
+    pub fn extent(&self) -> [f64; 4] {
+        let none = [0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY];
+        self.extents.iter().fold(none, |m, e| {
+            [0.0, m[1].max(e[1]), m[2].min(e[2]), m[3].max(e[3])]
+        })
+    }
+
+    /// The shells' height in `N` rows: of each its lowest and highest `z`, and the largest radius
+    /// that shells, and with them the solid, have in it; 0 where there is none.
+    #[must_use]
+    pub fn rows<const N: usize>(&self) -> [[f64; 3]; N] {
+        let [_, _, low, high] = self.extent();
+        let step = (high - low) / N as f64;
+        std::array::from_fn(|n| {
+            let [from, to] = [n, n + 1].map(|n| low + n as f64 * step);
+            let within = self.frusta.iter().filter_map(|frustum| {
+                let [a, b] = [frustum.from, frustum.to].map(|p| p.map(f64::from));
+                let (a, b) = if a[1] <= b[1] { (a, b) } else { (b, a) };
+                let (low, high) = (from.max(a[1]), to.min(b[1]));
+                let slope = (b[0] - a[0]) / (b[1] - a[1]);
+                let at = |z: f64| a[0] + (z - a[1]) * slope;
+                let largest = if a[1] < b[1] {
+                    at(low).max(at(high))
+                } else {
+                    a[0].max(b[0])
+                };
+                (low <= high).then_some(largest)
+            });
+            [from, to, within.fold(0.0, f64::max)]
+        })
     }
 
     /// Whether an eye at `(r, z)` is outside all shells by at least `margin`; if not, front faces

@@ -54,7 +54,7 @@ struct Solid {
     uvec4 instances; // first, number, index of the shape map among those of shadows
     uvec4 patches;    // of the quadric search's tables (patch_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
                      // of the cone search's: where they begin, rows, bits of the largest radius
-    uvec4 hull;      // first frustum; first vector of the nodes that beams are asked against
+    uvec4 hull;      // first frustum; first vector of the nodes that beams are asked against, of the listed patches, of the rows of sides
     Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
 };
 

@@ -82,6 +82,23 @@ bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
     return !any(beside) && t_in <= t_out && (along_axis ? c <= radius2 : inside > 0.0) && enter <= s_end;
 }
 
+// The t between which a ray is within the four sides of a box: low x and y, high x and y.
+vec2 between_sides(vec3 o, vec3 v, vec4 sides)
+{
+    vec2 inverse = 1.0 / mix(v.xy, vec2(1e-30), equal(v.xy, vec2(0.0)));
+    vec2 t_low = (sides.xy - o.xy) * inverse;
+    vec2 t_high = (sides.zw - o.xy) * inverse;
+    vec2 near = min(t_low, t_high);
+    vec2 far = max(t_low, t_high);
+    return vec2(max(near.x, near.y), min(far.x, far.y));
+}
+
+// Those of the solid's box, from its axis.
+vec4 sides_of_box()
+{
+    return vec4(-solid.bounds.xx, solid.bounds.xx) - solid.axis.xyxy;
+}
+
 const vec2 EVERYWHERE = vec2(-1e30, 1e30);
 
 // Takes the ray from span.x to span.y where that is less. False: nothing is left of it.

@@ -78,10 +78,15 @@ layout(constant_id = 5) const uint REFINEMENT = 0u; // of the linear search: one
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
-#if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS
-layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the eye is outside of the solid, of which the box cuts nothing
+#if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS || SEARCH == SEARCH_NONE
+layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the eye is outside of the solid, of which the box cuts nothing; of hulls and tiles, with eyes outside: it cuts nothing
 #else
 const uint OUTSIDE = 0u;
+#endif
+#if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_RECTANGLE
+layout(constant_id = 12) const uint TILED = 0u; // 1: of the rectangle those tiles that beams have listed
+#else
+const uint TILED = 0u;
 #endif
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
@@ -117,6 +122,7 @@ const uint BEAM_NODES = 64u; // of one of its levels
 const uint BEAM_FIRST_NODE = 256u; // where that begins
 const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
+const uint SIDE_ROWS = 32u; // strips of each of the box's sides that cut a hull
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made: three vectors each, of PATCH_VECTORS
 const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches

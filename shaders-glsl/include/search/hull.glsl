@@ -19,10 +19,17 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     m.a = dot(v.xy, v.xy);
     m.b = dot(m.o.xy, v.xy);
     m.c = dot(m.o.xy, m.o.xy);
-    float best = 3e38;
+    float least = -rays.base;
+    float most = 2e38;
+    if (OUTSIDE == 0u) {
+        vec2 span = between_sides(m.o, m.v, hull_sides);
+        least = max(least, span.x);
+        most = span.y;
+    }
+    float best = most;
     vec4 quadric = vec4(0.0);
     [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-        take_nearer(m, hull_quadric[k], hull_guard[k], -rays.base, best, quadric);
+        take_nearer(m, hull_quadric[k], hull_guard[k], least, best, quadric);
     }
     hit.t = best;
     hit.normal = quadric_normal(m, best, quadric);
@@ -31,7 +38,7 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     hit.steps = PATCHES_PER_CELL;
     hit.exhausted = false;
     hit.at_border = false;
-    return best < 2e38;
+    return best < most;
 }
 
 // Its own triangle is nowhere behind the surface it wraps, but for rounding.

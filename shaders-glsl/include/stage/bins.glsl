@@ -34,10 +34,10 @@ void begin()
     }
 }
 
-// A single instance needs no bins: the work groups are those of its rectangle.
+// A single instance needs no bins: the work groups are those of its rectangle, or of the tiles that beams have listed.
 Bin this_bin()
 {
-    if (DISPATCH == DISPATCH_BEAMS) {
+    if (DISPATCH == DISPATCH_BEAMS || TILED != 0u) {
         uint at = pushed.first_bin + 4u + 4u * gl_WorkGroupID.x;
         return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
     }
@@ -50,7 +50,7 @@ Bin this_bin()
 
 uvec2 this_pixel(Bin bin)
 {
-    if (DISPATCH == DISPATCH_RECTANGLE) {
+    if (DISPATCH == DISPATCH_RECTANGLE && TILED == 0u) {
         uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16);
         return (corner + gl_WorkGroupID.xy) * GROUP_PIXELS + gl_LocalInvocationID.xy;
     }

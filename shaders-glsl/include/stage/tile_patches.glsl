@@ -47,10 +47,18 @@ bool nearest_in_tile(uvec2 pixel, out Nearest nearest)
     m.a = dot(v.xy, v.xy);
     m.b = dot(m.o.xy, v.xy);
     m.c = dot(m.o.xy, m.o.xy);
-    float best = 3e38;
+    float least = -single_rays.base;
+    float most = 2e38;
+    if (OUTSIDE == 0u) {
+        // No ray of the tile was in the solid before the sides: see list.comp.
+        vec2 span = between_sides(m.o, v, sides_of_box());
+        least = max(least, span.x);
+        most = span.y;
+    }
+    float best = most;
     vec4 quadric = vec4(0.0);
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
-        take_nearer(m, listed_vector(2u * k), listed_vector(2u * k + 1u), -single_rays.base, best, quadric);
+        take_nearer(m, listed_vector(2u * k), listed_vector(2u * k + 1u), least, best, quadric);
     }
     nearest.hit.t = best;
     nearest.hit.normal = quadric_normal(m, best, quadric);
@@ -63,7 +71,7 @@ bool nearest_in_tile(uvec2 pixel, out Nearest nearest)
     nearest.steps = LIST_LENGTH;
     nearest.exhausted = false;
     nearest.depth = depth_of(single_rays.base + best);
-    return best < 2e38;
+    return best < most;
 }
 
 #endif

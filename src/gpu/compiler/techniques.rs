@@ -5,7 +5,7 @@ use crate::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
 use crate::profile::Profile;
 use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
-use crate::shader::{Kind, Met, Variant};
+use crate::shader::{Dispatch, Kind, Met, Variant};
 use std::sync::Arc;
 
 /// What a scene uses besides a bare solid.
@@ -53,8 +53,15 @@ impl Technique {
                     || (v.search, v.more_lights) == (own.search, own.more_lights)
             })
             .filter(|(v, kind)| {
-                let searches = matches!(kind, Kind::Box | Kind::Bins | Kind::Compute);
-                !searches || v.outside == v.seen_from(self.object.clip == Clip::None).outside
+                let cut = self.object.clip == Clip::Box;
+                let tiled = v.dispatch == Dispatch::Beams && !v.search.is_live();
+                match kind {
+                    _ if v.is_cut(*kind) => cut,
+                    Kind::Hull | Kind::List | Kind::Listed => !cut,
+                    Kind::Compute if tiled => !cut,
+                    Kind::Box | Kind::Bins | Kind::Compute => *v == v.seen_from(!cut),
+                    Kind::ConvexHull | Kind::Beam | Kind::Sides => true,
+                }
             });
         let large = |(v, kind): &(Variant, Kind)| {
             (self.name == BARE && !matches!(kind, Kind::Hull | Kind::Listed))
