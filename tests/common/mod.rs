@@ -2,6 +2,7 @@
 //! failure.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod host;
 pub mod passing;
 pub mod shapes;
 pub mod ways;

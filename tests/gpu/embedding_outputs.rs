@@ -2,10 +2,10 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
+use crate::common::host::memory::{HostBuffer, HostImage};
+use crate::common::host::{self, Host, open};
 use crate::common::{scene_of, shapes};
-use crate::embedding::host::memory::{HostBuffer, HostImage};
-use crate::embedding::host::{self, Host};
-use crate::embedding::{BACKGROUND, assert_silent, borrow, open, options, srgb, three, upright};
+use crate::embedding::{BACKGROUND, assert_silent, borrow, options, srgb, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
