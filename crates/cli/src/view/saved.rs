@@ -3,12 +3,11 @@
 use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
-use revmap::error::{Error, Result, Stage as Where};
-use revmap::frame::atomic_file::write_atomically;
+use revmap::error::{Result, Stage};
+use revmap::frame::atomic_file::write_bytes;
 use revmap::scene::file::SceneFile;
 use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
 use std::fmt::Debug;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Frames of a turntable.
@@ -36,7 +35,7 @@ pub fn write_scene(
     // What was not touched stays as the scene has it, or has it not.
     let changed = after.into_iter().filter(|one| !before.contains(one));
     let text = file.text(&changed.collect::<Vec<_>>())?;
-    write(&path, &text)?;
+    write_bytes(Stage::Frame, &path, text.as_bytes())?;
     Ok(path)
 }
 
@@ -62,14 +61,7 @@ pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
         } = cost;
         text += &format!("{n},{prepare:.4},{device:.4},{present:.4},{compiled}\n");
     }
-    write(path, &text)
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    write_atomically(Where::Frame, path, |out| {
-        out.write_all(text.as_bytes())
-            .map_err(|e| Error::new(Where::Frame, format!("cannot be written: {e}")))
-    })
+    write_bytes(Stage::Frame, path, text.as_bytes())
 }
 
 /// Every value that the controls change, as `--set` takes it.

@@ -14,8 +14,7 @@ use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use super::table::Table;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Picture;
-use revmap::frame::atomic_file::write_atomically;
-use std::io::Write;
+use revmap::frame::atomic_file;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
@@ -141,14 +140,7 @@ pub fn write_text(file: &Path, text: &str) -> Result<()> {
 /// # Errors
 /// [`Stage::Report`], naming the file.
 pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
-    write_atomically(Stage::Report, file, |writer| {
-        writer.write_all(bytes).map_err(|e| {
-            Error::new(
-                Stage::Report,
-                format!("cannot be written ({e}); free some space"),
-            )
-        })
-    })
+    atomic_file::write_bytes(Stage::Report, file, bytes)
 }
 
 /// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
