@@ -62,6 +62,7 @@ pub use costs::{INSTANCE_BYTES, ObjectCost};
 pub use device::{Device, HostDevice};
 pub use entry::ObjectId;
 pub use instance::VALIDATION_VARIABLE;
+pub use memory::Buffer;
 pub use offscreen::{Guest, Offscreen, Times};
 pub use output::{DepthOrder, Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]
