@@ -37,6 +37,9 @@ mod draw;
 mod field;
 mod parts;
 #[cfg(test)]
+#[path = "../../../tests/common/random.rs"]
+mod random;
+#[cfg(test)]
 #[path = "../../../tests/common/samples.rs"]
 mod samples;
 mod shade;
