@@ -6,6 +6,7 @@ use crate::common::{eye, host, scene_of, shapes};
 use ash::vk;
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use host::{Host, Mesh, Options, Stage, lent, open};
+use revmap::frame::srgb_from_linear;
 use revmap::gpu::{
     DepthOrder, Device, Offscreen, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
@@ -123,13 +124,7 @@ pub fn drawn(
 }
 
 pub fn srgb(linear: f32) -> u8 {
-    let c = f64::from(linear);
-    let encoded = if c <= 0.003_130_8 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
-    (encoded * 255.0).round() as u8
+    (srgb_from_linear(f64::from(linear)) * 255.0).round() as u8
 }
 
 #[test]
