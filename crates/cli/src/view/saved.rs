@@ -7,6 +7,7 @@ use revmap::error::{Result, Stage};
 use revmap::frame::atomic_file::write_bytes;
 use revmap::scene::file::SceneFile;
 use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
+use revmap::settings::name_of;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
@@ -72,7 +73,7 @@ fn assignments(scene: &Scene) -> Vec<String> {
         format!("camera.target={:?}", camera.target.to_array()),
         format!("camera.fov_y={:?}", camera.fov_y),
         format!("ambient={:?}", scene.ambient),
-        format!("shadow={:?}", name(&Shadow::NAMES, &scene.shadow)),
+        format!("shadow={:?}", name_of(&Shadow::NAMES, &scene.shadow)),
     ];
     let lights: Vec<String> = scene
         .lights
@@ -102,9 +103,12 @@ fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
     set("extend", &offset.extend);
     set("bevel", &offset.bevel);
     set("chamfer", &offset.chamfer);
-    set("clip", &name(&Clip::NAMES, &object.clip));
+    set("clip", &name_of(&Clip::NAMES, &object.clip));
     set("bump", &texturing.bump);
-    set("bump_form", &name(&BumpForm::NAMES, &texturing.bump_form));
+    set(
+        "bump_form",
+        &name_of(&BumpForm::NAMES, &texturing.bump_form),
+    );
     set("projection", &texturing.projection.name());
     set("axis", &object.axis);
     set("repeat", &object.repeat);
@@ -114,12 +118,6 @@ fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
     set("shininess", &specular.shininess);
     set("position", &placement.position.to_array());
     set("scale", &placement.scale.to_array());
-}
-
-fn name<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> &'static str {
-    all.iter()
-        .find(|(_, one)| one == value)
-        .map_or("", |(name, _)| name)
 }
 
 #[cfg(test)]

@@ -196,7 +196,7 @@ pub fn raw(rows: &[Row]) -> Table {
                 table.records.push(vec![
                     (number + 1).to_string(),
                     row.scene.clone(),
-                    names::stage(row.settings.stage).into(),
+                    row.settings.stage.name().into(),
                     row.settings.method.to_string(),
                     (pass + 1).to_string(),
                     (round + 1).to_string(),
@@ -222,7 +222,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
             table.records.push(vec![
                 (number + 1).to_string(),
                 row.scene.clone(),
-                names::stage(row.settings.stage).into(),
+                row.settings.stage.name().into(),
                 row.settings.method.to_string(),
                 format!(
                     "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
@@ -240,7 +240,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
                 .get(case.view)
                 .map(|v| v.name.clone())
                 .unwrap_or_default(),
-            names::stage(case.settings.stage).into(),
+            case.settings.stage.name().into(),
             case.settings.method.to_string(),
             reason.clone(),
         ]);
