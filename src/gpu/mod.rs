@@ -22,6 +22,7 @@ mod frame_plan;
 mod frame_slot;
 mod hulls;
 mod instance;
+mod kept;
 mod levels;
 mod map_key;
 mod memory;
