@@ -114,7 +114,6 @@ fn compiler() -> Fallible<u64> {
 /// Versions of shaderc that share a generator word make other words of the same text; a probe with some of everything shows it.
 #[cfg(feature = "shaderc")]
 fn compiler() -> Fallible<u64> {
-    use shaderc_link as shaderc;
     const PROBE: &str = "#version 450
         struct S { vec4 a; uvec4 b; };
         layout(local_size_x = 8) in;
@@ -131,20 +130,10 @@ fn compiler() -> Fallible<u64> {
             }
             atomicAdd(w[gl_GlobalInvocationID.x], s.b.x);
         }";
-    let mut options = shaderc::CompileOptions::new()?;
-    options.set_target_env(
-        shaderc::TargetEnv::Vulkan,
-        shaderc::EnvVersion::Vulkan1_2 as u32,
-    );
-    options.set_optimization_level(shaderc::OptimizationLevel::Zero);
-    let kind = shaderc::ShaderKind::Compute;
-    let made = shaderc::Compiler::new()?.compile_into_spirv(
-        PROBE,
-        kind,
-        "probe",
-        "main",
-        Some(&options),
-    )?;
+    let compiler = shaderc_link::Compiler::new()?;
+    let level = shaderc_link::OptimizationLevel::Zero;
+    let none = |wanted: &str| Err(format!("{wanted}: the probe includes nothing"));
+    let made = shaderc_link::spirv(&compiler, ("probe", PROBE), &[], level, none)?;
     let mut hash = Fnv::default();
     hash.add(made.as_binary_u8());
     Ok(hash.0)

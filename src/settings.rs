@@ -18,6 +18,25 @@ pub enum DrawStage {
     Compute,
 }
 
+impl DrawStage {
+    /// As options and results name them.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("fragment", Self::Fragment), ("compute", Self::Compute)];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, &self)
+    }
+}
+
+/// The name of a value among these; the last, where it has several.
+#[must_use]
+pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
+    let found = names.iter().rev().find(|(_, known)| known == value);
+    found.map_or("unknown", |(name, _)| name)
+}
+
 /// How the first hit along a ray is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {

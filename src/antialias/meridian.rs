@@ -34,9 +34,8 @@ impl Meridian {
         let grown = GrownProfiles::default().grown(object);
         let object = grown.map_or_else(|| object.clone(), |grown| grown.object);
         let contour = ContourSource::new(&object.profile.outline)?.contour(&object.offset)?;
-        let radius = object.profile.radius;
         Ok(Some(Self {
-            axis: DVec2::from(object.axis.map(|o| (2.0 * o - 1.0) * radius)),
+            axis: object.axis_offset().into(),
             object,
             contour,
             levels: Default::default(),

@@ -63,6 +63,18 @@ pub fn write_atomically(
     written
 }
 
+/// Writes these bytes by [`write_atomically`].
+///
+/// # Errors
+/// As there.
+pub fn write_bytes(stage: Stage, target: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(stage, target, |writer| {
+        writer
+            .write_all(bytes)
+            .map_err(|e| Error::new(stage, format!("cannot be written: {}", reason(&e))))
+    })
+}
+
 /// A new file in the folder of `target`, whose name no other writer takes.
 fn create_part(target: &Path) -> io::Result<(File, PathBuf)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -111,19 +123,12 @@ mod tests {
         names
     }
 
-    fn bytes(data: &'static [u8]) -> impl FnOnce(&mut BufWriter<File>) -> Result<()> {
-        move |w| {
-            w.write_all(data)
-                .map_err(|e| Error::new(Stage::Frame, e.to_string()))
-        }
-    }
-
     #[test]
     fn the_target_appears_whole_and_alone() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_atomically(Stage::Frame, &target, bytes(b"one")).unwrap();
-        write_atomically(Stage::Frame, &target, bytes(b"two")).unwrap();
+        write_bytes(Stage::Frame, &target, b"one").unwrap();
+        write_bytes(Stage::Frame, &target, b"two").unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["a.bin"]);
     }
@@ -132,7 +137,7 @@ mod tests {
     fn a_failure_keeps_what_was_there() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_atomically(Stage::Frame, &target, bytes(b"old")).unwrap();
+        write_bytes(Stage::Frame, &target, b"old").unwrap();
         let error = write_atomically(Stage::Map, &target, |w| {
             w.write_all(&[7; 100_000]).unwrap();
             Err(Error::new(Stage::Map, "half way"))
@@ -152,7 +157,7 @@ mod tests {
             (folder.path().to_path_buf(), "is a folder"),
             (folder.path().join("file/a.bin"), "not a folder"),
         ] {
-            let error = write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap_err();
+            let error = write_bytes(Stage::Frame, &target, b"x").unwrap_err();
             assert_eq!(error.file.as_deref(), Some(target.as_path()));
             assert!(error.to_string().contains(what), "{error}");
         }
@@ -165,7 +170,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
         std::os::unix::fs::symlink("/dev/full", &target).unwrap();
-        let error = write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap_err();
+        let error = write_bytes(Stage::Frame, &target, b"x").unwrap_err();
         assert!(error.to_string().contains("the disk is full"), "{error}");
         assert_eq!(names(folder.path()), ["a.bin"]);
         assert!(Path::new("/dev/full").exists());
@@ -178,7 +183,7 @@ mod tests {
         let (real, link) = (folder.path().join("real"), folder.path().join("link"));
         fs::write(&real, b"old").unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        write_atomically(Stage::Frame, &link, bytes(b"new")).unwrap();
+        write_bytes(Stage::Frame, &link, b"new").unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
@@ -187,7 +192,7 @@ mod tests {
     fn very_long_names_work() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x".repeat(255));
-        write_atomically(Stage::Frame, &target, bytes(b"x")).unwrap();
+        write_bytes(Stage::Frame, &target, b"x").unwrap();
         assert_eq!(names(folder.path()).len(), 1);
     }
 }

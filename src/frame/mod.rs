@@ -7,7 +7,7 @@ mod png;
 
 #[cfg(feature = "exr")]
 pub use openexr::{read_exr, write_exr};
-pub use png::{Picture, srgb_from_linear, write_png};
+pub use png::{Picture, linear_from_srgb, srgb_from_linear, write_png};
 
 use crate::error::{Error, Result, Stage};
 

@@ -83,7 +83,9 @@ pub fn srgb_from_linear(linear: f64) -> f64 {
     }
 }
 
-fn linear_from_srgb(code: f64) -> f64 {
+/// The linear value of an sRGB code value in `[0, 1]`.
+#[must_use]
+pub fn linear_from_srgb(code: f64) -> f64 {
     if code <= 0.040_45 {
         code / 12.92
     } else {

@@ -2,13 +2,14 @@
 
 use super::call::Call;
 use super::instance::{Instance, into_device};
+use super::memory::Buffer;
 use super::memory_budget::MemoryBudget;
 use super::pipelines::Pipelines;
 use super::report::{Candidate, DeviceReport, candidates, choose, inspect, refuse, variable};
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
-use gpu_allocator::{AllocationSizes, AllocatorDebugSettings};
+use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -250,6 +251,20 @@ impl Device {
     pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
         let closed = || Error::new(Stage::Draw, "the device is being closed");
         self.shared.allocator.clone().ok_or_else(closed)
+    }
+
+    /// A buffer for what is drawn beside, called `name` in messages; it counts in the memory budget.
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] of Vulkan, and where there is no memory for it.
+    pub fn buffer(
+        &self,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Buffer> {
+        Buffer::new(&self.shared, name, bytes, usage, location)
     }
 
     /// Takes the validation layers' messages since the last call; always empty without the layers,

@@ -8,15 +8,18 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
 use std::sync::Arc;
 
-pub(crate) struct Buffer {
+/// A buffer with its memory. Whoever drops it has waited for the device.
+pub struct Buffer {
+    /// The buffer.
     pub raw: vk::Buffer,
+    /// How many bytes it holds.
     pub bytes: u64,
     allocation: Option<Allocation>,
     device: Arc<Shared>,
 }
 
 impl Buffer {
-    pub fn new(
+    pub(crate) fn new(
         device: &Arc<Shared>,
         name: &str,
         bytes: u64,
@@ -44,6 +47,9 @@ impl Buffer {
 
     /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator asks for
     /// it.
+    ///
+    /// # Errors
+    /// [`Stage::Draw`] of a buffer elsewhere.
     pub fn mapped(&mut self) -> Result<&mut [u8]> {
         let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
         self.allocation

@@ -22,6 +22,7 @@ mod frame_plan;
 mod frame_slot;
 mod hulls;
 mod instance;
+mod kept;
 mod levels;
 mod map_key;
 mod memory;
@@ -62,6 +63,7 @@ pub use costs::{INSTANCE_BYTES, ObjectCost};
 pub use device::{Device, HostDevice};
 pub use entry::ObjectId;
 pub use instance::VALIDATION_VARIABLE;
+pub use memory::Buffer;
 pub use offscreen::{Guest, Offscreen, Times};
 pub use output::{DepthOrder, Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]

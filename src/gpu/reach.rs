@@ -21,7 +21,7 @@ pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
 
 /// Where the axis stands, object units from the middle of the box.
 pub(crate) fn axis_offset(object: &Object) -> [f64; 2] {
-    object.axis.map(|o| (2.0 * o - 1.0) * object.profile.radius)
+    object.axis_offset()
 }
 
 /// Distance from the axis to the farthest vertical edge of the box.

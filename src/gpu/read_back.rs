@@ -1,8 +1,7 @@
 //! From the bytes of a target to a frame.
 
-use super::srgb::linear_from_srgb;
 use crate::error::Result;
-use crate::frame::Frame;
+use crate::frame::{Frame, linear_from_srgb};
 use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;
 
@@ -11,7 +10,8 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
     let mut frame = Frame::new(settings.width, settings.height, background)?;
     match settings.planes {
         Planes::Color => {
-            let linear: [f32; 256] = std::array::from_fn(|byte| linear_from_srgb(byte as u8));
+            let linear: [f32; 256] =
+                std::array::from_fn(|byte| linear_from_srgb(byte as f64 / 255.0) as f32);
             let bytes = planes.first().copied().unwrap_or_default();
             for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks().0) {
                 let &[r, g, b, a]: &[u8; 4] = rgba;

@@ -165,14 +165,6 @@ impl Renderer {
         })
     }
 
-    /// The objects, in the order in which they were added.
-    pub fn ids(&self) -> impl Iterator<Item = ObjectId> + '_ {
-        self.order.iter().map(|&number| ObjectId {
-            number,
-            generation: self.generations[number as usize],
-        })
-    }
-
     /// The values of an object, as set last.
     ///
     /// # Errors

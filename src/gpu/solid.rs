@@ -5,6 +5,7 @@
 //! is gone.
 
 use super::device::Shared;
+use super::kept::Kept;
 use super::levels;
 use super::map_key::{MapFacts, MapKey};
 use super::offset_surface::{OffsetSurface, Recipe};
@@ -14,15 +15,14 @@ use super::uploads::Uploads;
 use crate::error::{Error, Result, Stage};
 use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Growth, Offset};
-use std::collections::HashMap;
 use std::hash::Hash;
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Mutex};
 
 /// The solids of a renderer, by profile.
 #[derive(Default)]
 pub(crate) struct SolidCache {
     /// By the profile's address, which a solid keeps from being used again.
-    solids: HashMap<usize, Weak<Solid>>,
+    solids: Kept<usize, Solid>,
     /// Profiles in boxes that have grown with offsets.
     pub grown: GrownProfiles,
 }
@@ -30,36 +30,21 @@ pub(crate) struct SolidCache {
 /// All that is made from one profile.
 pub(crate) struct Solid {
     pub outlined: Arc<Outlined>,
-    surfaces: Kept<SurfaceKey, OffsetSurface>,
-    maps: Kept<MapKey, ShapeTexture>,
-    arcs: Kept<(u32, u32), ArcTexture>,
+    surfaces: Shelf<SurfaceKey, OffsetSurface>,
+    maps: Shelf<MapKey, ShapeTexture>,
+    arcs: Shelf<(u32, u32), ArcTexture>,
 }
 
-/// A table of weak references that forgets the dead.
-struct Kept<K, V>(Mutex<HashMap<K, Weak<V>>>);
+/// A table for several threads.
+type Shelf<K, V> = Mutex<Kept<K, V>>;
 
-impl<K, V> Default for Kept<K, V> {
-    fn default() -> Self {
-        Self(Mutex::default())
-    }
-}
-
-impl<K: Hash + Eq, V> Kept<K, V> {
-    fn get(&self, key: K, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
-        let mut all = self
-            .0
-            .lock()
-            .map_err(|_| Error::new(Stage::Draw, "a solid's lock is poisoned"))?;
-        if let Some(known) = all.get(&key).and_then(Weak::upgrade) {
-            return Ok(known);
-        }
-        if all.len() == all.capacity() {
-            all.retain(|_, known| known.strong_count() > 0);
-        }
-        let made = Arc::new(make()?);
-        all.insert(key, Arc::downgrade(&made));
-        Ok(made)
-    }
+fn shelved<K: Hash + Eq, V>(
+    shelf: &Shelf<K, V>,
+    key: K,
+    make: impl FnOnce() -> Result<V>,
+) -> Result<Arc<V>> {
+    let poisoned = |_| Error::new(Stage::Draw, "a solid's lock is poisoned");
+    shelf.lock().map_err(poisoned)?.get(key, make)
 }
 
 #[derive(PartialEq, Eq, Hash)]
@@ -76,13 +61,8 @@ impl SolidCache {
     /// The solid of a profile.
     pub fn get(&mut self, profile: &Arc<Profile>) -> Arc<Solid> {
         let key = Arc::as_ptr(profile) as usize;
-        if let Some(known) = self.solids.get(&key).and_then(Weak::upgrade) {
-            return known;
-        }
-        self.solids.retain(|_, known| known.strong_count() > 0);
-        let solid = Arc::new(Solid::new(profile));
-        self.solids.insert(key, Arc::downgrade(&solid));
-        solid
+        let known = self.solids.known(&key);
+        known.unwrap_or_else(|| self.solids.keep(key, Solid::new(profile)))
     }
 }
 
@@ -90,9 +70,9 @@ impl Solid {
     fn new(profile: &Arc<Profile>) -> Self {
         Self {
             outlined: Arc::new(Outlined::new(profile)),
-            surfaces: Kept::default(),
-            maps: Kept::default(),
-            arcs: Kept::default(),
+            surfaces: Shelf::default(),
+            maps: Shelf::default(),
+            arcs: Shelf::default(),
         }
     }
 
@@ -104,7 +84,7 @@ impl Solid {
         level: u8,
     ) -> Result<Arc<OffsetSurface>> {
         let key = SurfaceKey::Patches(bits(offset), level);
-        self.surfaces.get(key, || {
+        shelved(&self.surfaces, key, || {
             let tolerance = levels::bound(level) / growth.height();
             let recipe = Recipe::Patches(self.outlined.clone(), *offset, level, tolerance);
             Ok(OffsetSurface::new(recipe))
@@ -114,7 +94,7 @@ impl Solid {
     /// The boundary as empty cones; not made yet where it is new.
     pub fn cones(&self, offset: &Offset, rows: u32, relaxed: bool) -> Result<Arc<OffsetSurface>> {
         let key = SurfaceKey::Cones(bits(offset), rows, relaxed);
-        self.surfaces.get(key, || {
+        shelved(&self.surfaces, key, || {
             let recipe = Recipe::Cones(self.outlined.clone(), *offset, rows, relaxed);
             Ok(OffsetSurface::new(recipe))
         })
@@ -127,7 +107,7 @@ impl Solid {
             return Ok(None);
         };
         let key = SurfaceKey::Envelope(map.key, by.to_bits());
-        let made = self.surfaces.get(key, || {
+        let made = shelved(&self.surfaces, key, || {
             Ok(OffsetSurface::new(Recipe::Envelope(envelope.grown(by))))
         });
         made.map(Some)
@@ -140,7 +120,7 @@ impl Solid {
         uploads: &mut Uploads,
         key: MapKey,
     ) -> Result<Arc<ShapeTexture>> {
-        self.maps.get(key, || {
+        shelved(&self.maps, key, || {
             ShapeTexture::bake(device, uploads, &self.outlined.profile, key)
         })
     }
@@ -152,7 +132,7 @@ impl Solid {
         uploads: &mut Uploads,
         facts: &MapFacts,
     ) -> Result<Arc<ArcTexture>> {
-        self.arcs.get((facts.columns, facts.rows), || {
+        shelved(&self.arcs, (facts.columns, facts.rows), || {
             ArcTexture::new(device, uploads, &self.outlined.profile, facts)
         })
     }

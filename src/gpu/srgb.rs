@@ -1,16 +1,6 @@
-//! The transfer function of 8-bit targets, for what the CPU reads from or clears them with.
+//! The transfer function of 8-bit targets, for what the CPU clears them with.
 
 use crate::frame::srgb_from_linear;
-
-/// Linear value of an 8-bit sRGB value (IEC 61966-2-1).
-pub(crate) fn linear_from_srgb(byte: u8) -> f32 {
-    let s = f32::from(byte) / 255.0;
-    if s <= 0.040_45 {
-        s / 12.92
-    } else {
-        ((s + 0.055) / 1.055).powf(2.4)
-    }
-}
 
 /// Linear RGBA as the packed sRGB word that `srgb.glsl` makes of it.
 pub(crate) fn pack_srgb(color: [f32; 4]) -> u32 {

@@ -3,6 +3,7 @@
 
 use super::call::Call;
 use super::device::Shared;
+use super::kept::Kept;
 use super::memory::Image;
 use super::sampler::{Sampler, Wrap};
 use super::shape_texture::{ArcTexture, ShapeTexture};
@@ -12,8 +13,7 @@ use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
 use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use ash::vk;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Mutex};
 
 /// A colour or displacement map on the device. It keeps the map, whose address is its key.
 struct Covering<M> {
@@ -43,9 +43,9 @@ type Key = ([usize; 5], bool);
 
 /// All textures of a renderer.
 pub(crate) struct Textures {
-    colors: HashMap<usize, Weak<Covering<ColorMap>>>,
-    slopes: HashMap<usize, Weak<Covering<DisplacementMap>>>,
-    sets: HashMap<Key, Weak<TextureSet>>,
+    colors: Kept<usize, Covering<ColorMap>>,
+    slopes: Kept<usize, Covering<DisplacementMap>>,
+    sets: Kept<Key, TextureSet>,
     /// Bound where an object has no texture of a kind.
     blank: Arc<Image>,
     map_sampler: Sampler,
@@ -71,9 +71,9 @@ impl Textures {
         };
         let texel = vk::Format::R32_SFLOAT;
         Ok(Self {
-            colors: HashMap::new(),
-            slopes: HashMap::new(),
-            sets: HashMap::new(),
+            colors: Kept::default(),
+            slopes: Kept::default(),
+            sets: Kept::default(),
             blank: uploads.image(device, "blank", texel, (1, 1), &[&[0; 4]])?,
             map_sampler: Sampler::new(device, wrap)?,
             surface_samplers: [
@@ -114,10 +114,9 @@ impl Textures {
             ],
             around,
         );
-        if let Some(known) = self.sets.get(&key).and_then(Weak::upgrade) {
+        if let Some(known) = self.sets.known(&key) {
             return Ok(known);
         }
-        self.sets.retain(|_, known| known.strong_count() > 0);
         let color = match &look.color_map {
             Some(map) => Some(self.color(device, uploads, map)?),
             None => None,
@@ -126,7 +125,7 @@ impl Textures {
             Some(map) => Some(self.slopes(device, uploads, map)?),
             None => None,
         };
-        let made = Arc::new(TextureSet {
+        let made = TextureSet {
             set: self.pool.take()?,
             color,
             slopes,
@@ -134,9 +133,9 @@ impl Textures {
             arc,
             shadows: shadows.clone(),
             pool: self.pool.clone(),
-        });
+        };
         self.write(device, &made, around);
-        self.sets.insert(key, Arc::downgrade(&made));
+        let made = self.sets.keep(key, made);
         Ok(made)
     }
 
@@ -225,28 +224,23 @@ impl Textures {
 
     /// Bytes of colour and displacement maps on the device.
     pub fn bytes(&self) -> u64 {
-        let colors = self.colors.values().filter_map(Weak::upgrade);
-        let slopes = self.slopes.values().filter_map(Weak::upgrade);
-        colors.map(|c| c.image.bytes()).sum::<u64>() + slopes.map(|c| c.image.bytes()).sum::<u64>()
+        let colors = self.colors.living().map(|c| c.image.bytes());
+        let slopes = self.slopes.living().map(|c| c.image.bytes());
+        colors.chain(slopes).sum()
     }
 }
 
 fn covering<M>(
-    all: &mut HashMap<usize, Weak<Covering<M>>>,
+    all: &mut Kept<usize, Covering<M>>,
     map: &Arc<M>,
     upload: impl FnOnce() -> Result<Arc<Image>>,
 ) -> Result<Arc<Covering<M>>> {
-    let key = Arc::as_ptr(map) as usize;
-    if let Some(known) = all.get(&key).and_then(Weak::upgrade) {
-        return Ok(known);
-    }
-    all.retain(|_, known| known.strong_count() > 0);
-    let made = Arc::new(Covering {
-        _map: map.clone(),
-        image: upload()?,
-    });
-    all.insert(key, Arc::downgrade(&made));
-    Ok(made)
+    all.get(Arc::as_ptr(map) as usize, || {
+        Ok(Covering {
+            _map: map.clone(),
+            image: upload()?,
+        })
+    })
 }
 
 impl Drop for TextureSet {

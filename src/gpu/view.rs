@@ -227,12 +227,6 @@ impl View {
         self.eye
     }
 
-    /// Where the view looks; the depth of a point is `(point - eye) . forward`.
-    #[must_use]
-    pub fn forward(&self) -> DVec3 {
-        self.forward
-    }
-
     /// The depth that a point at `t` has in the depth buffer.
     #[must_use]
     pub fn depth_at(&self, t: f64) -> f64 {

@@ -3,6 +3,7 @@
 use super::displacement::{Level, read_map};
 use super::halving;
 use crate::error::{Error, Result, Stage};
+use crate::frame::linear_from_srgb;
 use crate::pictures::decode;
 use std::path::Path;
 
@@ -44,7 +45,7 @@ impl ColorMap {
                 ),
             ));
         }
-        let linear: Vec<f32> = (0..=255u8).map(to_linear).collect();
+        let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
         let light = texels
             .iter()
             .map(|&[r, g, b, a]| {
@@ -73,14 +74,9 @@ impl ColorMap {
     }
 }
 
-/// Linear light of an sRGB value (IEC 61966-2-1).
-fn to_linear(v: u8) -> f32 {
-    let v = f32::from(v) / 255.0;
-    if v <= 0.040_45 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
+/// Linear light of an sRGB value.
+fn light_of_byte(v: u8) -> f32 {
+    linear_from_srgb(f64::from(v) / 255.0) as f32
 }
 
 /// The sRGB texel of premultiplied linear light.
@@ -105,7 +101,7 @@ mod tests {
     #[test]
     fn every_value_survives_the_way_to_light_and_back() {
         for v in 0..=255 {
-            let l = to_linear(v);
+            let l = light_of_byte(v);
             assert_eq!(from_light(&[l, l, l, 1.0]), [v, v, v, 255]);
         }
     }

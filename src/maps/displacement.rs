@@ -1,11 +1,12 @@
 //! Displacement maps: the slopes of a height map, computed once, scaled as the picture is drawn
 //! (Blinn 1978).
 
-use super::files::{encode_png, extension, write_whole};
+use super::files::{encode_png, extension};
 use super::half::to_half;
 use super::halving;
 use super::header::Header;
 use crate::error::{Error, Result, Stage};
+use crate::frame::atomic_file::write_bytes;
 use crate::pictures::decode;
 use rayon::prelude::*;
 use std::path::Path;
@@ -189,7 +190,7 @@ impl DisplacementMap {
                 &header,
                 &data,
             )?;
-            write_whole(path, &bytes)
+            write_bytes(Stage::Map, path, &bytes)
         };
         write().map_err(|e: Error| e.in_file(path))
     }

@@ -5,6 +5,7 @@ use super::header::{Header, KEYWORD, shape_header};
 use super::store::unpack_distance;
 use super::{Bounds, MapFormat, MapSource, ShapeMap};
 use crate::error::{Error, Result, Stage};
+use crate::frame::atomic_file::write_bytes;
 #[cfg(feature = "exr")]
 use crate::pictures::check_exr;
 use crate::pictures::{MAX_SIDE, Pixels, Png, Samples};
@@ -106,7 +107,7 @@ impl ShapeMap {
             )),
         };
         bytes
-            .and_then(|b| write_whole(path, &b))
+            .and_then(|b| write_bytes(Stage::Map, path, &b))
             .map_err(|e| e.in_file(path))
     }
 
@@ -355,24 +356,6 @@ pub(super) fn encode_png(
     };
     write().map_err(|e| fault(format!("the map cannot be written as PNG ({e})")))?;
     Ok(out)
-}
-
-/// Writes a file beside its place and then renames it, so that nobody ever sees half of one.
-pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let refuse = |e: std::io::Error| {
-        fault(format!(
-            "cannot be written ({e}); give a folder that exists and may be written to"
-        ))
-    };
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(name);
-    let result = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
-    if result.is_err() {
-        // Nothing to add to the first failure if this fails too.
-        let _ = std::fs::remove_file(&beside);
-    }
-    result.map_err(refuse)
 }
 
 #[cfg(test)]

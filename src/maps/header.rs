@@ -59,9 +59,10 @@ impl Header {
     }
 
     pub(super) fn source(&self) -> Result<MapSource> {
-        let named = |s: &MapSource| self.words.get("source").is_some_and(|v| v == s.name());
-        let sources = [MapSource::Binary, MapSource::Coverage, MapSource::Exact];
-        sources.into_iter().find(named).ok_or_else(|| {
+        let word = self.words.get("source");
+        let named = |(name, _): &&(&str, MapSource)| word.is_some_and(|word| word == name);
+        let found = MapSource::NAMES.iter().find(named);
+        found.map(|(_, source)| *source).ok_or_else(|| {
             Error::new(
                 Stage::Map,
                 "the map's header lacks a good `source`; bake the map again",
@@ -92,16 +93,4 @@ pub(super) fn shape_header(map: &ShapeMap, scale: f32) -> String {
         map.source.name(),
         map.radius
     )
-}
-
-impl MapSource {
-    /// As options and files name it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Binary => "binary",
-            Self::Coverage => "coverage",
-            Self::Exact => "exact",
-        }
-    }
 }

@@ -23,6 +23,8 @@ pub use displacement::{DisplacementMap, Level, SlopeFilter};
 pub use files::Projection;
 pub use store::EncodedMap;
 
+use crate::settings::name_of;
+
 /// Where distances come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MapSource {
@@ -36,6 +38,21 @@ pub enum MapSource {
     Exact,
 }
 
+impl MapSource {
+    /// As options and files name them.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("binary", Self::Binary),
+        ("coverage", Self::Coverage),
+        ("exact", Self::Exact),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, &self)
+    }
+}
+
 /// How distances are stored on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapFormat {
@@ -45,6 +62,21 @@ pub enum MapFormat {
     R16,
     /// Signed distance as a 32-bit float.
     R32,
+}
+
+impl MapFormat {
+    /// As options and results name them.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("rgba8", Self::Rgba8),
+        ("r16", Self::R16),
+        ("r32", Self::R32),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, &self)
+    }
 }
 
 /// How a shape map is baked.

@@ -8,6 +8,7 @@
 //! name.
 
 use super::faults::{empty_fault, full_fault};
+use super::outline::area;
 use super::paint::{Layer, Rgba, over};
 use super::polygon::EXTENT;
 use super::region::{Contour, Grid, Region, Rule};
@@ -79,10 +80,9 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
 /// and specks between them, and each would be a surface.
 fn without_slivers(mut outline: Outline) -> Outline {
     outline.loops.retain(|points| {
-        let ring = || points.iter().zip(points.iter().cycle().skip(1));
-        let area: f64 = 0.5 * ring().map(|(a, b)| a.perp_dot(*b)).sum::<f64>();
-        let length: f64 = ring().map(|(a, b)| a.distance(*b)).sum();
-        area.abs() > FLATNESS * length
+        let next = points.iter().cycle().skip(1);
+        let length: f64 = points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum();
+        area(points).abs() > FLATNESS * length
     });
     outline
 }

@@ -28,6 +28,16 @@ impl Segment {
     }
 }
 
+/// Area within closed points, negative clockwise.
+pub(super) fn area(points: &[DVec2]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    0.5 * points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a.perp_dot(*b))
+        .sum::<f64>()
+}
+
 impl Outline {
     /// All segments, those along the axis too.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
@@ -45,7 +55,7 @@ impl Outline {
     /// Enclosed area of the half-plane, holes taken off.
     #[must_use]
     pub fn area(&self) -> f64 {
-        0.5 * self.segments().map(|s| s.a.perp_dot(s.b)).sum::<f64>()
+        self.loops.iter().map(|points| area(points)).sum()
     }
 
     /// The rectangle that the solid occupies; `None` of an empty outline.

@@ -1,6 +1,7 @@
 //! How a picture is read: which grey is solid, how much noise is smoothed away, and what about it
 //! looks unintended.
 
+use super::outline::area;
 use super::{Outline, ProfileAxis, Raster};
 use crate::error::{Error, Result, Stage};
 use rayon::prelude::*;
@@ -167,14 +168,6 @@ pub(super) fn warnings(
         );
     }
     let pixel = f64::from(raster.rows).powi(-2);
-    let area = |points: &Vec<glam::DVec2>| {
-        let next = points.iter().cycle().skip(1);
-        0.5 * points
-            .iter()
-            .zip(next)
-            .map(|(a, b)| a.perp_dot(*b))
-            .sum::<f64>()
-    };
     let specks = outline
         .loops
         .iter()

@@ -14,6 +14,7 @@
 
 mod least_squares;
 
+use super::outline::area;
 use glam::DVec2;
 use least_squares::{Parabola, line_through, meeting, parabola};
 
@@ -104,16 +105,6 @@ pub(super) fn smooth(mut trail: Trail, graded: bool) -> Vec<DVec2> {
     } else {
         trail.points
     }
-}
-
-/// Area within closed points, negative clockwise.
-fn area(points: &[DVec2]) -> f64 {
-    let next = points.iter().cycle().skip(1);
-    0.5 * points
-        .iter()
-        .zip(next)
-        .map(|(a, b)| a.perp_dot(*b))
-        .sum::<f64>()
 }
 
 /// The trail continued past its ends: round again if it is closed, mirrored if it ends on the axis.

@@ -101,6 +101,12 @@ impl Object {
             && self.instances == other.instances
     }
 
+    /// Where its axis stands, object units from the middle of the box.
+    #[must_use]
+    pub fn axis_offset(&self) -> [f64; 2] {
+        self.axis.map(|o| (2.0 * o - 1.0) * self.profile.radius)
+    }
+
     /// Where every copy stands: the instances, or the one placement.
     #[must_use]
     pub fn placements(&self) -> &[Placement] {

@@ -1,5 +1,6 @@
 //! What tests share that need no device.
 
+mod random;
 #[cfg(feature = "drawing")]
 #[allow(dead_code)]
 pub mod rays;

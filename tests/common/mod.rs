@@ -2,18 +2,18 @@
 //! failure.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod host;
 pub mod passing;
+mod scenes;
 pub mod shapes;
 pub mod ways;
 
-use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;
 use revmap::gpu::{self, Device};
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Placement, Scene};
+use revmap::scene::Scene;
 use revmap::settings::Settings;
-use revmap_lab::compare::{CompareOptions, Comparison, compare};
-use std::sync::{Arc, OnceLock};
+pub use scenes::*;
+use std::sync::OnceLock;
 
 /// The device of this process's tests. Without a device or without the layers, tests fail.
 pub fn device() -> &'static Device {
@@ -31,41 +31,6 @@ pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
 /// Draws the reference.
 pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
     revmap_reference::draw(scene, settings, &|_, _| {}).unwrap()
-}
-
-/// How far a frame is from the truth, FLIP aside; depths in texels of a map of so many rows.
-pub fn errors(truth: &Frame, frame: &Frame, rows: u32) -> Comparison {
-    let options = CompareOptions {
-        texel: 1.0 / f64::from(rows),
-        pixels_per_degree: None,
-    };
-    compare(truth, frame, &options).unwrap()
-}
-
-/// One object of a polygon, seen from `eye`.
-pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
-    let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
-    scene.lights.push(Light {
-        direction: DVec3::new(0.7, 0.5, -0.2),
-        color: [0.3, 0.3, 0.4],
-    });
-    scene.objects.push(Object::new("test", Arc::new(profile)));
-    scene
-}
-
-/// Where a camera stands that looks at the middle of a box of height 1 from `distance`, `elevation`
-/// degrees up.
-pub fn eye(elevation: f64, distance: f64) -> DVec3 {
-    let (s, c) = elevation.to_radians().sin_cos();
-    DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
-}
-
-pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
-    Placement {
-        position: position.into(),
-        rotation: DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], euler[2]),
-        scale: scale.into(),
-    }
 }
 
 /// No NaN in any channel, and no infinity but the distance of what is not hit.

@@ -1,22 +1,8 @@
-//! What tests that send rays one by one share: numbers by chance, and the solids that the rays are
-//! sent at.
+//! What tests that send rays one by one share: the solids that the rays are sent at.
 
+pub use super::random::Random;
 use super::shapes;
 use revmap::profile::{Profile, ProfileAxis};
-
-/// Numbers by SplitMix64.
-pub struct Random(pub u64);
-
-impl Random {
-    /// From 0 to 1.
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// Profiles by name: those of [`shapes`], and the drawings of chess pieces; by the environment
 /// variable `ONLY` one of them.

@@ -2,6 +2,7 @@
 
 #![allow(dead_code)] // the reference takes all, the library some
 
+use super::random::Random;
 use glam::DVec2;
 use revmap::profile::Outline;
 
@@ -80,15 +81,8 @@ pub(crate) fn hollow() -> Outline {
 
 /// A random solid: star-shaped about a point on or off the axis, or a stack of discs, by `seed`.
 pub(crate) fn random(seed: u64) -> Outline {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1;
-    let mut next = move || {
-        // SplitMix64.
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = state;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1);
+    let mut next = move || random.next();
     let n = 3 + (next() * 9.0) as usize;
     match seed % 3 {
         // Half a star: both ends on the axis.

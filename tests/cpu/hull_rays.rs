@@ -4,12 +4,70 @@
 use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
 use glam::{DVec2, DVec3};
-use revmap::profile::Profile;
+use revmap::profile::{Outline, Profile};
 use revmap::scene::Offset;
 use revmap::surface::{
-    ContourSource, FitOptions, GpuPatch, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
-    trace_patches,
+    ContourSource, FitOptions, GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch, ROWS, Tables,
+    fit_patches, trace_patches,
 };
+
+/// A solid's boundary, as searches of tables and as hulls take it.
+struct Boundary {
+    patches: Vec<QuadricPatch>,
+    tables: Tables,
+    records: Vec<GpuPatch>,
+}
+
+impl Boundary {
+    fn new(outline: &Outline, offset: &Offset, rows: u32) -> Self {
+        let source = ContourSource::new(outline).unwrap();
+        let patches = fit_patches(&source.contour(offset).unwrap(), &FitOptions::default());
+        Self {
+            tables: Tables::new(&patches, rows),
+            records: (patches.iter().enumerate())
+                .map(|(k, p)| GpuPatch::new(p, k))
+                .collect(),
+            patches,
+        }
+    }
+
+    fn hull(&self, patches_per_cell: u32) -> ProxyHull {
+        let options = ProxyHullOptions {
+            patches_per_cell,
+            ..ProxyHullOptions::default()
+        };
+        ProxyHull::new(&self.patches, &options)
+    }
+
+    /// Where the tables stop a ray. As wide as the solid: the hull knows no side faces.
+    fn stop(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        trace_patches(&self.tables, 2.0, DVec2::ZERO, origin, direction).map(|hit| hit.t)
+    }
+
+    /// Where a ray is stopped, whether the hull's fragments stop it there, and how many it passes.
+    fn compare(
+        &self,
+        hull: &ProxyHull,
+        origin: DVec3,
+        direction: DVec3,
+    ) -> (Option<f64>, bool, u32) {
+        let truth = self.stop(origin, direction);
+        let found = hull.trace(&self.records, origin, direction);
+        let same = match (truth, found.hit) {
+            (Some(a), Some((t, _))) => (a - f64::from(t)).abs() < 2e-4,
+            (None, None) => true,
+            _ => false,
+        };
+        (truth, same, found.nodes)
+    }
+}
+
+/// An eye anywhere around a solid.
+fn eye_around(random: &mut Random) -> DVec3 {
+    let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
+    let (y, x) = (random.next() * 6.3).sin_cos();
+    DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5
+}
 
 /// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no
 /// other.
@@ -24,47 +82,25 @@ fn hulls_lose_no_ray() {
             chamfer,
         };
         for (name, profile) in profiles() {
-            let source = ContourSource::new(&profile.outline).unwrap();
-            let patches = fit_patches(&source.contour(&offset).unwrap(), &FitOptions::default());
-            let tables = Tables::new(&patches, ROWS);
-            let records: Vec<GpuPatch> = patches
-                .iter()
-                .enumerate()
-                .map(|(k, p)| GpuPatch::new(p, k))
-                .collect();
+            let boundary = Boundary::new(&profile.outline, &offset, ROWS);
             for tests in [1, 3] {
-                let hull = ProxyHull::new(
-                    &patches,
-                    &ProxyHullOptions {
-                        patches_per_cell: tests,
-                        ..ProxyHullOptions::default()
-                    },
-                );
+                let hull = boundary.hull(tests);
                 let (mut random, mut lost, mut hits, mut layers, mut wasted) =
                     (Random(11), 0, 0, 0, 0);
                 for _ in 0..count {
-                    let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
-                    let (y, x) = (random.next() * 6.3).sin_cos();
-                    let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
+                    let origin = eye_around(&mut random);
                     let target =
                         DVec3::new(random.next() - 0.5, random.next() - 0.5, random.next());
                     let direction = (target - origin).normalize();
-                    // As wide as the solid: the hull knows no side faces.
-                    let truth = trace_patches(&tables, 2.0, DVec2::ZERO, origin, direction);
-                    let found = hull.trace(&records, origin, direction);
-                    let same = match (truth, found.hit) {
-                        (Some(a), Some((t, _))) => (a.t - f64::from(t)).abs() < 2e-4,
-                        (None, None) => true,
-                        _ => false,
-                    };
+                    let (truth, same, nodes) = boundary.compare(&hull, origin, direction);
                     lost += usize::from(!same);
                     hits += usize::from(truth.is_some());
-                    layers += found.nodes * u32::from(truth.is_some());
-                    wasted += found.nodes * u32::from(truth.is_none());
+                    layers += nodes * u32::from(truth.is_some());
+                    wasted += nodes * u32::from(truth.is_none());
                 }
                 let words = format!(
                     "{name:8} {:4} patches {:5} bands {:6} triangles, {tests} patches_per_cell: {lost} of {hits} lost, {:.2} layers where hit, {:.2} elsewhere",
-                    patches.len(),
+                    boundary.patches.len(),
                     hull.frusta.len(),
                     hull.vertices() / 3,
                     f64::from(layers) / hits as f64,
@@ -164,16 +200,9 @@ fn what_a_hull_leaves_out_no_ray_meets() {
     profiles.push(("torus", shapes::torus(), true));
     profiles.push(("glass", shapes::glass(), true));
     for (name, profile, hollow) in profiles {
-        let source = ContourSource::new(&profile.outline).unwrap();
-        let contour = source.contour(&Offset::default()).unwrap();
-        let patches = fit_patches(&contour, &FitOptions::default());
-        let tables = Tables::new(&patches, 64);
+        let boundary = Boundary::new(&profile.outline, &Offset::default(), 64);
         // Small cells: as many as there can be are within the hollow.
-        let options = ProxyHullOptions {
-            patches_per_cell: 1,
-            ..ProxyHullOptions::default()
-        };
-        let hull = ProxyHull::new(&patches, &options);
+        let hull = boundary.hull(1);
         let (mut left_out, mut rays) = (0, 0);
         for _ in 0..60 {
             let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.57).sin_cos();
@@ -187,7 +216,7 @@ fn what_a_hull_leaves_out_no_ray_meets() {
                     continue;
                 }
                 left_out += 1;
-                let patch = &patches[band.first as usize];
+                let patch = &boundary.patches[band.first as usize];
                 for _ in 0..4 {
                     let part = random.next();
                     let z = patch.start.y + part * (patch.end.y - patch.start.y);
@@ -198,8 +227,7 @@ fn what_a_hull_leaves_out_no_ray_meets() {
                     };
                     let (y, x) = (random.next() * 6.3).sin_cos();
                     let way = DVec3::new(r * x, r * y, z) - eye;
-                    let met = trace_patches(&tables, 2.0, DVec2::ZERO, eye, way.normalize());
-                    let t = met.map_or(f64::INFINITY, |hit| hit.t);
+                    let t = boundary.stop(eye, way.normalize()).unwrap_or(f64::INFINITY);
                     assert!(
                         t < way.length() - 1e-4,
                         "{name}: from {eye} the point ({r}, {z}) is seen: {t} of {}",
@@ -254,30 +282,17 @@ fn rims_and_ledges_lose_no_ray() {
         ("turned", turned),
         ("hole", hole),
     ] {
-        let outline = revmap::profile::Outline {
+        let outline = Outline {
             loops: vec![points.into_iter().map(DVec2::from).collect()],
         };
-        let source = ContourSource::new(&outline).unwrap();
-        let contour = source.contour(&Offset::default()).unwrap();
-        let patches = fit_patches(&contour, &FitOptions::default());
-        let tables = Tables::new(&patches, ROWS);
-        let records: Vec<GpuPatch> = patches
-            .iter()
-            .enumerate()
-            .map(|(k, p)| GpuPatch::new(p, k))
-            .collect();
+        let boundary = Boundary::new(&outline, &Offset::default(), ROWS);
+        let patches = &boundary.patches;
         let mut random = Random(5);
         for tests in [2, 3, 4, 5, 8] {
-            let options = ProxyHullOptions {
-                patches_per_cell: tests,
-                ..ProxyHullOptions::default()
-            };
-            let hull = ProxyHull::new(&patches, &options);
+            let hull = boundary.hull(tests);
             let (mut lost, mut hits) = (0, 0);
             for _ in 0..count(3000) {
-                let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
-                let (y, x) = (random.next() * 6.3).sin_cos();
-                let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
+                let origin = eye_around(&mut random);
                 // A point within a hundredth of a joint, a quarter of a texel under the surface: a ray
                 // at the surface itself may be a silhouette's.
                 let patch = &patches[(random.next() * patches.len() as f64) as usize];
@@ -287,13 +302,7 @@ fn rims_and_ledges_lose_no_ray() {
                 let (sine, cosine) = (random.next() * 6.3).sin_cos();
                 let target = DVec3::new(place.x * cosine, place.x * sine, place.y);
                 let direction = (target - origin).normalize();
-                let truth = trace_patches(&tables, 2.0, DVec2::ZERO, origin, direction);
-                let found = hull.trace(&records, origin, direction);
-                let same = match (truth, found.hit) {
-                    (Some(a), Some((t, _))) => (a.t - f64::from(t)).abs() < 2e-4,
-                    (None, None) => true,
-                    _ => false,
-                };
+                let (truth, same, _) = boundary.compare(&hull, origin, direction);
                 lost += usize::from(!same);
                 hits += usize::from(truth.is_some());
             }

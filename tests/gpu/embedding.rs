@@ -2,17 +2,13 @@
 //! `examples/engine`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-#[path = "../../examples/engine/host/mod.rs"]
-#[allow(dead_code, missing_docs)]
-pub mod host;
-
-use crate::common::{eye, scene_of, shapes};
+use crate::common::{eye, host, scene_of, shapes};
 use ash::vk;
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use host::{Host, Mesh, Options, Stage};
+use host::{Host, Mesh, Options, Stage, lent, open};
+use revmap::frame::srgb_from_linear;
 use revmap::gpu::{
-    DepthOrder, Device, HostDevice, Offscreen, Output, PassFormats, PassKind, Renderer,
-    Requirements, View, Viewport,
+    DepthOrder, Device, Offscreen, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
 use revmap::profile::Profile;
 use revmap::scene::{Camera, CameraFrame, Lighting, Object, Scene};
@@ -32,30 +28,9 @@ pub fn options() -> Options {
     }
 }
 
-pub fn open() -> Host {
-    Host::open(true, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })
-    .unwrap()
-}
-
 pub fn borrow(host: &Host) -> Device {
     // SAFETY: the host's own handles; each test drops the device before the host.
-    unsafe {
-        Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
-            queue: Some(host.queue),
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
-        })
-    }
-    .unwrap()
+    unsafe { Device::borrow(&lent(host)) }.unwrap()
 }
 
 pub fn renderer(device: &Device, stage: &Stage) -> Renderer {
@@ -149,13 +124,7 @@ pub fn drawn(
 }
 
 pub fn srgb(linear: f32) -> u8 {
-    let c = f64::from(linear);
-    let encoded = if c <= 0.003_130_8 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
-    (encoded * 255.0).round() as u8
+    (srgb_from_linear(f64::from(linear)) * 255.0).round() as u8
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! A host whose objects come and go while frames are in flight.
 
+use crate::common::host::{Options, Stage, open};
 use crate::common::{placement, shapes};
-use crate::embedding::host::{Options, Stage};
-use crate::embedding::{assert_silent, borrow, frame, open, options, renderer};
+use crate::embedding::{assert_silent, borrow, frame, options, renderer};
 use glam::{DMat4, DVec3};
 use revmap::gpu::{ObjectId, View};
 use revmap::profile::Profile;

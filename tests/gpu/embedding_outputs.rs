@@ -2,10 +2,10 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
+use crate::common::host::memory::{HostBuffer, HostImage};
+use crate::common::host::{self, Host, open};
 use crate::common::{scene_of, shapes};
-use crate::embedding::host::memory::{HostBuffer, HostImage};
-use crate::embedding::host::{self, Host};
-use crate::embedding::{BACKGROUND, assert_silent, borrow, open, options, srgb, three, upright};
+use crate::embedding::{BACKGROUND, assert_silent, borrow, options, srgb, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
@@ -72,13 +72,9 @@ fn viewport() -> Viewport {
     }
 }
 
-/// Depths of a scene, drawn into a host's shadow map.
-fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bool) -> Vec<f32> {
-    let (width, height) = (options().width, options().height);
-    let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
-    let bytes = 4 * (width * height) as usize;
-    let read = HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST).unwrap();
-    let output = Output::Pass(PassFormats {
+/// A pass without colours.
+fn depth_pass(planes: Planes) -> Output {
+    Output::Pass(PassFormats {
         begun: PassKind::Dynamic {
             color: Vec::new(),
             depth: host::DEPTH,
@@ -86,8 +82,17 @@ fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bo
         },
         samples: 1,
         depth: DepthOrder::Normal,
-        planes: Planes::Depth { parallel },
-    });
+        planes,
+    })
+}
+
+/// Depths of a scene, drawn into a host's shadow map.
+fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bool) -> Vec<f32> {
+    let (width, height) = (options().width, options().height);
+    let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
+    let bytes = 4 * (width * height) as usize;
+    let read = HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST).unwrap();
+    let output = depth_pass(Planes::Depth { parallel });
     let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
@@ -310,18 +315,6 @@ fn compute_writes_to_a_hosts_buffer() {
 #[test]
 fn depth_alone_takes_exact_searches() {
     let device = crate::common::device();
-    let pass = |planes| {
-        Output::Pass(PassFormats {
-            begun: PassKind::Dynamic {
-                color: Vec::new(),
-                depth: host::DEPTH,
-                stencil: vk::Format::UNDEFINED,
-            },
-            samples: 1,
-            depth: DepthOrder::Normal,
-            planes,
-        })
-    };
     let planes = Planes::Depth { parallel: false };
     let circle = SearchSettings {
         solver: Solver::Circle,
@@ -331,6 +324,6 @@ fn depth_alone_takes_exact_searches() {
         let error = Renderer::new(device, output, settings, 1).err().unwrap();
         assert!(error.to_string().contains("depth alone"), "{error}");
     };
-    refused(pass(planes), &circle);
+    refused(depth_pass(planes), &circle);
     refused(Output::Compute(planes), &SearchSettings::exact());
 }

@@ -3,8 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
+use crate::common::host::{Host, lent, open};
 use crate::common::{device, eye, scene_of, shapes};
-use crate::embedding::{assert_silent, host::Host, open, three};
+use crate::embedding::{assert_silent, three};
 use ash::vk;
 use revmap::error::Stage;
 use revmap::frame::Frame;
@@ -28,13 +29,8 @@ fn borrow(host: &Host, raw: &ash::Device, instance: &ash::Instance) -> revmap::R
     unsafe {
         Device::borrow(&HostDevice {
             instance,
-            physical: host.physical,
             device: raw,
-            queue_family: host.family,
-            queue: Some(host.queue),
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
+            ..lent(host)
         })
     }
 }

@@ -14,7 +14,6 @@ use revmap::scene::Scene;
 use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -289,19 +288,16 @@ impl Vary {
 }
 
 fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
-    frame::atomic_file::write_atomically(Stage::Frame, path, |out| {
-        let mut text =
-            String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
-        for (n, row) in rows.iter().enumerate() {
-            let gpu = row.gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
-            text += &format!(
-                "{n},{:.4},{gpu},{:.4},{},{}\n",
-                row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
-            );
-        }
-        out.write_all(text.as_bytes())
-            .map_err(|e| Error::new(Stage::Frame, format!("cannot be written: {e}")))
-    })
+    let mut text =
+        String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
+    for (n, row) in rows.iter().enumerate() {
+        let gpu = row.gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
+        text += &format!(
+            "{n},{:.4},{gpu},{:.4},{},{}\n",
+            row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
+        );
+    }
+    frame::atomic_file::write_bytes(Stage::Frame, path, text.as_bytes())
 }
 
 fn usage(option: &str, message: &str) -> Error {

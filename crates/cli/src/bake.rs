@@ -1,6 +1,6 @@
 //! `revmap bake`: the maps that a solid is drawn from, as images.
 
-use super::options::{self, named};
+use super::options::named;
 use super::output;
 use super::progress::Progress;
 use clap::Args;
@@ -36,7 +36,7 @@ pub struct Bake {
     #[arg(long, value_name = "N", default_value_t = Object::MAP_ROWS, value_parser = clap::value_parser!(u32).range(2..=16384))]
     map_rows: u32,
     /// Where distances come from [default: exact]
-    #[arg(long, value_name = "SOURCE", value_parser = named(&options::SOURCES))]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
     map_source: Option<MapSource>,
     /// Where the axis is: the left edge of half a profile, or the middle of a silhouette
     #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&AXES))]
@@ -110,7 +110,7 @@ impl Bake {
             map_file.display(),
             map.columns,
             map.rows,
-            options::name_of(&options::SOURCES, &map.source)
+            map.source.name()
         ));
         if let (Some(slopes), Some(file)) = (&slopes, &slopes_file) {
             slopes.save(file)?;

@@ -1,13 +1,11 @@
 //! Options that take several values, of which every combination is measured.
 
-use super::options::{
-    FORMATS, MethodParser, SOURCES, STAGES, Tracing, name_of, named, size, tolerance,
-};
+use super::options::{MethodParser, STAGES, Tracing, named, size, tolerance};
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::file::{self, SceneFile};
-use revmap::settings::{DrawStage, Tolerance};
+use revmap::settings::{DrawStage, Tolerance, name_of};
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::measure::TimeBudget;
@@ -49,10 +47,10 @@ pub struct Lists {
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub map_rows: Vec<u32>,
     /// Where distances come from [default: exact]
-    #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&SOURCES))]
+    #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&MapSource::NAMES))]
     pub map_source: Vec<MapSource>,
     /// How distances are stored on the device [default: r32]
-    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&FORMATS))]
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&MapFormat::NAMES))]
     pub map_format: Vec<MapFormat>,
     /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact
     /// [default: 0]

@@ -39,20 +39,6 @@ pub const SOLVERS: [(&str, Method); Method::ALL.len() + 1] = {
     all
 };
 
-/// Names of the sources of distances.
-pub const SOURCES: [(&str, MapSource); 3] = [
-    ("binary", MapSource::Binary),
-    ("coverage", MapSource::Coverage),
-    ("exact", MapSource::Exact),
-];
-
-/// Names of the formats of maps.
-pub const FORMATS: [(&str, MapFormat); 3] = [
-    ("rgba8", MapFormat::Rgba8),
-    ("r16", MapFormat::R16),
-    ("r32", MapFormat::R32),
-];
-
 /// How to draw, and what to say about it.
 #[derive(Args, Clone, Debug)]
 pub struct Drawing {
@@ -73,10 +59,10 @@ pub struct Drawing {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16384))]
     pub map_rows: Option<u32>,
     /// Where distances come from [default: exact]
-    #[arg(long, value_name = "SOURCE", value_parser = named(&SOURCES))]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
     pub map_source: Option<MapSource>,
     /// How distances are stored on the device
-    #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&FORMATS))]
+    #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&MapFormat::NAMES))]
     pub map_format: MapFormat,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an
     /// .exr is written]
@@ -210,15 +196,6 @@ impl TypedValueParser for MethodParser {
     }
 }
 
-/// The name of a value of [`named`]: the last, so that `default` gives its own name.
-pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
-    names
-        .iter()
-        .rev()
-        .find(|(_, known)| known == value)
-        .map_or("unknown", |(name, _)| name)
-}
-
 /// A tolerance in pixels.
 pub fn tolerance(text: &str) -> Result<Tolerance, String> {
     text.parse().map_err(|e: revmap::Error| e.message)
@@ -240,6 +217,7 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use revmap::settings::name_of;
 
     #[test]
     fn sizes_are_read_and_bounded() {

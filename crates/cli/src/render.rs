@@ -11,7 +11,7 @@ use revmap::frame::{self, Frame};
 use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
 use revmap::scene::file::SceneFile;
 use revmap::scene::{Object, Scene};
-use revmap::settings::{Planes, Tolerance};
+use revmap::settings::{Planes, Tolerance, name_of};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodDrawn};
 use revmap_reference as reference;
@@ -217,7 +217,7 @@ impl Render {
             self.details(scene, settings, picture, spent);
         }
         picture.warnings.iter().for_each(|w| output::warn(w));
-        let stage = options::name_of(&options::STAGES, &self.drawing.stage);
+        let stage = name_of(&options::STAGES, &self.drawing.stage);
         let times = picture.times;
         let (how, cost) = match &picture.device {
             None => (
@@ -320,7 +320,7 @@ impl Render {
             "files": self.output,
             "width": settings.width,
             "height": settings.height,
-            "stage": options::name_of(&options::STAGES, &self.drawing.stage),
+            "stage": name_of(&options::STAGES, &self.drawing.stage),
             "solver": device.map(|_| settings.method.to_string()),
             "samples": self.samples.count,
             "antialias": settings.antialias,

@@ -7,12 +7,6 @@ use revmap::gpu::{CompiledShader, DeviceReport, compiled_shaders};
 use revmap::settings::{DrawStage, Solver};
 use serde_json::{Map, Value, json};
 
-/// Names of the stages that a device draws in.
-const STAGES: [(&str, DrawStage); 2] = [
-    ("fragment", DrawStage::Fragment),
-    ("compute", DrawStage::Compute),
-];
-
 /// Names of the searches.
 const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
     let mut all = [("default", Solver::DEFAULT); Solver::ALL.len() + 1];
@@ -37,7 +31,7 @@ const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
     RADV_FORCE_FAMILY=navi21 revmap shaders --csv > navi21.csv")]
 pub struct Shaders {
     /// Where rays are traced
-    #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&STAGES))]
+    #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&DrawStage::NAMES))]
     stage: Vec<DrawStage>,
     /// The searches [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
@@ -125,10 +119,9 @@ impl Shaders {
 }
 
 fn words(shader: &CompiledShader) -> [&str; 6] {
-    let stage = STAGES.iter().find(|(_, stage)| *stage == shader.stage);
     [
         shader.technique,
-        stage.map_or("", |(name, _)| name),
+        shader.stage.name(),
         shader.solver.name(),
         shader.path,
         &shader.shader,

@@ -1,13 +1,13 @@
 //! `revmap stability`: the cases in which methods fail.
 
 use super::interrupt;
-use super::options::{MethodParser, SOLVERS, name_of};
+use super::options::{MethodParser, SOLVERS};
 use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
-use revmap::settings::Solver;
+use revmap::settings::{Solver, name_of};
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;

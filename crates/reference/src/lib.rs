@@ -37,6 +37,9 @@ mod draw;
 mod field;
 mod parts;
 #[cfg(test)]
+#[path = "../../../tests/common/random.rs"]
+mod random;
+#[cfg(test)]
 #[path = "../../../tests/common/samples.rs"]
 mod samples;
 mod shade;
@@ -134,13 +137,7 @@ impl Reference {
                 }
             };
             let solid = Arc::new(Solid::new(object, field));
-            let own = [object.placement];
-            let placements = if object.instances.is_empty() {
-                &own[..]
-            } else {
-                &object.instances
-            };
-            for (instance, placement) in placements.iter().enumerate() {
+            for (instance, placement) in object.placements().iter().enumerate() {
                 let placement = checked(placement).map_err(|e| e.at_key(&key))?;
                 parts.push(Part {
                     object: index,

@@ -62,16 +62,12 @@ const FLAT: f64 = 1e-4;
 
 impl Solid {
     pub fn new(object: &Object, field: Arc<Field>) -> Self {
-        let radius = object.profile.radius;
         Self {
             field,
-            radius,
+            radius: object.profile.radius,
             growth: Growth::of(object),
             offset: object.offset,
-            axis: DVec2::new(
-                (2.0 * object.axis[0] - 1.0) * radius,
-                (2.0 * object.axis[1] - 1.0) * radius,
-            ),
+            axis: object.axis_offset().into(),
             repeat: object.repeat.map(|n| n.max(1)),
             mirror: object.mirror,
         }

@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 use revmap::error::Result;
+use revmap::frame::linear_from_srgb;
 use revmap::maps::{ArcLength, Level, Projection};
 use revmap::profile::Profile;
 use revmap::scene::{BumpForm, Object, Scene};
@@ -64,7 +65,7 @@ pub(super) fn coordinates(object: &Object, arc: Option<&ArcLength>, p: DVec3) ->
 pub(super) fn color(object: &Object, uv: [f64; 2]) -> Option<[f64; 3]> {
     let level = object.texturing.color_map.as_ref()?.levels.first()?;
     Some(bilinear(object, level, uv, |t| {
-        [t[0], t[1], t[2]].map(to_linear)
+        [t[0], t[1], t[2]].map(|v| linear_from_srgb(f64::from(v) / 255.0))
     }))
 }
 
@@ -131,14 +132,4 @@ fn bilinear<T: Copy, const N: usize>(
         }
     }
     sum
-}
-
-/// Linear light of an sRGB value (IEC 61966-2-1).
-fn to_linear(v: u8) -> f64 {
-    let v = f64::from(v) / 255.0;
-    if v <= 0.040_45 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
 }

@@ -10,6 +10,5 @@ mod programs;
 mod recording;
 mod recording_compute;
 
-#[path = "../../../../examples/engine/host/mod.rs"]
-#[allow(dead_code, unused_imports)]
+#[path = "../../../../tests/common/host.rs"]
 mod host;

@@ -1,12 +1,11 @@
 //! The programs' pictures are those of the Rust renderer, bit for bit.
 
-use crate::host::{self, Host, Options, Stage};
+use crate::host::{self, Options, Stage};
 use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
 use glam::{DMat4, DVec3, Vec3};
 use revmap::frame::Picture;
 use revmap::gpu::{
-    self, DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, Requirements,
-    View, Viewport,
+    self, DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
 use revmap::profile::{Profile, ProfileAxis};
 use revmap::scene::{Camera, Object, Offset, Placement, Scene};
@@ -74,23 +73,12 @@ fn view() -> View {
 
 /// What the Rust renderer draws of them: RGB.
 fn drawn() -> Vec<u8> {
-    let host = Host::open(true, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })
-    .unwrap();
+    let host = host::open();
     // SAFETY: the host's own handles; the device is dropped before the host.
     let device = unsafe {
         Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
             queue: None,
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
+            ..host::lent(&host)
         })
     }
     .unwrap();

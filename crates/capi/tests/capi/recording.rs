@@ -1,11 +1,9 @@
 //! Recording through the C interface into a render pass: what the Rust renderer draws.
 
-use crate::host::{Host, Options, Stage};
+use crate::host::{Host, Options, Stage, lent, open};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
-use revmap::gpu::{
-    DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, Requirements, View,
-};
+use revmap::gpu::{DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, View};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings};
@@ -41,15 +39,6 @@ pub fn ok(result: RevmapResult) {
     // SAFETY: the text lasts until this thread's next failure.
     let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
     assert_eq!(result, RevmapResult::Ok, "{}", text.to_string_lossy());
-}
-
-pub fn open() -> Host {
-    Host::open(true, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })
-    .unwrap()
 }
 
 pub fn lend(host: &Host) -> *mut RevmapDevice {
@@ -141,14 +130,8 @@ fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
     // SAFETY: the host's own handles; the device is dropped before the host.
     let device = unsafe {
         Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
             queue: None,
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
+            ..lent(host)
         })
     }
     .unwrap();

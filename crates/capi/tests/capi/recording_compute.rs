@@ -1,7 +1,7 @@
 //! Recording through the C interface in compute: what the Rust renderer draws.
 
-use crate::host::{Host, Stage};
-use crate::recording::{OPTIONS, RANGE, add, camera, lend, ok, open, scene};
+use crate::host::{Host, Stage, open};
+use crate::recording::{OPTIONS, RANGE, add, camera, lend, ok, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::frame::Picture;

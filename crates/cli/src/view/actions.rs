@@ -5,7 +5,7 @@ use super::controls::Asked;
 use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
-use revmap::error::{Error, Result, Stage as Where};
+use revmap::error::{self, Error, Result};
 use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ impl App {
         let folder = saved::beside(&self.source, "-turntable");
         std::fs::create_dir(&folder).map_err(|e| {
             let message = format!("cannot be made ({e}); move the scene to another folder");
-            Error::new(Where::Frame, message).in_file(&folder)
+            Error::new(error::Stage::Frame, message).in_file(&folder)
         })?;
         match self.write_turned(&folder) {
             Ok(()) => Ok(folder),

@@ -11,7 +11,7 @@ use super::shown::Shown;
 use super::stage::Stage;
 use super::times::Times;
 use crate::output;
-use revmap::error::{Error, Result, Stage as Where};
+use revmap::error::{self, Error, Result};
 use revmap::scene::file::SceneFile;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -108,7 +108,8 @@ impl App {
             .with_title(title(&self.source))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
-        let window = window.map_err(|e| Error::new(Where::Device, format!("no window: {e}")))?;
+        let window =
+            window.map_err(|e| Error::new(error::Stage::Device, format!("no window: {e}")))?;
         let stage = Stage::new(&window, self.options.device.as_deref(), &self.shown)?;
         let scale = window.scale_factor() as f32;
         let id = egui::ViewportId::ROOT;

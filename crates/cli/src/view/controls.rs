@@ -1,12 +1,12 @@
 //! Sliders and choices for all that a scene and its search hold.
 
-use super::shown::{Inspected, STAGES, Shown};
+use super::shown::{Inspected, Shown};
 use super::times::Times;
 use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::{MapSource, Projection};
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
-use revmap::settings::{SearchSettings, Solver, Tolerance};
+use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 
 /// What the controls say besides values.
 pub struct Told<'a> {
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
         ui.label(*note);
     }
     ui.horizontal(|ui| {
-        asked.changed |= choice(ui, "stage", &mut shown.stage, &STAGES);
+        asked.changed |= choice(ui, "stage", &mut shown.stage, &DrawStage::NAMES);
         asked.changed |= choice(ui, "show", &mut shown.inspected, &Inspected::NAMES);
     });
     let Shown { scene, search, .. } = shown;
@@ -185,12 +185,8 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
 fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
     let solvers = Solver::ALL.map(|s| (s.name(), s));
     let mut changed = choice(ui, "solver", &mut search.solver, &solvers);
-    let sources = [
-        ("best", None),
-        ("binary", Some(MapSource::Binary)),
-        ("coverage", Some(MapSource::Coverage)),
-        ("exact", Some(MapSource::Exact)),
-    ];
+    let [a, b, c] = MapSource::NAMES.map(|(name, source)| (name, Some(source)));
+    let sources = [("best", None), a, b, c];
     changed |= choice(ui, "map source", &mut search.map_source, &sources);
     let mut pixels = search.tolerance.pixels();
     let slider = Slider::new(&mut pixels, 0.0..=8.0).logarithmic(true);

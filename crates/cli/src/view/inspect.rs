@@ -3,7 +3,7 @@
 
 use super::shown::{Inspected, Shown};
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
-use revmap::error::{Error, Result, Stage as Where};
+use revmap::error::{self, Error, Result};
 use revmap::frame::{Frame, Picture};
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::settings::{Planes, Settings};
@@ -141,7 +141,7 @@ impl Inspector {
             let drawn = match check.drawn.try_recv() {
                 Err(TryRecvError::Empty) => return Ok(None),
                 Err(TryRecvError::Disconnected) => Err(Error::new(
-                    Where::Draw,
+                    error::Stage::Draw,
                     "the reference's thread has died; change the view to try again",
                 )),
                 Ok(drawn) => drawn,

@@ -39,7 +39,7 @@ pub struct View {
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
     /// Where rays are traced
-    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&shown::STAGES))]
+    #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&DrawStage::NAMES))]
     stage: DrawStage,
     /// How the first hit along a ray is found
     #[arg(long, value_name = "NAME", default_value = "hull")]

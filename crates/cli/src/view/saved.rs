@@ -3,12 +3,12 @@
 use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
-use revmap::error::{Error, Result, Stage as Where};
-use revmap::frame::atomic_file::write_atomically;
+use revmap::error::{Result, Stage};
+use revmap::frame::atomic_file::write_bytes;
 use revmap::scene::file::SceneFile;
 use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
+use revmap::settings::name_of;
 use std::fmt::Debug;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Frames of a turntable.
@@ -36,7 +36,7 @@ pub fn write_scene(
     // What was not touched stays as the scene has it, or has it not.
     let changed = after.into_iter().filter(|one| !before.contains(one));
     let text = file.text(&changed.collect::<Vec<_>>())?;
-    write(&path, &text)?;
+    write_bytes(Stage::Frame, &path, text.as_bytes())?;
     Ok(path)
 }
 
@@ -62,14 +62,7 @@ pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
         } = cost;
         text += &format!("{n},{prepare:.4},{device:.4},{present:.4},{compiled}\n");
     }
-    write(path, &text)
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    write_atomically(Where::Frame, path, |out| {
-        out.write_all(text.as_bytes())
-            .map_err(|e| Error::new(Where::Frame, format!("cannot be written: {e}")))
-    })
+    write_bytes(Stage::Frame, path, text.as_bytes())
 }
 
 /// Every value that the controls change, as `--set` takes it.
@@ -80,7 +73,7 @@ fn assignments(scene: &Scene) -> Vec<String> {
         format!("camera.target={:?}", camera.target.to_array()),
         format!("camera.fov_y={:?}", camera.fov_y),
         format!("ambient={:?}", scene.ambient),
-        format!("shadow={:?}", name(&Shadow::NAMES, &scene.shadow)),
+        format!("shadow={:?}", name_of(&Shadow::NAMES, &scene.shadow)),
     ];
     let lights: Vec<String> = scene
         .lights
@@ -110,9 +103,12 @@ fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
     set("extend", &offset.extend);
     set("bevel", &offset.bevel);
     set("chamfer", &offset.chamfer);
-    set("clip", &name(&Clip::NAMES, &object.clip));
+    set("clip", &name_of(&Clip::NAMES, &object.clip));
     set("bump", &texturing.bump);
-    set("bump_form", &name(&BumpForm::NAMES, &texturing.bump_form));
+    set(
+        "bump_form",
+        &name_of(&BumpForm::NAMES, &texturing.bump_form),
+    );
     set("projection", &texturing.projection.name());
     set("axis", &object.axis);
     set("repeat", &object.repeat);
@@ -122,12 +118,6 @@ fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
     set("shininess", &specular.shininess);
     set("position", &placement.position.to_array());
     set("scale", &placement.scale.to_array());
-}
-
-fn name<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> &'static str {
-    all.iter()
-        .find(|(_, one)| one == value)
-        .map_or("", |(name, _)| name)
 }
 
 #[cfg(test)]

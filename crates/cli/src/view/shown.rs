@@ -29,12 +29,6 @@ impl Inspected {
     ];
 }
 
-/// Names in the controls and of the option `--stage`.
-pub const STAGES: [(&str, DrawStage); 2] = [
-    ("fragment", DrawStage::Fragment),
-    ("compute", DrawStage::Compute),
-];
-
 /// What is shown, and how.
 #[derive(Clone)]
 pub struct Shown {

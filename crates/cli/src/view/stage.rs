@@ -12,7 +12,7 @@ use ash::vk;
 use egui::FullOutput;
 use egui_ash_renderer::allocator::GpuAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer as Gui};
-use revmap::error::{Error, Result, Stage as Where};
+use revmap::error::{self, Error, Result};
 use revmap::frame::Picture;
 use revmap::gpu::{Device, DrawPath, View};
 use revmap::scene::Scene;
@@ -47,7 +47,7 @@ pub struct Frame {
 
 fn gui_error(error: impl std::fmt::Display) -> Error {
     Error::new(
-        Where::Draw,
+        error::Stage::Draw,
         format!("the controls cannot be drawn: {error}"),
     )
 }

@@ -85,7 +85,7 @@ pub(super) struct ObjectBlock {
 impl ObjectBlock {
     /// `first` is the instance of an object that has one.
     pub fn new(object: &Object, growth: &Growth, first: InstanceBlock) -> Self {
-        let [x, y] = axis_offset(object);
+        let [x, y] = object.axis_offset();
         let [red, green, blue] = object.color;
         let axis = DVec3::new(x, y, 0.0).as_vec3();
         Self {
@@ -101,9 +101,4 @@ impl ObjectBlock {
             single: first,
         }
     }
-}
-
-/// The axis of revolution, object units from the middle of the box.
-pub(super) fn axis_offset(object: &Object) -> [f64; 2] {
-    object.axis.map(|o| (2.0 * o - 1.0) * object.profile.radius)
 }

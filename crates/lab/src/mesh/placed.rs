@@ -1,6 +1,6 @@
 //! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
 
-use super::blocks::{InstanceBlock, ObjectBlock, axis_offset};
+use super::blocks::{InstanceBlock, ObjectBlock};
 use super::tessellation::Mesh;
 use glam::DVec3;
 use revmap::error::{Error, Result, Stage};
@@ -247,7 +247,7 @@ fn check_object(object: &Object) -> std::result::Result<(), KeyError> {
 /// largest radius.
 fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> {
     let radius = object.profile.radius;
-    let off = axis_offset(object).map(f64::abs);
+    let off = object.axis_offset().map(f64::abs);
     if widest + off[0].max(off[1]) <= radius * (1.0 + 1e-9) {
         return Ok(());
     }
@@ -267,7 +267,7 @@ fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> 
 
 /// The eye in object space, about the axis.
 fn eye_about_axis(object: &Object, placement: &Placement, camera: &CameraFrame) -> DVec3 {
-    let [x, y] = axis_offset(object);
+    let [x, y] = object.axis_offset();
     let back = placement.rotation.normalize().conjugate();
     back * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
 }

@@ -3,7 +3,7 @@
 
 use super::folder::write_text;
 use super::machine::Machine;
-use super::names::{number, stage};
+use super::names::number;
 use super::page::Page;
 use super::stats;
 use super::suite::{Extent, views};
@@ -274,7 +274,7 @@ fn table(lines: &[Line]) -> Table {
     let record = |line: &Line| {
         vec![
             line.scene.clone(),
-            stage(line.stage).to_owned(),
+            line.stage.name().to_owned(),
             line.way.name(),
             number(line.flip, 3),
             number(gain(lines, line), 3),
@@ -301,7 +301,7 @@ fn means(lines: &[Line]) -> Table {
             };
             if !at.is_empty() {
                 records.push(vec![
-                    stage(of).to_owned(),
+                    of.name().to_owned(),
                     way.name(),
                     mean(&|l| l.flip),
                     mean(&|l| gain(lines, l)),
@@ -333,7 +333,7 @@ pub fn write(
 ) -> Result<()> {
     write_text(&folder.join("antialiasing.csv"), &table(lines).csv())?;
     for sheet in sheets {
-        let name = format!("antialiasing-{}-{}.png", sheet.scene, stage(sheet.stage));
+        let name = format!("antialiasing-{}-{}.png", sheet.scene, sheet.stage.name());
         write_png(&sheet.frame, folder.join(name))?;
     }
     let mut page = Page::new("revmap: anti-aliasing");

@@ -11,7 +11,7 @@ use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::{keep_figure, write_text};
 use super::machine::Machine;
 use super::measure::{Measured, RenderedCase};
-use super::names::{number, stage};
+use super::names::number;
 use super::page::Page;
 use super::plan::{Case, Plan, is_rbm_baseline, rbm_baseline};
 use super::ratios;
@@ -150,7 +150,7 @@ fn table(lines: &[Line]) -> Table {
         });
         vec![
             line.row.scene.clone(),
-            stage(settings.stage).to_owned(),
+            settings.stage.name().to_owned(),
             name(settings),
             error(&|e| number(e.p999, 3)),
             error(&|e| number(e.contour_max, 3)),
@@ -187,7 +187,7 @@ fn means(lines: &[Line]) -> Table {
                 .fold(0.0, f64::max);
             if !at.is_empty() {
                 records.push(vec![
-                    stage(stage_of).to_owned(),
+                    stage_of.name().to_owned(),
                     number(pixels, 3),
                     number(worst, 3),
                     mean(&|l| l.exact),
@@ -280,7 +280,7 @@ pub fn write(
         if times.is_empty() {
             continue;
         }
-        page.chapter(&format!("The {} stage", stage(of)));
+        page.chapter(&format!("The {} stage", of.name()));
         let limit = Guide {
             name: "the tolerance".into(),
             points: TOLERANCES.map(|t| (t, t)).to_vec(),
@@ -305,9 +305,9 @@ pub fn write(
                 "Measured errors: of the depth along the ray over the size of a pixel there, and of contours that have moved.",
             ),
         ] {
-            let title = format!("{} by tolerance, {} stage", capital(what), stage(of));
+            let title = format!("{} by tolerance, {} stage", capital(what), of.name());
             let figure = chart(title, label, series, guides);
-            keep_figure(folder, &format!("budget-{what}-{}", stage(of)), &figure)?;
+            keep_figure(folder, &format!("budget-{what}-{}", of.name()), &figure)?;
             page.figure(&figure, caption);
         }
     }

@@ -5,7 +5,7 @@ use super::folder::excluded;
 use super::glossary;
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{number, stage};
+use super::names::number;
 use super::page::Page;
 use super::picture_groups;
 use super::pictures::{Album, heat_key};
@@ -91,7 +91,7 @@ pub(super) fn row_table(page: &mut Page, rows: &[Row], styles: &SeriesStyles) {
         vec![
             r.scene.clone(),
             styles.way(s),
-            stage(s.stage).to_owned(),
+            s.stage.name().to_owned(),
             format!("{}x{}", s.width, s.height),
         ]
     };

@@ -10,7 +10,7 @@ use super::chapters;
 use super::folder::write_text;
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{number, percent, stage};
+use super::names::{number, percent};
 use super::page::Page;
 use super::plan::Plan;
 use super::ratios;
@@ -120,7 +120,7 @@ fn table(rows: &[Row]) -> Table {
             row.scene.clone(),
             row.solids.to_string(),
             row.settings.method.to_string(),
-            stage(row.settings.stage).to_owned(),
+            row.settings.stage.name().to_owned(),
             if row.settings.method.follows_tolerance() {
                 tolerance.to_string()
             } else {
@@ -161,7 +161,7 @@ fn flown(flights: &[Flight]) -> Table {
     let record = |flight: &Flight| {
         let ([median, slowest], [p999, contour]) = (flight.frame_ms(), flight.worst());
         vec![
-            stage(flight.settings.stage).to_owned(),
+            flight.settings.stage.name().to_owned(),
             flight.times.len().to_string(),
             number(median, 3),
             number(slowest, 3),
@@ -194,7 +194,7 @@ pub fn write(
 ) -> Result<()> {
     write_text(&folder.join("crowds.csv"), &table(&measured.rows).csv())?;
     for flight in flights {
-        let name = format!("flight-{}.csv", stage(flight.settings.stage));
+        let name = format!("flight-{}.csv", flight.settings.stage.name());
         write_text(&folder.join(name), &flight.table().csv())?;
     }
     let mut page = Page::new("revmap: crowds");

@@ -14,7 +14,6 @@ use super::chart::front::{WORTH, front, stairs};
 use super::chart::style::Style;
 use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::map_error::MapError;
-use super::names;
 use super::plan::{RBM_BASELINE, is_rbm_baseline};
 use super::ratios::Ratio;
 use super::row::Row;
@@ -133,7 +132,7 @@ pub fn maps(title: &str, rows: &[&Row], measure: Measure) -> Figure {
             spread: time.ends(),
             label: Some(format!("{} {count}", s.method.name())),
         };
-        let (name, style) = (names::source(source), of_source(source));
+        let (name, style) = (source.name(), of_source(source));
         add(&mut series, name, style, false, point);
     }
     against_time(
@@ -241,7 +240,7 @@ pub fn resolution(
             continue;
         };
         if let Some(y) = measure.of(row) {
-            let name = format!("{}, drawn", names::source(source));
+            let name = format!("{}, drawn", source.name());
             point(&name, of_source(source), count, y);
         }
     }
@@ -256,7 +255,7 @@ pub fn resolution(
                 filled: false,
                 ..of_source(error.source)
             };
-            let name = format!("{}, the map alone", names::source(error.source));
+            let name = format!("{}, the map alone", error.source.name());
             point(&name, style, error.rows, y);
         }
     }

@@ -14,8 +14,7 @@ use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use super::table::Table;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Picture;
-use revmap::frame::atomic_file::write_atomically;
-use std::io::Write;
+use revmap::frame::atomic_file;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
@@ -141,14 +140,7 @@ pub fn write_text(file: &Path, text: &str) -> Result<()> {
 /// # Errors
 /// [`Stage::Report`], naming the file.
 pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
-    write_atomically(Stage::Report, file, |writer| {
-        writer.write_all(bytes).map_err(|e| {
-            Error::new(
-                Stage::Report,
-                format!("cannot be written ({e}); free some space"),
-            )
-        })
-    })
+    atomic_file::write_bytes(Stage::Report, file, bytes)
 }
 
 /// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
@@ -204,7 +196,7 @@ pub fn raw(rows: &[Row]) -> Table {
                 table.records.push(vec![
                     (number + 1).to_string(),
                     row.scene.clone(),
-                    names::stage(row.settings.stage).into(),
+                    row.settings.stage.name().into(),
                     row.settings.method.to_string(),
                     (pass + 1).to_string(),
                     (round + 1).to_string(),
@@ -230,7 +222,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
             table.records.push(vec![
                 (number + 1).to_string(),
                 row.scene.clone(),
-                names::stage(row.settings.stage).into(),
+                row.settings.stage.name().into(),
                 row.settings.method.to_string(),
                 format!(
                     "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
@@ -248,7 +240,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
                 .get(case.view)
                 .map(|v| v.name.clone())
                 .unwrap_or_default(),
-            names::stage(case.settings.stage).into(),
+            case.settings.stage.name().into(),
             case.settings.method.to_string(),
             reason.clone(),
         ]);

@@ -1,36 +1,4 @@
-//! Names of settings, numbers and files, as options and results have them.
-
-use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::DrawStage;
-
-/// The name of a stage.
-#[must_use]
-pub fn stage(stage: DrawStage) -> &'static str {
-    match stage {
-        DrawStage::Fragment => "fragment",
-        DrawStage::Compute => "compute",
-    }
-}
-
-/// The name of a source of distances.
-#[must_use]
-pub fn source(source: MapSource) -> &'static str {
-    match source {
-        MapSource::Binary => "binary",
-        MapSource::Coverage => "coverage",
-        MapSource::Exact => "exact",
-    }
-}
-
-/// The name of a format of maps.
-#[must_use]
-pub fn format(format: MapFormat) -> &'static str {
-    match format {
-        MapFormat::Rgba8 => "rgba8",
-        MapFormat::R16 => "r16",
-        MapFormat::R32 => "r32",
-    }
-}
+//! Numbers and names of files, as results have them.
 
 /// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
 #[must_use]

@@ -10,7 +10,7 @@ use super::curves::Measure;
 use super::folder::{keep_figure, write_text};
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{safe, stage};
+use super::names::safe;
 use super::page::Page;
 use super::picture_groups::pictures_of;
 use super::pictures::Album;
@@ -35,7 +35,7 @@ pub fn time_chart(rows: &[&Row], styles: &SeriesStyles) -> Figure {
             row.scene,
             s.width,
             s.height,
-            stage(s.stage)
+            s.stage.name()
         );
         let line = Line {
             name: styles.way(s),

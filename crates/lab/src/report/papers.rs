@@ -10,7 +10,7 @@ use super::chapters;
 use super::folder::{keep_figure, write_text};
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{number, stage};
+use super::names::number;
 use super::page::Page;
 use super::pictures::Album;
 use super::plan::{Plan, variant};
@@ -187,7 +187,7 @@ fn measured_table(rows: &[Row], index: usize, styles: &SeriesStyles) -> Table {
             let mut record = vec![
                 format!("{}x{}", size.0, size.1),
                 styles.way(&line.way),
-                stage(line.way.stage).to_owned(),
+                line.way.stage.name().to_owned(),
             ];
             record.extend(
                 line.rows

@@ -1,6 +1,5 @@
 //! What is to be measured: views, settings, and which of them are measured against each other.
 
-use super::names;
 use super::view::View;
 use crate::floor;
 use crate::method::{Method, MethodSettings};
@@ -332,10 +331,10 @@ impl Labels {
             name += &format!(" {rows} rows");
         }
         if let (true, Some(source)) = (self.source, s.map_source) {
-            name += &format!(" {}", names::source(source));
+            name += &format!(" {}", source.name());
         }
         if self.format {
-            name += &format!(" {}", names::format(s.map_format));
+            name += &format!(" {}", s.map_format.name());
         }
         if self.tolerance && s.method.follows_tolerance() {
             name += &format!(" {} px", s.tolerance);

@@ -1,6 +1,6 @@
 //! One measurement with all that was found out about it, as a line of `results.csv`.
 
-use super::names::{self, number};
+use super::names::number;
 use super::plan::Case;
 use super::stats::{self, Interval};
 use super::view::Framing;
@@ -290,14 +290,14 @@ impl Row {
             offset(|o| o.extend),
             offset(|o| o.bevel),
             offset(|o| o.chamfer),
-            names::stage(s.stage).into(),
+            s.stage.name().into(),
             s.method.to_string(),
             search(self.max_steps().to_string()),
             s.width.to_string(),
             s.height.to_string(),
             self.map_rows.map(|r| r.to_string()).unwrap_or_default(),
-            self.source.map(names::source).unwrap_or_default().into(),
-            search(names::format(s.map_format).into()),
+            self.source.map(MapSource::name).unwrap_or_default().into(),
+            search(s.map_format.name().into()),
             whole(self.solids),
             num(time.map(|t| t.value)),
             num(stats::quantile(&gpu, 0.95)),

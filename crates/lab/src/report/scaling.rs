@@ -15,7 +15,7 @@ use super::chart::xy::{Guide, Point, Series, XyChart};
 use super::folder::{keep_figure, write_text};
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{number, stage};
+use super::names::number;
 use super::page::Page;
 use super::plan::{Plan, variant};
 use super::row::Row;
@@ -73,7 +73,7 @@ fn table(all: &[Growth], styles: &SeriesStyles) -> Table {
         let ends = |k: Option<&(f64, f64)>| k.map(|p| number(p.1, 3)).unwrap_or_default();
         vec![
             styles.way(&g.way),
-            stage(g.way.stage).to_owned(),
+            g.way.stage.name().to_owned(),
             ends(g.points.first()),
             ends(g.points.last()),
             g.exponent

@@ -3,7 +3,6 @@
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::chart::xy::Guide;
-use super::names::stage;
 use super::plan::{Labels, is_rbm_baseline, variant};
 use super::row::Row;
 use crate::method::{Method, MethodSettings};
@@ -62,7 +61,7 @@ pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
         dash,
         // Over every axis of errors.
         ..Guide::dashed(
-            &format!("floor, {}", stage(s.stage)),
+            &format!("floor, {}", s.stage.name()),
             vec![(time, 1e-12), (time, 1e12)],
         )
     }
@@ -137,7 +136,7 @@ impl SeriesStyles {
     /// The name of a way and its stage.
     #[must_use]
     pub fn name(&self, s: &MethodSettings) -> String {
-        format!("{}, {}", self.labels.way(s), stage(s.stage))
+        format!("{}, {}", self.labels.way(s), s.stage.name())
     }
 
     /// How it looks.

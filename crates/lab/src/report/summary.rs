@@ -6,7 +6,6 @@ use super::chart::axis::Axis;
 use super::chart::dots::{Block, DotChart, Line};
 use super::curves::{self, Measure};
 use super::folder::keep_figure;
-use super::names::stage;
 use super::page::Page;
 use super::picture_groups::{Part, parts};
 use super::ratios::{Ratio, over_rbm_baseline};
@@ -92,7 +91,7 @@ pub fn ratio_chart(views: &str, ratios: &[Ratio], styles: &SeriesStyles) -> Figu
             .collect();
         if !lines.is_empty() {
             blocks.push(Block {
-                name: format!("{} stage", stage(which)),
+                name: format!("{} stage", which.name()),
                 lines,
             });
         }

@@ -1,6 +1,6 @@
 //! The tables that sum a run up, and what their fields look like.
 
-use super::names::{number, percent, stage};
+use super::names::{number, percent};
 use super::picture_groups::{parts, pictures};
 use super::plan::{Labels, RBM_BASELINE};
 use super::ratios::{Duel, Ratio, over_meshes, over_rbm_baseline};
@@ -45,7 +45,7 @@ pub fn ratio_table(ratios: &[Ratio], labels: &Labels) -> Table {
     let record = |r: &Ratio| {
         vec![
             labels.way(&r.settings),
-            stage(r.settings.stage).to_owned(),
+            r.settings.stage.name().to_owned(),
             number(r.time.value, 3),
             ends(&r.time),
             range(r.range),
@@ -113,7 +113,7 @@ pub fn against_meshes(rows: &[Row]) -> Table {
             .map_or("coarsest as accurate".into(), |m| m.to_string());
         vec![
             format!("{} / {mesh}", ours.settings.method),
-            stage(ours.settings.stage).to_owned(),
+            ours.settings.stage.name().to_owned(),
             number(ours.time.value, 3),
             ends(&ours.time),
             range(ours.range),

@@ -10,7 +10,7 @@ use crate::report::chart::xy::{Guide, Point, Series, XyChart};
 use crate::report::folder::png;
 use crate::report::folder::{keep_figure, make, write_bytes, write_text};
 use crate::report::machine::Machine;
-use crate::report::names::{number, stage};
+use crate::report::names::number;
 use crate::report::page::Page;
 use crate::report::pictures::Shot;
 use crate::report::series_style;
@@ -126,7 +126,7 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
             "{} at {}, {}: {what}",
             case.name,
             number(case.steps[t.step].value, 6),
-            stage(t.stage)
+            t.stage.name()
         )
     };
     outcome.trials.iter().filter(told).map(line).collect()
@@ -167,7 +167,7 @@ pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
             case.parameter.to_owned(),
             number(case.steps[trial.step].value, 6),
             trial.solver.name().to_owned(),
-            stage(trial.stage).to_owned(),
+            trial.stage.name().to_owned(),
             trial.verdict.name().to_owned(),
         ];
         let optional = |v: Option<f64>| v.map(|v| number(v, 5)).unwrap_or_default();
@@ -268,7 +268,7 @@ fn told(glance: &Glance) -> String {
     };
     format!(
         "{solver}, {}, at {}{nothing}",
-        stage(each),
+        each.name(),
         number(glance.value, 6)
     )
 }
@@ -281,7 +281,7 @@ fn shots(sheet: &Sheet) -> Result<Vec<Shot>> {
         shot(
             sheet.case,
             drawn,
-            format!("{default}, {}", stage(sheet.stage)),
+            format!("{default}, {}", sheet.stage.name()),
         )?,
         shot(sheet.case, heat, format!("{default}: difference"))?,
     ];

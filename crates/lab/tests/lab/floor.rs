@@ -1,6 +1,6 @@
 //! The floor: no search can return less. All under the validation layers.
 
-use crate::mesh::{eye, scene_of};
+use crate::scenes::{eye, scene_of};
 use crate::shapes;
 use revmap::error::Stage;
 use revmap::frame::Frame;

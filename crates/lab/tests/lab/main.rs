@@ -17,6 +17,9 @@ mod mesh_shading;
 #[cfg(feature = "report")]
 mod planted_faults;
 #[cfg(feature = "mesh")]
+#[path = "../../../../tests/common/scenes.rs"]
+mod scenes;
+#[cfg(feature = "mesh")]
 #[path = "../../../../tests/common/shapes.rs"]
 #[allow(dead_code)]
 mod shapes;

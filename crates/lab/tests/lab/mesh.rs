@@ -2,22 +2,23 @@
 //! the renderer shades, and that what it does not draw is refused. All under the validation layers.
 
 use crate::mesh_shading::wrong_planes;
+use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
-use glam::{DQuat, DVec3, EulerRot};
+use glam::DVec3;
 use revmap::error::Stage;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{ColorMap, DisplacementMap, Projection};
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_lab::compare::{CompareOptions, Comparison, compare};
+use revmap_lab::compare::Comparison;
 use revmap_lab::mesh::{MeshOffscreen, MeshPipelines};
 use revmap_lab::method::{Method, MethodSettings};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-pub const TEXEL: f64 = 1.0 / 512.0;
+/// Depths are said in texels of a map of so many.
+pub const ROWS: u32 = 512;
 
 /// The device of these tests, and its pipelines. Without a device or without the layers, tests
 /// fail.
@@ -62,39 +63,6 @@ pub fn reference(scene: &Scene, settings: &MethodSettings) -> Frame {
     revmap_reference::draw(scene, &settings.into(), &|_, _| {}).unwrap()
 }
 
-/// One object of a polygon under two lights, seen from `eye`.
-pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
-    let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
-    scene.lights.push(Light {
-        direction: DVec3::new(0.7, 0.5, -0.2),
-        color: [0.3, 0.3, 0.4],
-    });
-    scene.objects.push(Object::new("test", Arc::new(profile)));
-    scene
-}
-
-/// An eye at `distance` from the middle of a box of height 1, `elevation` degrees up.
-pub fn eye(elevation: f64, distance: f64) -> DVec3 {
-    let (s, c) = elevation.to_radians().sin_cos();
-    DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
-}
-
-pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
-    Placement {
-        position: position.into(),
-        rotation: DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], euler[2]),
-        scale: scale.into(),
-    }
-}
-
-pub fn errors(truth: &Frame, frame: &Frame) -> Comparison {
-    let options = CompareOptions {
-        texel: TEXEL,
-        pixels_per_degree: None,
-    };
-    compare(truth, frame, &options).unwrap()
-}
-
 const PLAIN: Offset = Offset {
     extend: 0.0,
     bevel: 0.0,
@@ -121,7 +89,7 @@ fn errors_fall_with_the_square_of_the_steps() {
             scene.objects[0].offset = offset;
             let truth = reference(&scene, &settings(3, 2));
             let found: Vec<Comparison> = [16, 32, 64, 128, 256]
-                .map(|n| errors(&truth, &draw(&scene, &settings(n, 2 * n))))
+                .map(|n| errors(&truth, &draw(&scene, &settings(n, 2 * n)), ROWS))
                 .to_vec();
             let p99 = |c: &Comparison| c.depth.unwrap().p99;
             let said: Vec<_> = found
@@ -175,7 +143,7 @@ fn eyes_may_be_inside() {
         scene.camera.fov_y = 70.0;
         let settings = settings(256, 512);
         let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
-        let found = errors(&truth, &frame);
+        let found = errors(&truth, &frame, ROWS);
         assert!(found.hits > 10_000 && found.wrong() < 2e-3, "{n}: {found}");
         assert!(found.normal.unwrap().rms < 5.0, "{n}: {found}");
         assert!(found.depth.unwrap().p99 < 0.1, "{n}: {found}");
@@ -247,7 +215,7 @@ fn several_solids_hide_each_other() {
     let scene = crowd();
     let settings = settings(128, 256);
     let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
-    let found = errors(&truth, &frame);
+    let found = errors(&truth, &frame, ROWS);
     assert!(found.hits > 8000 && found.wrong() < 3e-3, "{found}");
     assert!(found.depth.unwrap().p99 < 0.3, "{found}");
     let wrong = wrong_planes(&truth, &frame);
@@ -369,7 +337,11 @@ fn an_axis_may_stand_off_the_middle() {
     let mut scene = scene_of(shapes::vase(), eye(30.0, 2.0));
     scene.objects[0].axis = [0.6, 0.45];
     let settings = settings(128, 256);
-    let found = errors(&reference(&scene, &settings), &draw(&scene, &settings));
+    let found = errors(
+        &reference(&scene, &settings),
+        &draw(&scene, &settings),
+        ROWS,
+    );
     assert!(
         found.wrong() < 2e-3 && found.depth.unwrap().p99 < 0.3,
         "{found}"

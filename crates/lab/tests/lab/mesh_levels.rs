@@ -1,7 +1,8 @@
 //! Levels of detail of the mesh baseline: each copy is drawn by the mesh that its height on the
 //! screen asks for, and copies beside the picture are left out without a trace.
 
-use super::mesh::{draw, eye, placement, scene_of, settings};
+use super::mesh::{draw, settings};
+use super::scenes::{eye, placement, scene_of};
 use crate::shapes;
 use revmap::frame::Frame;
 use revmap::scene::Scene;

@@ -48,7 +48,6 @@ fn kept_spirv_was_made_from_these_sources() {
 #[cfg(feature = "shaderc")]
 mod compiled {
     use super::{ENTRIES, folder, hash, kept_hashes, sources_hash};
-    use shaderc_link as shaderc;
 
     /// Versions of shaderc that share a generator's number differ in what they make of this.
     const PROBE: &str = "#version 450
@@ -64,25 +63,14 @@ mod compiled {
         }";
 
     fn compile(text: &str, name: &str) -> Vec<u8> {
-        let mut options = shaderc::CompileOptions::new().unwrap();
-        let version = shaderc::EnvVersion::Vulkan1_2 as u32;
-        options.set_target_env(shaderc::TargetEnv::Vulkan, version);
-        options.set_optimization_level(shaderc::OptimizationLevel::Zero);
-        options.set_warnings_as_errors();
-        options.set_include_callback(|wanted, _, _, _| {
+        let include = |wanted: &str| {
             let content = std::fs::read_to_string(folder().join(wanted));
-            Ok(shaderc::ResolvedInclude {
-                resolved_name: wanted.to_owned(),
-                content: content.map_err(|e| format!("{wanted}: {e}"))?,
-            })
-        });
-        let kind = if name.ends_with(".vert") {
-            shaderc::ShaderKind::Vertex
-        } else {
-            shaderc::ShaderKind::Fragment
+            let content = content.map_err(|e| format!("{wanted}: {e}"))?;
+            Ok((wanted.to_owned(), content))
         };
-        let compiler = shaderc::Compiler::new().unwrap();
-        let made = compiler.compile_into_spirv(text, kind, name, "main", Some(&options));
+        let compiler = shaderc_link::Compiler::new().unwrap();
+        let level = shaderc_link::OptimizationLevel::Zero;
+        let made = shaderc_link::spirv(&compiler, (name, text), &[], level, include);
         made.unwrap_or_else(|e| panic!("{e}"))
             .as_binary_u8()
             .to_vec()

@@ -1,8 +1,7 @@
 //! The planes and colours of the mesh baseline are those of the reference and of the renderer.
 
-use crate::mesh::{
-    BEVELED, TEXEL, draw, errors, eye, placement, reference, scene_of, searched, settings,
-};
+use crate::mesh::{BEVELED, ROWS, draw, reference, searched, settings};
+use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
 use revmap::frame::Frame;
 use revmap::maps::Projection;
@@ -154,7 +153,7 @@ fn planted_faults_are_found() {
         *n = n.map(|v| -v);
     }
     assert_eq!(wrong_planes(&truth, &turned), ["normal"]);
-    assert!(errors(&truth, &turned).normal.unwrap().rms > 170.0);
+    assert!(errors(&truth, &turned, ROWS).normal.unwrap().rms > 170.0);
 
     // Every seventh pixel too deep, as where a far face covers a near one.
     let mut behind = good.clone();
@@ -165,10 +164,12 @@ fn planted_faults_are_found() {
 
     // One ring of the glass a texel too wide.
     let mut points = shapes::GLASS;
-    points[6][0] += TEXEL;
+    points[6][0] += 1.0 / f64::from(ROWS);
     let bent = Profile::polygon(&points, 0.5).unwrap();
     scene.objects[0].profile = Arc::new(bent);
-    let bent = errors(&truth, &draw(&scene, &settings)).depth.unwrap();
-    let straight = errors(&truth, &good).depth.unwrap();
+    let bent = errors(&truth, &draw(&scene, &settings), ROWS)
+        .depth
+        .unwrap();
+    let straight = errors(&truth, &good, ROWS).depth.unwrap();
     assert!(bent.p99 > 10.0 * straight.p99, "{bent:?} {straight:?}");
 }

@@ -9,7 +9,7 @@ use revmap_lab::report::curves::{self, Measure};
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::plan::is_rbm_baseline;
-use revmap_lab::report::ratios::over_rbm_baseline;
+use revmap_lab::report::ratios::{Ratio, over_rbm_baseline};
 use revmap_lab::report::row::{Clocks, Row};
 use std::sync::atomic::AtomicBool;
 
@@ -17,6 +17,12 @@ fn of(rows: &[Row], method: Method) -> Vec<&Row> {
     rows.iter()
         .filter(|r| r.settings.method == method && !is_rbm_baseline(&r.settings))
         .collect()
+}
+
+/// The live search over the RBM baseline.
+fn live(rows: &[Row]) -> Ratio {
+    let mut ratios = over_rbm_baseline(rows).into_iter();
+    ratios.find(|r| r.settings.method == Solver::Live).unwrap()
 }
 
 /// Places of (time, error) on a chart and which of them are on the front, of the first view.
@@ -48,11 +54,7 @@ fn without_a_fault_all_is_as_it_was_planted() {
         ),
         (6, 0, false)
     );
-    let ratios = over_rbm_baseline(&outcome.rows);
-    let live = ratios
-        .iter()
-        .find(|r| r.settings.method == Solver::Live)
-        .unwrap();
+    let live = live(&outcome.rows);
     assert!(
         (live.time.value - 0.5).abs() < 0.03 && live.pictures == 2,
         "{live:?}"
@@ -64,11 +66,7 @@ fn without_a_fault_all_is_as_it_was_planted() {
 #[test]
 fn a_search_that_sleeps_is_charted_slower() {
     let outcome = measured(Fault::Sleeps);
-    let ratios = over_rbm_baseline(&outcome.rows);
-    let live = ratios
-        .iter()
-        .find(|r| r.settings.method == Solver::Live)
-        .unwrap();
+    let live = live(&outcome.rows);
     assert!(
         (live.time.value - 1.5).abs() < 0.08 && live.time.low > 1.0,
         "{:?}",

@@ -57,13 +57,7 @@ impl Analytic {
         let mut parts = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let solid = Solid::new(object).map_err(|e| e.at_key(format!("object.{index}")))?;
-            let own = [object.placement];
-            let placements = if object.instances.is_empty() {
-                &own[..]
-            } else {
-                &object.instances
-            };
-            for (instance, p) in placements.iter().enumerate() {
+            for (instance, p) in object.placements().iter().enumerate() {
                 let world =
                     DAffine3::from_scale_rotation_translation(p.scale, p.rotation, p.position);
                 parts.push(Part {

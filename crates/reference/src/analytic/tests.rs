@@ -1,24 +1,14 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 //! The two methods against each other, on random solids and random rays.
 
+use super::super::random::Random;
 use super::super::{Reference, samples, tests};
 use super::*;
 use glam::DQuat;
 use proptest::prelude::*;
 use revmap::scene::Placement;
 
-/// Numbers in `[0, 1)` by SplitMix64.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
+impl Random {
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.next()
     }
@@ -28,7 +18,7 @@ impl Dice {
     }
 }
 
-fn random_scene(dice: &mut Dice, offset: Offset) -> Scene {
+fn random_scene(dice: &mut Random, offset: Offset) -> Scene {
     let mut o = tests::object(
         samples::random((dice.next() * 1e9) as u64),
         dice.between(0.3, 0.6),
@@ -52,7 +42,7 @@ fn random_scene(dice: &mut Dice, offset: Offset) -> Scene {
 }
 
 /// A ray that mostly meets the box: from afar, from near, from within; sometimes along an axis.
-fn random_ray(dice: &mut Dice, scene: &Scene) -> Ray {
+fn random_ray(dice: &mut Random, scene: &Scene) -> Ray {
     let p = &scene.objects[0].placement;
     let world = DAffine3::from_scale_rotation_translation(p.scale, p.rotation, p.position);
     let aim = DVec3::new(
@@ -92,7 +82,7 @@ fn agree(
     offset: Offset,
     tally: &mut Tally,
 ) -> std::result::Result<(), TestCaseError> {
-    let mut dice = Dice(seed);
+    let mut dice = Random(seed);
     let scene = random_scene(&mut dice, offset);
     let (one, two) = (
         Analytic::new(&scene).unwrap(),

@@ -3,13 +3,12 @@
 #![allow(clippy::unwrap_used)] // a test may stop at what it did not expect
 
 use super::*;
-use revmap::gpu::{HostDevice, Offscreen, Requirements};
+use revmap::gpu::Offscreen;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Settings};
 
-#[path = "../../../../../examples/engine/host/mod.rs"]
-#[allow(dead_code, unused_imports)]
+#[path = "../../../../../tests/common/host.rs"]
 mod host;
 
 fn sources() -> Sources {
@@ -69,16 +68,7 @@ fn a_changed_file_has_another_stamp() {
 
 /// Colours of a spindle on a device with these shaders, in both stages.
 fn drawn(host: &host::Host, shaders: Option<ShaderSource>) -> Result<Vec<[f32; 4]>> {
-    let lent = HostDevice {
-        instance: &host.instance,
-        physical: host.physical,
-        device: &host.device,
-        queue_family: host.family,
-        queue: Some(host.queue),
-        features: host.features,
-        allocator: None,
-        pipeline_cache: None,
-    };
+    let lent = host::lent(host);
     // SAFETY: the host's own handles, which outlive this call; the shaders are the library's, but
     // for a tint.
     let device = unsafe {
@@ -109,12 +99,7 @@ fn drawn(host: &host::Host, shaders: Option<ShaderSource>) -> Result<Vec<[f32; 4
 
 #[test]
 fn a_changed_shader_is_drawn_with() {
-    let host = host::Host::open(true, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })
-    .unwrap();
+    let host = host::open();
     let built_in = drawn(&host, None).unwrap();
     let same = sources().compiled(Arc::default()).unwrap();
     assert_eq!(drawn(&host, Some(same)).unwrap(), built_in);

@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use revmap::frame::linear_from_srgb;
 
 const SIZE: (u32, u32) = (64, 48);
 
@@ -35,14 +36,8 @@ fn picture(kind: u32) -> Frame {
     let mut frame = Frame::new(SIZE.0, SIZE.1, [0.0; 4]).unwrap();
     for (k, c) in frame.color.iter_mut().enumerate() {
         let k = k as u32;
-        let linear = code(kind, k % SIZE.0, k / SIZE.0).map(|v| {
-            let v = f64::from(v) / 255.0;
-            (if v <= 0.04045 {
-                v / 12.92
-            } else {
-                ((v + 0.055) / 1.055).powf(2.4)
-            }) as f32
-        });
+        let linear = code(kind, k % SIZE.0, k / SIZE.0)
+            .map(|v| linear_from_srgb(f64::from(v) / 255.0) as f32);
         *c = [linear[0], linear[1], linear[2], 1.0];
     }
     frame

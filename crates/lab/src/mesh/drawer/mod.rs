@@ -2,7 +2,6 @@
 //! `unsafe`.
 #![allow(unsafe_code)]
 
-mod memory;
 mod pipelines;
 
 pub use pipelines::MeshPipelines;
@@ -12,10 +11,9 @@ use super::placed::PlacedMesh;
 use super::tessellation::Mesh;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use memory::Buffer;
 use pipelines::PipelineKey;
 use revmap::error::{Error, Result, Stage};
-use revmap::gpu::{Device, Guest};
+use revmap::gpu::{Buffer, Device, Guest};
 use revmap::settings::Planes;
 use std::ops::Range;
 use std::sync::Arc;
@@ -48,8 +46,7 @@ impl MeshDrawer {
         let mut drawer = Self {
             objects: Vec::new(),
             meshes: Vec::new(),
-            frame: Buffer::new(
-                device,
+            frame: device.buffer(
                 "mesh frame",
                 size_of::<FrameBlock>() as u64,
                 vk::BufferUsageFlags::UNIFORM_BUFFER,
@@ -131,13 +128,13 @@ impl MeshDrawer {
         let bytes: &[u8] = bytemuck::cast_slice(&instances);
         if bytes.len() as u64 > self.instances.bytes {
             let mut larger = instance_buffer(&device, instances.len())?;
-            larger.write(bytes)?;
+            write(&mut larger, bytes)?;
             self.instances = larger;
             self.write_set();
         } else {
-            self.instances.write(bytes)?;
+            write(&mut self.instances, bytes)?;
         }
-        self.frame.write(bytemuck::bytes_of(frame))?;
+        write(&mut self.frame, bytemuck::bytes_of(frame))?;
         self.meshes.append(&mut new);
         self.objects = objects;
         self.drop_unused();
@@ -292,7 +289,7 @@ impl DeviceMesh {
         let local = |name, bytes: &[u8], usage| {
             let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
             let bytes = bytes.len().next_multiple_of(16) as u64;
-            Buffer::new(device, name, bytes, usage, MemoryLocation::GpuOnly)
+            device.buffer(name, bytes, usage, MemoryLocation::GpuOnly)
         };
         let vertex_buffer = local(
             "mesh vertices",
@@ -303,14 +300,13 @@ impl DeviceMesh {
         let mut both = vertices.to_vec();
         both.resize(vertex_buffer.bytes as usize, 0);
         both.extend(indices);
-        let mut staging = Buffer::new(
-            device,
+        let mut staging = device.buffer(
             "mesh staging",
             vertex_buffer.bytes + index_buffer.bytes,
             vk::BufferUsageFlags::TRANSFER_SRC,
             MemoryLocation::CpuToGpu,
         )?;
-        staging.write(&both)?;
+        write(&mut staging, &both)?;
         Ok(Self {
             count: mesh.indices.len() as u32,
             kind,
@@ -323,13 +319,18 @@ impl DeviceMesh {
 }
 
 fn instance_buffer(device: &Device, count: usize) -> Result<Buffer> {
-    Buffer::new(
-        device,
+    device.buffer(
         "mesh instances",
         (count * size_of::<InstanceBlock>()) as u64,
         vk::BufferUsageFlags::STORAGE_BUFFER,
         MemoryLocation::CpuToGpu,
     )
+}
+
+/// Writes to the beginning of a buffer in host memory.
+fn write(buffer: &mut Buffer, bytes: &[u8]) -> Result<()> {
+    buffer.mapped()?[..bytes.len()].copy_from_slice(bytes);
+    Ok(())
 }
 
 /// A failed Vulkan call.

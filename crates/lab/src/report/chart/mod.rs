@@ -31,6 +31,17 @@ pub enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// How far before its point a word of this length begins.
+    fn back(self, length: f64) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5 * length,
+            Self::End => length,
+        }
+    }
+}
+
 /// A part of a figure; coordinates count from the upper left corner, in CSS pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
@@ -112,11 +123,7 @@ impl Mark {
                 ..
             } => {
                 let length = width(text, *size);
-                let back = match anchor {
-                    Anchor::Start => 0.0,
-                    Anchor::Middle => length / 2.0,
-                    Anchor::End => length,
-                };
+                let back = anchor.back(length);
                 let (up, down) = (0.76 * size, 0.24 * size);
                 if *upwards {
                     [at.0 - up, at.1 + back - length, at.0 + down, at.1 + back]

@@ -3,7 +3,7 @@
 
 use super::letters::{Stroke, outline, width};
 use super::style::Dash;
-use super::{Anchor, Figure, Mark};
+use super::{Figure, Mark};
 use pdf_writer::types::LineJoinStyle;
 use pdf_writer::{Content, Finish, Pdf, Rect, Ref, TextStr};
 
@@ -78,11 +78,7 @@ fn draw(content: &mut Content, mark: &Mark) {
             color,
             upwards,
         } => {
-            let back = match anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => 0.5,
-                Anchor::End => 1.0,
-            } * width(text, *size);
+            let back = anchor.back(width(text, *size));
             let place = |x: f64, y: f64| {
                 let (x, y) = (x - back, y);
                 let (x, y) = if *upwards { (y, -x) } else { (x, y) };
@@ -154,6 +150,7 @@ fn rgb(color: &str) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Anchor;
     use super::super::style::INK;
     use super::*;
 

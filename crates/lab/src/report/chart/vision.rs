@@ -2,6 +2,8 @@
 //! vision after Machado, Oliveira and Fernandes (2009, severity 1), distances in CIE Lab of 1976,
 //! contrast as WCAG 2 counts it.
 
+use revmap::frame::linear_from_srgb;
+
 /// Kinds of colour vision, as a matrix on linear RGB.
 #[derive(Clone, Copy)]
 pub struct Eyes {
@@ -53,11 +55,7 @@ impl Eyes {
 pub fn rgb(color: &str) -> [f64; 3] {
     [1, 3, 5].map(|at| {
         let part = f64::from(u8::from_str_radix(&color[at..at + 2], 16).unwrap_or(0)) / 255.0;
-        if part <= 0.040_45 {
-            part / 12.92
-        } else {
-            ((part + 0.055) / 1.055).powf(2.4)
-        }
+        linear_from_srgb(part)
     })
 }
 

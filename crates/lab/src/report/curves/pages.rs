@@ -8,7 +8,7 @@ use crate::report::folder::{keep_figure, write_text};
 use crate::report::machine::Machine;
 use crate::report::map_error::MapError;
 use crate::report::measure::Measured;
-use crate::report::names::{number, percent, safe, stage};
+use crate::report::names::{number, percent, safe};
 use crate::report::page::Page;
 use crate::report::picture_groups::{parts, pictures_of};
 use crate::report::pictures::Album;
@@ -186,7 +186,7 @@ fn fronts(rows: &[Row]) -> Table {
         .map(|(way, count, depth, wrong)| {
             vec![
                 labels.way(way),
-                stage(way.stage).to_owned(),
+                way.stage.name().to_owned(),
                 format!("{count} of {}", groups.len()),
                 number(*depth, 3),
                 percent(*wrong),
