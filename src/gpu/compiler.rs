@@ -198,6 +198,13 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
                 (_, true) => "tiles of 48 patches of several",
             }
         }
+        (Kind::Compute, Dispatch::Rectangle) if variant.tiled != 0 => {
+            if several {
+                "tiles with cuts of several"
+            } else {
+                "tiles with cuts"
+            }
+        }
         (Kind::Compute, Dispatch::Rectangle) if several => "rectangle of several",
         (Kind::Compute, Dispatch::Rectangle) => "rectangle",
         (Kind::Compute, Dispatch::Bins) => "bins",

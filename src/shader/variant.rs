@@ -254,7 +254,7 @@ impl Variant {
         let searched = matches!(self.search, Search::Quadric | Search::QuadricLarge)
             && matches!(self.dispatch, Dispatch::Rectangle | Dispatch::Bins);
         Self {
-            outside: u32::from(outside && searched && self.cells == 0),
+            outside: u32::from(outside && searched && self.cells == 0 && self.tiled == 0),
             ..self
         }
     }
