@@ -31,6 +31,12 @@ fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
     (row * 0x0101_0101_0101_0101) & rows
 }
 
+/// The bits of a square, `x` and `y` in squares, that a rectangle of pixels holds.
+fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
+    let inside = |pixel: u32, square: u32| pixel.clamp(square * SIDE, square * SIDE + 7) % SIDE;
+    block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
+}
+
 impl Cover {
     /// Of squares across the picture, in rows of squares from `first` to below `end`.
     pub fn new(across: u32, first: u32, end: u32) -> Self {
@@ -44,6 +50,17 @@ impl Cover {
             top: first * SIDE,
             bottom: end * SIDE,
         }
+    }
+
+    /// Whether some of these pixels may show what is not nearer than `near`.
+    pub fn is_open(&self, pixels: [u16; 4], near: f32) -> bool {
+        let [x0, y0, x1, y1] = pixels.map(u32::from);
+        let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));
+        let open = |x: u32, y: u32| {
+            let square = self.squares[((y - self.top / SIDE) * self.across + x) as usize];
+            near <= square.depth || within([x, y], [x0, y0, x1, y1]) & !square.covered != 0
+        };
+        (y0 / SIDE..=y1 / SIDE).any(|y| (x0 / SIDE..=x1 / SIDE).any(|x| open(x, y)))
     }
 
     /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
@@ -89,9 +106,7 @@ impl Cover {
                         all | block([left - x * SIDE, k, right - x * SIDE, k])
                     })
                 } else {
-                    let (left, right) =
-                        (x0.max(x * SIDE) - x * SIDE, x1.min(x * SIDE + 7) - x * SIDE);
-                    block([left, top, right, bottom])
+                    within([x, y], [x0, y0, x1, y1])
                 };
                 if near > square.depth {
                     bits &= !square.covered;

@@ -226,6 +226,10 @@ fn fill(
         }
         let number = item.batch as usize;
         let (batch, list) = (&batches[number], &mut listed[number]);
+        let near = f32::from_bits(item.near);
+        if !cover.is_open(item.pixels, near) {
+            continue;
+        }
         let before = list.len();
         let spread = || forms.spread(&batch.placements[item.copy as usize], batch.shape.axis);
         let known = batch.outer.filter(|_| item.near > 0).is_some_and(|outer| {
@@ -236,7 +240,6 @@ fn fill(
             outer.rows(&spread, margin, within, last - first, &mut rows)
         });
         let rows = known.then_some(&rows[..]);
-        let near = f32::from_bits(item.near);
         cover.open(item.pixels, rows, near, |square, pixels| {
             list.push(Listed {
                 square,
