@@ -311,10 +311,10 @@ impl Entry {
             low: if replicas { 0.0 } else { low },
             high: if replicas { 1.0 } else { high },
         };
-        let surface = prepared
+        let held = prepared
             .surface
             .as_ref()
-            .filter(|_| settings.occlusion_culling);
+            .filter(|s| settings.occlusion_culling && hulls::is_whole(object, s));
         let whole = prepared
             .surface
             .as_deref()
@@ -324,9 +324,8 @@ impl Entry {
             placements: object.placements(),
             first: self.instances.start,
             shape,
-            inner: surface
-                .filter(|s| hulls::is_whole(object, s))
-                .and_then(|s| s.inner()),
+            inner: held.and_then(|s| s.inner()),
+            outer: held.and_then(|s| s.outer()),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what
 //! is made of them for the GPU.
 
-use super::bins::Inner;
+use super::bins::{Inner, Outer};
 use super::outlined::Outlined;
 use super::proxy_hull::GpuProxyHull;
 use super::table_slot::{Part, Slot};
@@ -20,6 +20,7 @@ pub(crate) struct OffsetSurface {
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
     inner: OnceLock<Inner>,
+    outer: OnceLock<Outer>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -50,6 +51,7 @@ impl OffsetSurface {
             listed: OnceLock::new(),
             hull: OnceLock::new(),
             inner: OnceLock::new(),
+            outer: OnceLock::new(),
             slots: [const { OnceLock::new() }; 3],
         }
     }
@@ -105,6 +107,14 @@ impl OffsetSurface {
     pub fn inner(&self) -> Option<&Inner> {
         match self.made() {
             Ok(Made::Patches(patches, _)) => Some(self.inner.get_or_init(|| Inner::new(patches))),
+            _ => None,
+        }
+    }
+
+    /// Where its solid can be; of patches alone.
+    pub fn outer(&self) -> Option<&Outer> {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => Some(self.outer.get_or_init(|| Outer::new(patches))),
             _ => None,
         }
     }

@@ -31,6 +31,12 @@ fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
     (row * 0x0101_0101_0101_0101) & rows
 }
 
+/// The bits of a square, `x` and `y` in squares, that a rectangle of pixels holds.
+fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
+    let inside = |pixel: u32, square: u32| pixel.clamp(square * SIDE, square * SIDE + 7) % SIDE;
+    block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
+}
+
 impl Cover {
     /// Of squares across the picture, in rows of squares from `first` to below `end`.
     pub fn new(across: u32, first: u32, end: u32) -> Self {
@@ -46,18 +52,62 @@ impl Cover {
         }
     }
 
+    /// Whether some of these pixels may show what is not nearer than `near`.
+    pub fn is_open(&self, pixels: [u16; 4], near: f32) -> bool {
+        let [x0, y0, x1, y1] = pixels.map(u32::from);
+        let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));
+        let open = |x: u32, y: u32| {
+            let square = self.squares[((y - self.top / SIDE) * self.across + x) as usize];
+            near <= square.depth || within([x, y], [x0, y0, x1, y1]) & !square.covered != 0
+        };
+        (y0 / SIDE..=y1 / SIDE).any(|y| (x0 / SIDE..=x1 / SIDE).any(|x| open(x, y)))
+    }
+
     /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
-    /// the square's number and the pixels.
-    pub fn open(&self, pixels: [u16; 4], near: f32, mut visit: impl FnMut(u32, u64)) {
+    /// the square's number and the pixels. `rows`: of each row of pixels that is here the ends of
+    /// what may show, where they are known.
+    pub fn open(
+        &self,
+        pixels: [u16; 4],
+        rows: Option<&[[f64; 2]]>,
+        near: f32,
+        mut visit: impl FnMut(u32, u64),
+    ) {
         let [x0, y0, x1, y1] = pixels.map(u32::from);
         let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));
         for y in y0 / SIDE..=y1 / SIDE {
             let (top, bottom) = (y0.max(y * SIDE) - y * SIDE, y1.min(y * SIDE + 7) - y * SIDE);
-            for x in x0 / SIDE..=x1 / SIDE {
-                let (left, right) = (x0.max(x * SIDE) - x * SIDE, x1.min(x * SIDE + 7) - x * SIDE);
+            let (mut from, mut to) = (x0, x1);
+            let mut spans = [[1u32, 0]; SIDE as usize];
+            if let Some(rows) = rows {
+                (from, to) = (u32::MAX, 0);
+                for k in top..=bottom {
+                    let [low, high] = rows[(y * SIDE + k - y0) as usize];
+                    let low = (low - 0.5).ceil().max(f64::from(x0));
+                    let high = (high - 0.5).floor().min(f64::from(x1));
+                    if low <= high {
+                        spans[k as usize] = [low as u32, high as u32];
+                        (from, to) = (from.min(low as u32), to.max(high as u32));
+                    }
+                }
+                if from > to {
+                    continue;
+                }
+            }
+            for x in from / SIDE..=to / SIDE {
                 let number = (y - self.top / SIDE) * self.across + x;
                 let square = self.squares[number as usize];
-                let mut bits = block([left, top, right, bottom]);
+                let mut bits = if rows.is_some() {
+                    (0u32..).zip(&spans).fold(0, |all, (k, &[low, high])| {
+                        let (left, right) = (low.max(x * SIDE), high.min(x * SIDE + 7));
+                        if left > right {
+                            return all;
+                        }
+                        all | block([left - x * SIDE, k, right - x * SIDE, k])
+                    })
+                } else {
+                    within([x, y], [x0, y0, x1, y1])
+                };
                 if near > square.depth {
                     bits &= !square.covered;
                 }
@@ -190,13 +240,15 @@ mod tests {
         cover.polygon(&[at(3.0, 4.0), at(21.0, 4.0), at(21.0, 20.0), at(3.0, 20.0)]);
         let open = |cover: &Cover, near| {
             let mut all = 0;
-            cover.open([0, 0, 31, 31], near, |_, bits| all += bits.count_ones());
+            cover.open([0, 0, 31, 31], None, near, |_, bits| {
+                all += bits.count_ones()
+            });
             all
         };
         assert_eq!(open(&cover, 1.9), 1024);
         assert_eq!(open(&cover, 2.1), 1024 - 18 * 16);
         let mut hidden = true;
-        cover.open([3, 4, 20, 19], 2.1, |_, _| hidden = false);
+        cover.open([3, 4, 20, 19], None, 2.1, |_, _| hidden = false);
         assert!(hidden);
         // Any way round, at a slant: nothing without.
         cover.polygon(&[
@@ -205,7 +257,7 @@ mod tests {
             at(31.0, 20.0),
             at(31.0, 30.0),
         ]);
-        cover.open([0, 0, 31, 31], 2.1, |number, bits| {
+        cover.open([0, 0, 31, 31], None, 2.1, |number, bits| {
             for bit in (0..64).filter(|bit| bits & (1 << bit) == 0) {
                 let (x, y) = (number % 4 * 8 + bit % 8, number / 4 * 8 + bit / 8);
                 let first = (3..21).contains(&x) && (4..20).contains(&y);

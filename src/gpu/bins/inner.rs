@@ -19,7 +19,8 @@ pub(crate) struct Inner {
     pub few: Vec<Piece>,
 }
 
-const ROWS: usize = 64;
+/// Rows of equal height that cylinders are made of.
+pub(super) const ROWS: usize = 64;
 
 impl Inner {
     /// Of the solid that the patches enclose.
@@ -39,26 +40,37 @@ impl Inner {
         };
         let radii: Vec<f64> = (0..ROWS).map(radius).collect();
         Self {
-            pieces: pieces(&radii, 8),
-            few: pieces(&radii, 3),
+            pieces: cylinders(&radii, 8, f64::min),
+            few: cylinders(&radii, 3, f64::min),
         }
     }
 }
 
-/// At most `count` runs of rows, each with its least radius, that together cover most.
-fn pieces(radii: &[f64], count: usize) -> Vec<Piece> {
+/// At most `count` runs of rows, each with its least or largest radius, as `bound` says, that
+/// together are as near to the radii as can be; those of no radius are left out.
+pub(super) fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<Piece> {
     let n = radii.len();
-    // Of the first j rows: what is covered at best, and where the last run begins.
-    let mut best = vec![(0.0f64, 0usize); n + 1];
+    let outer = bound(0.0, 1.0) > 0.0;
+    let sense = if outer { -1.0 } else { 1.0 };
+    // Of the first j rows: what is covered at best, and where the last run begins. Rows within may
+    // be left out, rows without may not.
+    let left_out = |j: usize| {
+        if outer && j > 0 {
+            f64::NEG_INFINITY
+        } else {
+            0.0
+        }
+    };
+    let mut best: Vec<(f64, usize)> = (0..=n).map(|j| (left_out(j), 0)).collect();
     let mut steps = Vec::with_capacity(count);
     for _ in 0..count {
         let mut next = vec![(0.0f64, 0usize); n + 1];
-        for j in 1..=n {
-            let mut least = f64::INFINITY;
+        for j in 0..=n {
+            let mut radius = radii[j.saturating_sub(1)];
             next[j] = (best[j].0, j);
             for i in (0..j).rev() {
-                least = least.min(radii[i]);
-                let covered = best[i].0 + (j - i) as f64 * least;
+                radius = bound(radius, radii[i]);
+                let covered = best[i].0 + sense * (j - i) as f64 * radius;
                 if covered > next[j].0 {
                     next[j] = (covered, i);
                 }
@@ -71,12 +83,11 @@ fn pieces(radii: &[f64], count: usize) -> Vec<Piece> {
     let mut end = n;
     for step in steps.iter().rev() {
         let begin = step[end].1;
-        let least = radii[begin..end]
-            .iter()
-            .fold(f64::INFINITY, |m, r| m.min(*r));
-        if begin < end && least > 0.0 {
+        if let Some(radius) = radii[begin..end].iter().copied().reduce(bound)
+            && radius > 0.0
+        {
             found.push(Piece {
-                radius: least,
+                radius,
                 low: begin as f64 / n as f64,
                 high: end as f64 / n as f64,
             });
@@ -92,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_stay_below_the_radii_and_cover_most() {
+    fn runs_keep_to_their_side_of_the_radii_and_cover_most() {
         let radii: Vec<f64> = (0..64)
             .map(|k| {
                 if k < 16 {
@@ -102,7 +113,7 @@ mod tests {
                 }
             })
             .collect();
-        let found = pieces(&radii, 8);
+        let found = cylinders(&radii, 8, f64::min);
         assert!(found.len() > 1 && found.len() <= 8);
         let mut covered = 0.0;
         for piece in &found {
@@ -112,6 +123,16 @@ mod tests {
         }
         assert!(covered > 0.9 * radii.iter().sum::<f64>());
         assert!(found.windows(2).all(|w| w[0].high <= w[1].low));
-        assert!(pieces(&[0.0; 64], 8).is_empty());
+        assert!(cylinders(&[0.0; 64], 8, f64::min).is_empty());
+        let found = cylinders(&radii, 8, f64::max);
+        assert!(found.len() <= 8 && found[0].low == 0.0 && found[found.len() - 1].high == 1.0);
+        let mut covered = 0.0;
+        for piece in &found {
+            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
+            assert!(rows.iter().all(|r| *r <= piece.radius));
+            covered += piece.radius * rows.len() as f64;
+        }
+        assert!(covered < 1.1 * radii.iter().sum::<f64>());
+        assert!(found.windows(2).all(|w| w[0].high == w[1].low));
     }
 }

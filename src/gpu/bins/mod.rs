@@ -4,20 +4,22 @@
 //! 1. Every copy's rectangle of pixels and nearest depth are found ([`seen`]); copies that no
 //!    pixel's ray can meet are left out.
 //! 2. Copies of all objects are sorted, the nearest first.
-//! 3. In this order they are listed in the squares in which they may show. What a copy is sure to
-//!    hide is marked there ([`cover`]), and later copies are not listed for pixels in which all of
-//!    them lies behind it.
+//! 3. In this order they are listed in the squares in which they may show ([`outer`]). What a copy
+//!    is sure to hide is marked there ([`cover`]), and later copies are not listed for pixels in
+//!    which all of them lies behind it.
 //!
-//! A copy is hidden only where solids that it lies behind are proven to be: pictures are those of
-//! unculled copies to the last bit. Nothing is taken from an earlier frame. Bands of the screen are
-//! worked on in parallel.
+//! A copy is left out only where its solid is proven not to be, or solids that it lies behind are
+//! proven to be: pictures are those of unculled copies to the last bit. Nothing is taken from an
+//! earlier frame. Bands of the screen are worked on in parallel.
 
 mod cover;
 mod inner;
+mod outer;
 mod rectangle;
 mod seen;
 
 pub(crate) use inner::Inner;
+pub(crate) use outer::Outer;
 pub(crate) use rectangle::{Rectangle, rectangle};
 pub(crate) use seen::{Cylinder, Forms};
 
@@ -40,6 +42,8 @@ pub(crate) struct Batch<'a> {
     pub shape: Cylinder,
     /// What each is sure to hide; none where that is not known.
     pub inner: Option<&'a Inner>,
+    /// Where each can show; none where its cylinder alone is known.
+    pub outer: Option<&'a Outer>,
     /// The surface of solids of which the box cuts nothing.
     pub whole: Option<&'a OffsetSurface>,
 }
@@ -215,14 +219,28 @@ fn fill(
     let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
     let mut parts: Vec<Part> = batches.iter().map(|_| Part::default()).collect();
     let (top, bottom) = (cover.top, cover.bottom);
+    let mut rows = Vec::new();
     for item in items {
         if u32::from(item.pixels[1]) >= bottom || u32::from(item.pixels[3]) < top {
             continue;
         }
         let number = item.batch as usize;
         let (batch, list) = (&batches[number], &mut listed[number]);
+        let near = f32::from_bits(item.near);
+        if !cover.is_open(item.pixels, near) {
+            continue;
+        }
         let before = list.len();
-        cover.open(item.pixels, f32::from_bits(item.near), |square, pixels| {
+        let spread = || forms.spread(&batch.placements[item.copy as usize], batch.shape.axis);
+        let known = batch.outer.filter(|_| item.near > 0).is_some_and(|outer| {
+            let spread = spread();
+            let margin = forms.margin(&spread, &batch.shape);
+            let [_, first, _, last] = item.pixels.map(u32::from);
+            let within = first.max(top)..(last + 1).min(bottom);
+            outer.rows(&spread, margin, within, last - first, &mut rows)
+        });
+        let rows = known.then_some(&rows[..]);
+        cover.open(item.pixels, rows, near, |square, pixels| {
             list.push(Listed {
                 square,
                 copy: batch.first + item.copy,
@@ -235,8 +253,7 @@ fn fill(
         }
         parts[number].copies.push(item.copy);
         if let Some(inner) = batch.inner.filter(|_| item.near > 0) {
-            let spread = forms.spread(&batch.placements[item.copy as usize], batch.shape.axis);
-            cover.add(&spread, inner, item.pixels);
+            cover.add(&spread(), inner, item.pixels);
         }
     }
     let squares = across * (bottom - top) / SIDE;

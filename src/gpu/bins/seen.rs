@@ -21,6 +21,8 @@ pub(crate) struct Forms {
     /// First and last pixel centre, both axes.
     low: DVec2,
     high: DVec2,
+    /// A pixel's longer side at unit depth.
+    pixel: f64,
 }
 
 /// Ways along an object's axes, one object unit each, and the place of its axis at `z = 0`; as
@@ -30,6 +32,8 @@ pub(crate) struct Spread {
     pub along: [DVec3; 3],
     /// The eye in object space, about the axis.
     pub eye: DVec3,
+    /// World units of the shortest object unit.
+    least_scale: f64,
 }
 
 /// What a copy covers.
@@ -61,6 +65,7 @@ impl Forms {
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
             low: low + 0.5,
             high: high - 0.5,
+            pixel: view.dir_x.length().max(view.dir_y.length()),
         }
     }
 
@@ -78,7 +83,15 @@ impl Forms {
             middle: self.rows * place,
             along: ways.map(|way| self.rows * way),
             eye: -(turn.transpose() * place) / copy.scale,
+            least_scale: copy.scale.min_element(),
         }
+    }
+
+    /// Object units that are seen as [`MARGIN`] or more all over a cylinder.
+    pub fn margin(&self, spread: &Spread, of: &Cylinder) -> f64 {
+        let [x, y, z] = spread.along.map(|way| way.z);
+        let deep = of.radius * (x.abs() + y.abs()) + (z * of.low).max(z * of.high);
+        MARGIN * self.pixel * (spread.middle.z + deep) / spread.least_scale
     }
 
     /// None where no pixel's ray can meet the cylinder.

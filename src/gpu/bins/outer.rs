@@ -1,0 +1,186 @@
+//! Where a solid can show: cylinders about its axis that hold it, and their pixels.
+
+use super::inner::{Piece, ROWS, cylinders};
+use super::seen::Spread;
+use crate::surface::{QuadricPatch, Tables};
+use glam::{DVec2, DVec3};
+use std::f64::consts::SQRT_2;
+use std::ops::Range;
+
+/// Cylinders that hold a solid, from the lowest to the highest.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outer {
+    /// Of large copies.
+    pieces: Vec<Piece>,
+    /// Of small ones.
+    few: Vec<Piece>,
+}
+
+/// Copies of fewer rows of pixels are listed by their rectangles.
+const LEAST_ROWS: u32 = 6;
+/// Those of fewer, by few cylinders.
+const FEW_ROWS: u32 = 24;
+/// Corners of an octagon around the unit circle, in turn.
+const CORNERS: [(f64, f64); 8] = {
+    const T: f64 = SQRT_2 - 1.0;
+    [
+        (1.0, -T),
+        (1.0, T),
+        (T, 1.0),
+        (-T, 1.0),
+        (-1.0, T),
+        (-1.0, -T),
+        (-T, -1.0),
+        (T, -1.0),
+    ]
+};
+
+impl Outer {
+    /// Of the solid that the patches enclose.
+    pub fn new(patches: &[QuadricPatch]) -> Self {
+        let tables = Tables::new(patches, ROWS as u32);
+        let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
+        let radii: Vec<f64> = tables.nodes[..ROWS].iter().map(most).collect();
+        let of = |count| cylinders(&radii, count, f64::max);
+        Self {
+            pieces: of(8),
+            few: of(3),
+        }
+    }
+
+    /// Of these rows of pixels, each, the ends of what may show the copy, in pixels; false where
+    /// that is not known. `margin`: by how many object units the copy may be larger; `high`: about
+    /// how many rows it has in all.
+    pub fn rows(
+        &self,
+        spread: &Spread,
+        margin: f64,
+        within: Range<u32>,
+        high: u32,
+        rows: &mut Vec<[f64; 2]>,
+    ) -> bool {
+        if high < LEAST_ROWS {
+            return false;
+        }
+        let pieces = if high < FEW_ROWS {
+            &self.few
+        } else {
+            &self.pieces
+        };
+        rows.clear();
+        rows.resize(within.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        // Two sides of the octagons run along the line of sight: in width they are as discs.
+        let towards = spread.eye.truncate().normalize_or(DVec2::X);
+        let [a, b] =
+            [towards, towards.perp()].map(|way| spread.along[0] * way.x + spread.along[1] * way.y);
+        for piece in pieces {
+            let radius = piece.radius + margin;
+            let ends = [piece.low - margin, piece.high + margin];
+            let rings = ends.map(|z| {
+                let middle = spread.middle + spread.along[2] * z;
+                CORNERS.map(|(x, y)| middle + (a * x + b * y) * radius)
+            });
+            if rings.iter().flatten().any(|p| p.z <= 0.0) {
+                return false;
+            }
+            let [low, up] = rings.map(|ring| ring.map(flat));
+            for k in 0..8 {
+                let next = (k + 1) % 8;
+                for (p, q) in [(low[k], low[next]), (up[k], up[next]), (low[k], up[k])] {
+                    mark(p, q, within.start, rows);
+                }
+            }
+        }
+        true
+    }
+}
+
+fn flat(p: DVec3) -> DVec2 {
+    p.truncate() / p.z
+}
+
+/// Widens rows to where an edge crosses the middles of their pixels.
+fn mark(p: DVec2, q: DVec2, top: u32, rows: &mut [[f64; 2]]) {
+    let (p, q) = if p.y < q.y { (p, q) } else { (q, p) };
+    let from = f64::from(top) + 0.5;
+    let first = (p.y - from).ceil().max(0.0);
+    let last = (q.y - from).floor().min(rows.len() as f64 - 1.0);
+    if first > last {
+        return;
+    }
+    let slope = (q.x - p.x) / (q.y - p.y);
+    let begin = p.x + (first + from - p.y) * slope;
+    for (n, row) in rows[first as usize..=last as usize].iter_mut().enumerate() {
+        let x = begin + n as f64 * slope;
+        *row = [row[0].min(x), row[1].max(x)];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::gpu::bins::{Cylinder, Forms};
+    use crate::gpu::view::View;
+    use crate::scene::{Camera, Placement};
+    use glam::DQuat;
+
+    /// Of a spindle on a plate: points on and in it are seen within the rows, and what is left out
+    /// is much.
+    #[test]
+    fn rows_hold_the_solid_and_little_else() {
+        let radius = |z: f64| if z < 0.1 { 0.4 } else { 0.05 + 0.1 * z };
+        let radii: Vec<f64> = (0..ROWS)
+            .map(|row| radius((row + 1) as f64 / ROWS as f64).max(radius(row as f64 / ROWS as f64)))
+            .collect();
+        let outer = Outer {
+            pieces: cylinders(&radii, 8, f64::max),
+            few: Vec::new(),
+        };
+        let camera = Camera::new(DVec3::new(3.0, 1.0, 2.0), DVec3::new(0.0, 0.0, 0.4));
+        let view = View::from_camera(&camera, (640, 480), [0.1, 100.0]).unwrap();
+        let forms = Forms::new(&view);
+        let shape = Cylinder {
+            axis: DVec2::ZERO,
+            radius: 0.4,
+            low: 0.0,
+            high: 1.0,
+        };
+        let mut covered = 0.0;
+        for turn in 0..20 {
+            let turn = f64::from(turn);
+            let copy = Placement {
+                position: DVec3::new(0.05 * turn - 0.5, 0.3, -0.2),
+                rotation: DQuat::from_rotation_y(0.3 * turn) * DQuat::from_rotation_x(turn),
+                scale: DVec3::new(0.5, 0.7, 0.4 + 0.02 * turn),
+            };
+            let spread = forms.spread(&copy, shape.axis);
+            let pixels = forms.see(&spread, &shape).unwrap().pixels.map(u32::from);
+            let margin = forms.margin(&spread, &shape);
+            let mut rows = Vec::new();
+            let within = pixels[1]..pixels[3] + 1;
+            assert!(outer.rows(&spread, margin, within, 100, &mut rows));
+            let wide = rows.iter().map(|r| (r[1] - r[0]).max(0.0)).sum::<f64>();
+            let all = f64::from((pixels[2] - pixels[0]) * (pixels[3] - pixels[1]));
+            covered += wide / all;
+            for k in 0..5000 {
+                let part = |step: f64| (f64::from(k) * step).fract();
+                let z = part(0.754_877_666);
+                let around = DVec2::from_angle(std::f64::consts::TAU * part(0.569_840_291));
+                let beside = around * radius(z);
+                let at = copy.position + copy.rotation * (copy.scale * beside.extend(z));
+                let pixel = view.project(at).0;
+                // Ends are those of the row's middle, and edges may be steep.
+                let Some(row) = rows.get((pixel.y as usize).wrapping_sub(pixels[1] as usize))
+                else {
+                    continue;
+                };
+                if (pixel.y.fract() - 0.5).abs() < 0.01 {
+                    let off = (row[0] - pixel.x).max(pixel.x - row[1]);
+                    assert!(off < 0.0, "{turn}: {off}");
+                }
+            }
+        }
+        assert!(covered < 0.7 * 20.0, "{covered}");
+    }
+}
