@@ -3,7 +3,7 @@
 use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
 use super::map_key::MapFacts;
 use super::output::DepthOrder;
-use super::reach::{axis_offset, farthest_corner, largest_width};
+use super::reach::{farthest_corner, largest_width};
 use super::view::View;
 use crate::error::{Error, Result, Stage};
 use crate::maps::MapFormat;
@@ -43,7 +43,7 @@ pub(crate) fn solid_block(
     let texel = 1.0 / f64::from(map.rows);
     let width = largest_width(&object.offset);
     let grow = width.max(0.0) + texel;
-    let [x, y] = axis_offset(object);
+    let [x, y] = object.axis_offset();
     // Where the map ends, what is read from it ends.
     let reach = if solver.reads_map() {
         f64::from(map.columns) * texel
@@ -125,7 +125,7 @@ pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) 
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn instance_block(object: &Object, placement: &Placement, view: &View) -> InstanceBlock {
     let rotation = placement.rotation.normalize();
-    let [x, y] = axis_offset(object);
+    let [x, y] = object.axis_offset();
     let p = placement.position - view.eye;
     let middle = p + rotation * (placement.scale * DVec3::new(0.0, 0.0, 0.5));
     let depth = middle.dot(view.forward);

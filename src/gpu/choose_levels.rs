@@ -108,8 +108,8 @@ impl Prepared {
     /// them.
     fn take_level(&mut self, level: u8, surface: Arc<OffsetSurface>) {
         self.level = level;
-        if self.wrapped.is_some() {
-            self.wrapped = Some(surface.clone());
+        if self.proxy.is_some() {
+            self.proxy = Some(surface.clone());
         }
         if let Some(before) = self.surface.replace(surface)
             && !self.levels.iter().any(|known| Arc::ptr_eq(known, &before))

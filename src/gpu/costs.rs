@@ -60,7 +60,7 @@ impl Entry {
             levels::bound(level) * seen
         });
         let searched = prepared.and_then(|p| p.surface.as_ref());
-        let surface = searched.or(prepared.and_then(|p| p.wrapped.as_ref()));
+        let surface = searched.or(prepared.and_then(|p| p.proxy.as_ref()));
         let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
             let placed = surface.filter(|s| s.slot(part).is_some());
             placed.map_or(0, |s| 16 * s.vectors(part).len() as u64)

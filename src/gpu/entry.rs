@@ -70,7 +70,7 @@ pub(super) struct Prepared {
     /// What the search walks.
     pub surface: Option<Arc<OffsetSurface>>,
     /// What rays can be held to before they are searched.
-    pub wrapped: Option<Arc<OffsetSurface>>,
+    pub proxy: Option<Arc<OffsetSurface>>,
     pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
     pub arc: Option<Arc<ArcTexture>>,
@@ -143,7 +143,7 @@ impl Entry {
         block.hull[0] = self.draw.frusta;
         block.hull[2] = self.draw.patches;
         block.hull[3] = self.draw.frusta + self.draw.side_rows;
-        let walked = p.surface.as_ref().or(p.wrapped.as_ref());
+        let walked = p.surface.as_ref().or(p.proxy.as_ref());
         if let Some(surface) = walked.filter(|s| s.slot(Part::Tables).is_some()) {
             block.patches = surface.tables().block(self.draw.tables);
             block.hull[1] = surface.tables().beams(self.draw.tables);

@@ -122,12 +122,12 @@ impl Renderer {
         let plan = |number: &u32| {
             let entry = entries[*number as usize].as_ref();
             entry.map_or(Work::Nothing, |entry| {
-                let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
+                let proxy = entry.prepared.as_ref().and_then(|p| p.proxy.as_deref());
                 let binned = entry
                     .prepared
                     .as_ref()
                     .is_some_and(|p| p.variant.takes_bins());
-                planner.fragment(entry.drawn(), wrapped, binned)
+                planner.fragment(entry.drawn(), proxy, binned)
             })
         };
         if numbers.len() < MANY {
@@ -146,8 +146,8 @@ impl Renderer {
             .map(|number| {
                 let entry = self.entries[*number as usize].as_ref();
                 entry.map_or(Work::Nothing, |entry| {
-                    let wrapped = entry.prepared.as_ref().and_then(|p| p.wrapped.as_deref());
-                    planner.compute(entry.drawn(), wrapped, &mut lists)
+                    let proxy = entry.prepared.as_ref().and_then(|p| p.proxy.as_deref());
+                    planner.compute(entry.drawn(), proxy, &mut lists)
                 })
             })
             .collect();
@@ -191,6 +191,8 @@ impl Renderer {
         let outside = match (&work, prepared.surface.as_deref(), &self.view) {
             (Work::Bins(shown), _, _) => shown.outside,
             (Work::Nothing, _, _) => true,
+            // Hulls and tiles are told of cuts alone.
+            (Work::Hull { .. } | Work::Beams { .. }, _, _) => false,
             (_, Some(surface), Some(view)) => {
                 hulls::is_seen_from_outside(entry.drawn(), surface, view)
             }
@@ -202,7 +204,7 @@ impl Renderer {
         let searched = variant.seen_from(outside).with_tables(fit);
         let (kind, variant) = match &work {
             Work::Hull { cut, .. } => {
-                frusta = prepared.wrapped.as_ref();
+                frusta = prepared.proxy.as_ref();
                 if frusta.is_some_and(|s| s.is_boundary()) {
                     // A hull's own fragments read none of the tree; sides and shadows' rays do.
                     tables = tables.filter(|_| casts || *cut);
@@ -214,7 +216,7 @@ impl Renderer {
             Work::Box => (Kind::Box, searched),
             Work::Beams { copies, cut } => {
                 // Of an envelope beams alone read something.
-                tables = tables.or(prepared.wrapped.as_ref());
+                tables = tables.or(prepared.proxy.as_ref());
                 let several = several || copies.len() > 1;
                 (Kind::Compute, searched.tiled(*cut, several))
             }
@@ -239,7 +241,7 @@ impl Renderer {
         let frusta_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
         let listed = matches!(&work, Work::Beams { copies, .. } if copies.iter().any(|c| c.listed));
-        let patches_at = put(prepared.wrapped.as_ref().filter(|_| listed), Part::Patches)?;
+        let patches_at = put(prepared.proxy.as_ref().filter(|_| listed), Part::Patches)?;
         let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
         if matches!(work, Work::Hull { cut: true, .. }) {
             let pipelines = self.device.pipelines()?;

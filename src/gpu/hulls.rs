@@ -2,7 +2,7 @@
 
 use super::bins::{Rectangle, rectangle};
 use super::offset_surface::OffsetSurface;
-use super::reach::axis_offset;
+
 use super::view::View;
 use crate::scene::{Clip, Object, Placement};
 use crate::surface::ProxyHull;
@@ -19,7 +19,7 @@ pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
         return object.repeat == [1; 3];
     }
     let radius = object.profile.radius;
-    let [x, y] = axis_offset(object);
+    let [x, y] = object.axis_offset();
     let side_face = radius - x.abs().max(y.abs());
     // What of a coarse level bulges beyond the box may be seen.
     object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
@@ -28,7 +28,7 @@ pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
 /// Whether the box's sides cut the solid, or come to do so by another offset.
 pub(crate) fn may_be_cut(object: &Object) -> bool {
     let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
-    object.clip == Clip::Box || axis_offset(object) != [0.0; 2] || widest > object.profile.radius
+    object.clip == Clip::Box || object.axis_offset() != [0.0; 2] || widest > object.profile.radius
 }
 
 /// Whether beams can choose the tiles of all of an object's copies: rays begin outside the solid,
@@ -61,7 +61,7 @@ pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,
 /// `(p - eye) . forward` is its depth.
 fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
-    let [x, y] = axis_offset(object);
+    let [x, y] = object.axis_offset();
     let turn = placement.rotation.conjugate();
     let eye = turn * (view.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0);
     (eye, turn * view.forward * placement.scale)

@@ -121,16 +121,16 @@ pub(crate) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// In the fragment stage. `wrapped`: the surface or envelope whose hull may be drawn; `binned`:
+    /// In the fragment stage. `proxy`: the surface or envelope whose hull may be drawn; `binned`:
     /// there is a pipeline for bins.
-    pub fn fragment(&self, object: &Object, wrapped: Option<&OffsetSurface>, binned: bool) -> Work {
+    pub fn fragment(&self, object: &Object, proxy: Option<&OffsetSurface>, binned: bool) -> Work {
         let fits = |surface: &&OffsetSurface| {
             !surface.is_boundary()
                 || (self.limits.max_fragment_input_components >= COMPONENTS
                     && self.limits.max_vertex_output_components >= COMPONENTS + 4)
         };
         let copies = object.placements().len();
-        wrapped
+        proxy
             .filter(|_| copies <= MOST_WRAPPED)
             .filter(fits)
             .and_then(|surface| {
@@ -168,12 +168,12 @@ impl Planner<'_> {
     pub fn compute(
         &self,
         object: &Object,
-        wrapped: Option<&OffsetSurface>,
+        proxy: Option<&OffsetSurface>,
         lists: &mut Lists,
     ) -> Work {
         let radius = object.profile.radius;
         let placements = object.placements();
-        if let Some(surface) = wrapped
+        if let Some(surface) = proxy
             && placements.len() <= MOST_WRAPPED
             && hulls::takes_beams(object, surface, self.view)
         {

@@ -13,19 +13,14 @@ pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
     let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
     let solid = widest + largest_width(&object.offset);
-    if solid <= radius && axis_offset(object) == [0.0; 2] {
+    if solid <= radius && object.axis_offset() == [0.0; 2] {
         return radius;
     }
     (solid + margin).min(farthest_corner(object)).max(radius)
 }
 
-/// Where the axis stands, object units from the middle of the box.
-pub(crate) fn axis_offset(object: &Object) -> [f64; 2] {
-    object.axis_offset()
-}
-
 /// Distance from the axis to the farthest vertical edge of the box.
 pub(crate) fn farthest_corner(object: &Object) -> f64 {
-    let [x, y] = axis_offset(object).map(f64::abs);
+    let [x, y] = object.axis_offset().map(f64::abs);
     (x + object.profile.radius).hypot(y + object.profile.radius)
 }

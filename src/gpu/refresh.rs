@@ -324,7 +324,7 @@ impl Renderer {
         } else {
             None
         };
-        let wrapped = self.wrapped(object, solver, solid, map.as_deref(), surface.as_ref())?;
+        let proxy = self.proxy(object, solver, solid, map.as_deref(), surface.as_ref())?;
         let planes = self.output.planes();
         let (settings, lighting) = (&self.settings, &self.lighting);
         let variant = Variant::new(settings, planes, solver, lighting, object, self.met);
@@ -345,7 +345,7 @@ impl Renderer {
             levels: Vec::new(),
             solver,
             surface: surface.filter(|_| !solver.reads_map()),
-            wrapped,
+            proxy,
             map,
             facts,
             arc,
@@ -356,7 +356,7 @@ impl Renderer {
 
     /// What rays of an object can be held to before they are searched: its boundary; of a search on
     /// the map, where its solid may be.
-    fn wrapped(
+    fn proxy(
         &self,
         object: &Object,
         solver: Solver,

@@ -24,7 +24,7 @@
 //! between them. If Q is in the solid or a shell, it is on a side, no farther from the axis than
 //! [`ProxyHull::rows`] say. There the side is drawn, and searched by a search that begins at Q.
 //!
-//! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`FLOOR`]):
+//! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`HEIGHT_SLACK`]):
 //! beyond it another sheet of a quadric can pass the guard.
 //!
 //! # Frusta
@@ -113,7 +113,7 @@ pub struct ProxyHull {
 
 /// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less
 /// than what guards tell apart.
-pub const FLOOR: f32 = 1e-3;
+pub const HEIGHT_SLACK: f32 = 1e-3;
 
 impl Frustum {
     /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the
@@ -308,8 +308,9 @@ impl ProxyHull {
                     let z = o.z + root * v.z;
                     let place = cz * z + cr * square;
                     let t = root + near as f32;
-                    let valid =
-                        place >= low && place <= high && (-FLOOR..=1.0 + FLOOR).contains(&z);
+                    let valid = place >= low
+                        && place <= high
+                        && (-HEIGHT_SLACK..=1.0 + HEIGHT_SLACK).contains(&z);
                     if valid && walk.hit.is_none_or(|(best, _)| t < best) {
                         walk.hit = Some((t, *record));
                     }

@@ -24,7 +24,7 @@ float square_at(Meridian m, float s)
     return m.c + s * (2.0 * m.b + s * m.a);
 }
 
-const float FLOOR = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
+const float HEIGHT_SLACK = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
 
 // The nearest hit so far, or that of a patch, if it is after `least` and nearer.
 void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, inout vec4 quadric)
@@ -32,7 +32,7 @@ void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, 
     float root = entering_root(m, q, 1.0);
     float z = m.o.z + root * m.v.z;
     float place = guard.x * z + guard.y * square_at(m, root);
-    bvec3 within = lessThanEqual(vec3(guard.z, place, abs(z - 0.5)), vec3(place, guard.w, 0.5 + FLOOR));
+    bvec3 within = lessThanEqual(vec3(guard.z, place, abs(z - 0.5)), vec3(place, guard.w, 0.5 + HEIGHT_SLACK));
     bool nearer = all(within) && root > least && root < best;
     best = mix(best, root, nearer);
     quadric = mix(quadric, q, bvec4(nearer));
