@@ -8,9 +8,10 @@ out float gl_ClipDistance[4];
 void main()
 {
     vec3 corner = place_hull_vertex();
-    float R = solid.bounds.x + 1e-3; // no rounding takes a triangle away that begins within
-    gl_ClipDistance[0] = R - corner.x;
-    gl_ClipDistance[1] = R + corner.x;
-    gl_ClipDistance[2] = R - corner.y;
-    gl_ClipDistance[3] = R + corner.y;
+    // No triangle is taken away that begins within the sides, as they are drawn.
+    vec2 side = solid.bounds.x + max(fraction_of_pixel(instances[gl_InstanceIndex]).xy, 1e-3);
+    gl_ClipDistance[0] = side.x - corner.x;
+    gl_ClipDistance[1] = side.x + corner.x;
+    gl_ClipDistance[2] = side.y - corner.y;
+    gl_ClipDistance[3] = side.y + corner.y;
 }

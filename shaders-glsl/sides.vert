@@ -20,16 +20,15 @@ void main()
     vec2 axis = along_x ? solid.axis.xy : solid.axis.yx;
     float away = R - sense * axis.x;
     float reach = sqrt(max(row.z * row.z - away * away, 0.0));
-    float depth = max(middle_depth(i), 0.0) + R;
-    vec3 scale = scale_of(i);
-    // As boxes, by so much that the raster never decides first. What does not reach the side is nothing.
-    float grow = reach > 0.0 ? 0.05 * frame.dir_00.w * depth / min(scale.x, min(scale.y, scale.z)) + 1e-5 : 0.0;
-    vec2 ends = vec2(max(axis.y - reach, -R) - grow, min(axis.y + reach, R) + grow);
+    // By so much that the raster never decides first. What does not reach the side is nothing.
+    vec3 grow = reach > 0.0 ? fraction_of_pixel(i) : vec3(0.0);
+    grow = along_x ? grow : grow.yxz;
+    vec2 ends = vec2(max(axis.y - reach, -R) - grow.y, min(axis.y + reach, R) + grow.y);
     bool right = (0x16u & bit) != 0u;
     bool turned = along_x == (sense > 0.0);
     float across = right == turned ? ends.y : ends.x;
-    vec2 xy = vec2(sense * (R + grow), across);
-    float z = (0x34u & bit) != 0u ? row.y + grow : row.x - grow;
+    vec2 xy = vec2(sense * (R + grow.x), across);
+    float z = (0x34u & bit) != 0u ? row.y + grow.z : row.x - grow.z;
     gl_Position = clip_of(i, vec3(along_x ? xy : xy.yx, z));
 
     hand_over(i, frame.dir_00.w);

@@ -62,7 +62,9 @@ pub fn compiled_shaders(
         for &stage in stages {
             for &solver in solvers {
                 for (variant, kind) in technique.pipelines(stage, solver) {
-                    if known.contains(&(variant, kind)) {
+                    let drawn =
+                        compiler.clips || stage == DrawStage::Compute || !variant.is_cut(kind);
+                    if !drawn || known.contains(&(variant, kind)) {
                         continue;
                     }
                     known.push((variant, kind));
@@ -77,6 +79,8 @@ pub fn compiled_shaders(
 /// A device that compiles.
 struct Compiler {
     report: DeviceReport,
+    /// As [`Candidate::clips`](super::report::Candidate::clips).
+    clips: bool,
     asked: khr::pipeline_executable_properties::Device,
     // Never destroyed.
     pipelines: ManuallyDrop<Pipelines>,
@@ -104,6 +108,7 @@ impl Compiler {
         let pipelines = Pipelines::new(raw.clone(), None).map_err(into_device)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
+            clips: chosen.clips(),
             report: chosen.report,
             asked,
             pipelines: ManuallyDrop::new(pipelines.capturing_statistics()),

@@ -2,7 +2,6 @@
 
 use super::bins::{Rectangle, rectangle};
 use super::offset_surface::OffsetSurface;
-
 use super::view::View;
 use crate::scene::{Clip, Object, Placement};
 use crate::surface::ProxyHull;

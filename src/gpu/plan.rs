@@ -3,7 +3,7 @@
 use super::bins::{Rectangle, Shown, rectangle};
 use super::hulls;
 use super::offset_surface::OffsetSurface;
-use super::proxy_hull::COMPONENTS;
+use super::proxy_hull::{COMPONENTS, OUTPUTS};
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::{GROUP_PIXELS, LIST_LENGTHS};
@@ -127,7 +127,7 @@ impl Planner<'_> {
         let fits = |surface: &&OffsetSurface| {
             !surface.is_boundary()
                 || (self.limits.max_fragment_input_components >= COMPONENTS
-                    && self.limits.max_vertex_output_components >= COMPONENTS + 4)
+                    && self.limits.max_vertex_output_components >= OUTPUTS)
         };
         let copies = object.placements().len();
         proxy

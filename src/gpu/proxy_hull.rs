@@ -8,6 +8,9 @@ use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 /// and guards, and the box's sides.
 pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
 
+/// Components that these vertices put out: a position and four distances to clip by, besides.
+pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;
+
 /// A hull: its frusta in the layout of `hull.vert`, then the rows of `sides.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,

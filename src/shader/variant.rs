@@ -81,7 +81,8 @@ pub struct Variant {
     /// Bound of the papers' loop where it is their own, as the baseline must not lose by an option
     /// that it does not take; else 0, and the bound is data.
     pub papers_steps: u32,
-    /// 1 where the eye is outside of the solid, of which the box cuts nothing.
+    /// 1 where the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and
+    /// tiles always is.
     pub outside: u32,
     /// 1 where of a rectangle those tiles are searched that beams have listed.
     pub tiled: u32,
@@ -234,6 +235,7 @@ impl Variant {
         LIST_LENGTHS.map(|list_length| Self {
             search: Search::Quadric,
             list_length,
+            tiled: 0,
             ..self.dispatched(Dispatch::Lists, several).cut_by_sides(cut)
         })
     }

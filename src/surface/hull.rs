@@ -4,7 +4,7 @@
 //!
 //! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**.
 //! Around its surface, on the empty side, lies a shell: frusta along it, and walls at its two ends,
-//! from the frusta down to the surface and a little into the solid. FrustaBuilder and surface
+//! from the frusta down to the surface and a little into the solid. Shell and surface
 //! enclose the cell's part of the empty space. A ray from outside that first meets the solid on one
 //! of the cell's patches was in that part just before; it came in through the shell (through the
 //! surface it would have come out of the solid, which it then had met before). So
@@ -21,11 +21,9 @@
 //! Let Q be where a ray comes between the sides, or the eye, if it is there, and P the first hit
 //! from there on. If Q is outside the solid and all shells, the ray enters the shell of P's cell
 //! after Q, as it meets nothing in between. So triangles between the sides suffice, and hits
-//! between them. If Q is in the solid or a shell, it is on a side, no farther from the axis than
+//! between them. The eye is in neither, as all shells, and the solid with them, are in front of the
+//! near plane. If Q is in the solid or a shell, it is on a side, no farther from the axis than
 //! [`ProxyHull::rows`] say. There the side is drawn, and searched by a search that begins at Q.
-//!
-//! Besides the guard a fragment has to ask whether `z` is that of the box (to within [`HEIGHT_SLACK`]):
-//! beyond it another sheet of a quadric can pass the guard.
 //!
 //! # Frusta
 //!

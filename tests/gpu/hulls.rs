@@ -149,6 +149,27 @@ fn what_the_box_cuts() {
     }
 }
 
+/// The same of flat boxes, looked at along a side.
+#[test]
+fn what_a_flat_box_cuts_along_its_side() {
+    for (name, profile) in shapes::all() {
+        for (elevation, azimuth) in [(0.0, 0.52), (3.0, 0.02), (5.0, 0.8)] {
+            let far = eye(elevation, 2.8);
+            let mut scene = scene_of(profile.clone(), far);
+            let out = far.truncate().length();
+            scene.camera.eye =
+                glam::DVec2::from_angle(azimuth).extend(0.0) * out + DVec3::Z * far.z;
+            let object = &mut scene.objects[0];
+            object.clip = Clip::Box;
+            object.offset.extend = 0.15;
+            object.axis = [0.35, 0.5];
+            object.placement = placement([0.0, 0.0, 0.3], [0.0; 3], [1.0, 1.0, 0.06]);
+            let name = format!("{name} from {elevation}, {azimuth}");
+            EXACT.assert_same(&name, &scene, WRAPPED);
+        }
+    }
+}
+
 /// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it. An eye close
 /// to a solid, but outside of all its shells, is none of them; beams of the convex hull take all.
 #[test]

@@ -7,7 +7,7 @@ use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
-use revmap::scene::{Object, Scene, Shadow};
+use revmap::scene::{Clip, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
@@ -262,6 +262,34 @@ fn no_update_compiles_a_pipeline() {
                 let now = device.pipelines_compiled();
                 assert_eq!(now, compiled, "{stage:?} {solver}: {name}");
             }
+        }
+    }
+    device.check().unwrap();
+}
+
+/// Nor does an offset that moves a solid past the sides of its box, which cut it from then on.
+#[test]
+fn no_cut_compiles_a_pipeline() {
+    let device = Device::open_validated(None).unwrap();
+    for (stage, path) in STAGES.into_iter().zip([DrawPath::Hull, DrawPath::Beams]) {
+        let mut scene = vase();
+        scene.objects[0].clip = Clip::Box;
+        let settings = Settings {
+            solver: Solver::Hull,
+            proxy_min_pixels: 0,
+            ..settings(stage)
+        };
+        let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
+        renderer.prewarm().unwrap();
+        let compiled = device.pipelines_compiled();
+        scene.lights = vec![scene.lights[0]; 5];
+        for extend in [0.0, 0.01, 0.2, 0.3] {
+            scene.objects[0].offset.extend = extend;
+            renderer.update(&scene).unwrap();
+            assert_eq!(renderer.draw_paths(), [path], "{extend}");
+            renderer.draw().unwrap();
+            let now = device.pipelines_compiled();
+            assert_eq!(now, compiled, "{stage:?}: {extend}");
         }
     }
     device.check().unwrap();

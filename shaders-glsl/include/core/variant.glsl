@@ -79,7 +79,7 @@ layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn befo
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
 #if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS || SEARCH == SEARCH_NONE
-layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the eye is outside of the solid, of which the box cuts nothing; of hulls and tiles, with eyes outside: it cuts nothing
+layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and tiles always is
 #else
 const uint OUTSIDE = 0u;
 #endif

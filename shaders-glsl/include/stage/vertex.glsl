@@ -13,6 +13,15 @@ Instance begin()
     return instances[gl_InstanceIndex];
 }
 
+// A twentieth of a pixel, no matter where in the box, along the axes of object space.
+vec3 fraction_of_pixel(Instance i)
+{
+    vec3 scale = scale_of(i);
+    float farthest = max(middle_depth(i), 0.0) + length(scale * vec3(solid.bounds.xx, 0.6));
+    bool parallel = frame.clip_x.w != 0.0;
+    return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
+}
+
 // `scale`: the fourth component of the first direction.
 void hand_over(Instance i, float scale)
 {
