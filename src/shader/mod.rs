@@ -2,6 +2,7 @@
 
 mod list;
 mod module;
+mod reachable;
 mod variant;
 
 pub use list::{Dispatch, Module};
