@@ -73,6 +73,28 @@ void main()
     uint listed = lengths.x + lengths.y;
     bool shows = any_met && outer.x <= outer.y && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
     bool is_long = cut || listed > LONGEST_LIST;
+    if (OUTSIDE == 0u) {
+        // Most of a cut: no ray of the tile has to be searched.
+        bool into_solid = shows && cut && inner.x < 1e30;
+        vec2 t = into_solid ? vec2(outer.x, inner.x) : vec2(0.0);
+        vec2 z = vec2(min(t.x * beam.v.z, t.y * beam.v.z), max(t.x * beam.v.z, t.y * beam.v.z)) + beam.o.z;
+        vec2 rows = floor((z + beam.width * vec2(-1.0, 1.0)) * float(SOLID_ROWS));
+        vec2 apart = t - beam.nearest;
+        float radius = sqrt(beam.least + beam.a * max(apart.x * apart.x, apart.y * apart.y)) + beam.width;
+        into_solid = into_solid && rows.x >= 0.0 && rows.y < float(SOLID_ROWS);
+        uint row = into_solid ? uint(rows.x) : 0u;
+        uint end = into_solid ? uint(rows.y) + 1u : 0u;
+        uint words = 4u * (solid.hull.z + 4u + 3u * header.x);
+        while (row < end) {
+            into_solid = into_solid && uintBitsToFloat(patch_tables[(words + row) >> 2][row & 3u]) >= radius;
+            ++row;
+        }
+        if (into_solid) {
+            uint at = list_tiles(LIST_LENGTHS) + 2u * atomicAdd(bin_words[list_heads() + 4u * LIST_LENGTHS], 1u);
+            bin_words[at] = tile.x | tile.y << 16;
+            shows = false;
+        }
+    }
     if (shows && is_long) {
         uint at = pushed.first_bin + 4u + 4u * atomicAdd(bin_words[pushed.first_bin], 1u);
         bin_words[at] = tile.x | tile.y << 16;

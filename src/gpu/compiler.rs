@@ -14,7 +14,7 @@ use super::pipelines::Pipelines;
 use super::report::{DeviceReport, candidates, choose, text, variable};
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes, Solver};
-use crate::shader::generated::{LONG_LIST, MIDDLE_LIST, SHORT_LIST};
+use crate::shader::generated::{CUT_ANY, CUT_SOLID, LONG_LIST, MIDDLE_LIST, SHORT_LIST};
 use crate::shader::{Dispatch, Kind, Variant, listed};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
@@ -186,6 +186,7 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
     match (kind, variant.dispatch) {
         (Kind::Box, _) => "box",
         (Kind::Hull, _) => "hull",
+        (Kind::Sides, _) if variant.cut == CUT_SOLID => "solid sides",
         (Kind::Sides, _) => "sides",
         (Kind::ConvexHull, _) => "convex hull",
         (Kind::Bins, _) => "bins",
@@ -203,11 +204,12 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
                 (_, true) => "tiles of 48 patches of several",
             }
         }
-        (Kind::Compute, Dispatch::Rectangle) if variant.tiled != 0 => {
-            if several {
-                "tiles with cuts of several"
-            } else {
-                "tiles with cuts"
+        (Kind::Compute, Dispatch::Rectangle) if variant.cut != CUT_ANY => {
+            match (variant.cut == CUT_SOLID, several) {
+                (true, true) => "tiles of cuts of several",
+                (true, false) => "tiles of cuts",
+                (false, true) => "tiles with cuts of several",
+                (false, false) => "tiles with cuts",
             }
         }
         (Kind::Compute, Dispatch::Rectangle) if several => "rectangle of several",

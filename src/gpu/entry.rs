@@ -11,7 +11,8 @@ use super::table_slot::Part;
 use super::textures::TextureSet;
 use crate::scene::{GrownObject, Object};
 use crate::settings::{SearchSettings, Solver};
-use crate::shader::{Kind, LIST_LENGTHS, Variant};
+use crate::shader::generated::TILE_LISTS;
+use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -85,12 +86,13 @@ pub(super) struct Prepared {
 pub(super) struct Draw {
     pub work: Option<Work>,
     pub pipeline: vk::Pipeline,
-    /// The pipeline of the box's sides, where they cut a hull.
-    pub sides: vk::Pipeline,
+    /// The pipelines of the box's sides, where they cut a hull: of what is solid there, and of what may be.
+    pub sides: [vk::Pipeline; 2],
     /// The pipeline that lists tiles, where the work is of beams.
     pub list: vk::Pipeline,
-    /// The pipelines of tiles whose patches are listed.
-    pub listed: [vk::Pipeline; LIST_LENGTHS.len()],
+    /// The pipelines of tiles whose patches are listed; the last is of those whose rays enter box
+    /// and solid at once, null where the box cuts nothing.
+    pub listed: [vk::Pipeline; TILE_LISTS as usize],
     /// What the pipeline was compiled for.
     pub key: Option<(Variant, Kind)>,
     pub tables_offset: u32,

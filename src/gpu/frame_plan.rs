@@ -15,6 +15,7 @@ use crate::scene::Shadow;
 use crate::settings::SearchSettings;
 use crate::shader::generated::{FRUSTUM_VECTORS, PATCH_VECTORS};
 use crate::shader::{Dispatch, Kind, Variant};
+use ash::vk;
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::SQRT_2;
@@ -245,7 +246,10 @@ impl Renderer {
         let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
         if matches!(work, Work::Hull { cut: true, .. }) {
             let pipelines = self.device.pipelines()?;
-            entry.draw.sides = pipelines.get(searched, Kind::Sides, &self.output, self.owner)?;
+            for (to, variant) in (entry.draw.sides.iter_mut()).zip([variant.into_solid(), searched])
+            {
+                *to = pipelines.get(variant, Kind::Sides, &self.output, self.owner)?;
+            }
         }
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
@@ -262,8 +266,11 @@ impl Renderer {
             };
             if listed {
                 let lists = variant.listed(cut, variant.depth_test != 0);
-                for (to, variant) in entry.draw.listed.iter_mut().zip(lists) {
-                    *to = get(variant.keeping(keeps), Kind::Listed)?;
+                for (to, list) in entry.draw.listed.iter_mut().zip(lists) {
+                    *to = match list {
+                        Some((variant, kind)) => get(variant.keeping(keeps), kind)?,
+                        None => vk::Pipeline::null(),
+                    };
                 }
             }
         }

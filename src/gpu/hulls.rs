@@ -120,7 +120,7 @@ pub(crate) fn frusta(
     if covered < u64::from(least_pixels) * (drawn * count) as u64 {
         return None;
     }
-    let seen = |copy| is_in_front(hull, seen_from(object, copy, view), view, cut);
+    let seen = |copy| is_in_front(object, hull, seen_from(object, copy, view), view, cut);
     copies.iter().all(seen).then_some((frusta, cut))
 }
 
@@ -129,16 +129,36 @@ fn flat(p: DVec3) -> DVec2 {
     DVec2::new(p.truncate().length(), p.z)
 }
 
-/// Whether a copy's shells, and the rows of the sides that cut them, are all in front of the near
-/// plane, and the eye is in none of the shells.
-fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View, cut: bool) -> bool {
-    let aside = forward.truncate().length();
-    let margin = CLEARANCE * forward.length();
-    let rows = cut.then(|| hull.extent());
-    let ahead = hull.extents.iter().chain(&rows).all(|&[_, r, low, high]| {
+/// Largest radius of shells that a box's sides cut, over half the box's side. Depths of triangles
+/// that reach much farther than what shows of them are interpolated too roughly.
+const WIDEST_CUT: f64 = 8.0;
+
+/// Whether the eye is in none of a copy's shells, and all that is drawn of them is in front of the
+/// near plane: everything, or what is between the box's sides.
+fn is_in_front(
+    object: &Object,
+    hull: &ProxyHull,
+    (eye, forward): (DVec3, DVec3),
+    view: &View,
+    cut: bool,
+) -> bool {
+    let ahead = |middle: DVec2, reach: f64, low: f64, high: f64| {
         let lowest = (forward.z * (low - eye.z)).min(forward.z * (high - eye.z));
-        lowest - forward.truncate().dot(eye.truncate()) - r * aside >= view.near + margin
-    });
+        let across = forward.truncate().dot(middle - eye.truncate()) - reach;
+        lowest + across >= view.near + CLEARANCE * forward.length()
+    };
+    if cut {
+        let radius = object.profile.radius;
+        let [_, widest, low, high] = hull.extent();
+        let reach = radius * (forward.x.abs() + forward.y.abs());
+        let middle = -DVec2::from(object.axis_offset());
+        return widest <= WIDEST_CUT * radius && ahead(middle, reach, low, high);
+    }
+    let aside = forward.truncate().length();
+    let all_ahead = hull
+        .extents
+        .iter()
+        .all(|&[_, r, low, high]| ahead(DVec2::ZERO, r * aside, low, high));
     // Parallel rays begin in the near plane, which all is in front of.
-    ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
+    all_ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }

@@ -6,7 +6,7 @@ use super::offset_surface::OffsetSurface;
 use super::proxy_hull::{COMPONENTS, OUTPUTS};
 use super::view::View;
 use crate::scene::Object;
-use crate::shader::generated::{GROUP_PIXELS, LIST_LENGTHS};
+use crate::shader::generated::{GROUP_PIXELS, TILE_LISTS};
 use ash::vk;
 use std::ops::Range;
 
@@ -85,7 +85,7 @@ impl Tiles {
     /// Words of all its lists: a dispatch and four words a tile, or what `patch_lists.glsl` says.
     fn words(&self) -> u32 {
         if self.listed {
-            self.heads() - self.at + LIST_LENGTHS * (4 + 2 * self.rectangle.padded())
+            self.heads() - self.at + TILE_LISTS * (4 + 2 * self.rectangle.padded())
         } else {
             4 + 4 * self.rectangle.padded()
         }

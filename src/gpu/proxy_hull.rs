@@ -1,5 +1,6 @@
 //! Proxy hulls as the vertex shader grows them.
 
+use super::bins::solid_radii;
 use crate::maps::envelope::Envelope;
 use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
@@ -29,7 +30,7 @@ impl GpuProxyHull {
         };
         let hull = ProxyHull::new(patches, &options);
         let mut vectors = pack(&hull, patches);
-        vectors.extend(hull.rows::<{ SIDE_ROWS as usize }>().map(row));
+        vectors.extend(rows(&hull, patches));
         let touches = touches(patches);
         Self {
             hull,
@@ -53,9 +54,25 @@ impl GpuProxyHull {
 /// Vertices of the strips of all sides.
 pub(crate) const SIDE_VERTICES: u32 = 6 * 4 * SIDE_ROWS;
 
-/// A row of `sides.vert`.
-fn row([low, high, radius]: [f64; 3]) -> [u32; 4] {
-    [low as f32, high as f32, radius as f32, 0.0].map(f32::to_bits)
+/// The rows of `sides.vert`: lowest and highest `z`; the radius that shells stay within, and the
+/// one within which the row and those beside it are solid.
+fn rows(hull: &ProxyHull, patches: &[QuadricPatch]) -> impl Iterator<Item = [u32; 4]> {
+    let solid = solid_radii(patches);
+    hull.rows::<{ SIDE_ROWS as usize }>()
+        .into_iter()
+        .map(move |[low, high, radius]| {
+            let step = high - low;
+            let of = |z: f64| (z * solid.len() as f64).floor();
+            let (first, last) = (of(low - step), of(high + step));
+            let within = if first < 0.0 || last >= solid.len() as f64 {
+                0.0
+            } else {
+                solid[first as usize..=last as usize]
+                    .iter()
+                    .fold(f64::INFINITY, |m, r| m.min(*r))
+            };
+            [low as f32, high as f32, radius as f32, within as f32].map(f32::to_bits)
+        })
 }
 
 /// Points of an outline nearer than this are one, object units: what the union of loops rounds to.

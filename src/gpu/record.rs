@@ -9,8 +9,7 @@ use super::plan::{Tiles, Work};
 use super::proxy_hull::{self, SIDE_VERTICES};
 use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
-use crate::shader::LIST_LENGTHS;
-use crate::shader::generated::GROUP_PIXELS;
+use crate::shader::generated::{GROUP_PIXELS, TILE_LISTS};
 use ash::vk;
 
 /// What is pushed for a dispatch: `Pushed` of `beams.glsl`.
@@ -40,7 +39,7 @@ impl Renderer {
                 continue;
             };
             let first_drawn = match work {
-                Work::Hull { cut: true, .. } => entry.draw.sides,
+                Work::Hull { cut: true, .. } => entry.draw.sides[0],
                 _ => entry.draw.pipeline,
             };
             self.bind(cmd, slot, entry, first_drawn, number);
@@ -52,9 +51,12 @@ impl Renderer {
                 match work {
                     Work::Hull { frusta, cut } => {
                         if *cut {
+                            let point = vk::PipelineBindPoint::GRAPHICS;
                             raw.cmd_draw(cmd, SIDE_VERTICES, count, 0, first);
-                            let hull = entry.draw.pipeline;
-                            raw.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, hull);
+                            raw.cmd_bind_pipeline(cmd, point, entry.draw.sides[1]);
+                            // Beside what is solid, left and right of it.
+                            raw.cmd_draw(cmd, 2 * SIDE_VERTICES, count, 0, first);
+                            raw.cmd_bind_pipeline(cmd, point, entry.draw.pipeline);
                         }
                         let kind = vk::IndexType::UINT32;
                         raw.cmd_bind_index_buffer(cmd, self.corners.raw, 0, kind);
@@ -156,7 +158,7 @@ impl Renderer {
         unsafe {
             raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(at), bytemuck::bytes_of(&none));
             if tiles.listed {
-                let heads = [none; LIST_LENGTHS.len()];
+                let heads = [none; TILE_LISTS as usize];
                 let bytes = bytemuck::bytes_of(&heads);
                 raw.cmd_update_buffer(cmd, words.raw, 4 * u64::from(tiles.heads()), bytes);
             }
@@ -173,6 +175,9 @@ impl Renderer {
                 for ((k, head), pipeline) in
                     (0u32..).zip((tiles.heads()..).step_by(4)).zip(draw.listed)
                 {
+                    if pipeline == vk::Pipeline::null() {
+                        continue;
+                    }
                     pushed[3] = k;
                     self.bind_tables(cmd, slot, entry, pipeline, number, patches);
                     self.push(cmd, pushed);

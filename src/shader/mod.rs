@@ -8,7 +8,7 @@ mod variant;
 pub use list::{Dispatch, Module};
 pub use module::{depth_less, listed, words};
 pub(crate) use variant::is_beveled;
-pub use variant::{Kind, LIST_LENGTHS, Met, Variant};
+pub use variant::{Kind, Met, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // Numbers that the shaders alone read are listed, too, and what only tests compare.

@@ -62,7 +62,7 @@ impl Variant {
                         all.push((variant.tiled(*cut, several), Kind::Compute));
                         if !on_map(&variant) {
                             let lists = variant.listed(*cut, several);
-                            all.extend(lists.map(|v| (v, Kind::Listed)));
+                            all.extend(lists.into_iter().flatten());
                             all.push((Self::BEAM.cut_by_sides(*cut), Kind::List));
                         }
                     }
@@ -80,6 +80,7 @@ impl Variant {
                 all.push((hull.cut_by_sides(false), Kind::Hull));
                 all.push((hull.cut_by_sides(true), Kind::Hull));
                 all.push((self, Kind::Sides));
+                all.push((self.into_solid(), Kind::Sides));
             }
             for variant in searched {
                 if wraps && on_map(&variant) {

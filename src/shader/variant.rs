@@ -84,8 +84,8 @@ pub struct Variant {
     /// 1 where the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and
     /// tiles always is.
     pub outside: u32,
-    /// 1 where of a rectangle those tiles are searched that beams have listed.
-    pub tiled: u32,
+    /// Which part of a solid that its box cuts: one of `CUT_*`.
+    pub cut: u32,
 }
 
 impl Variant {
@@ -107,7 +107,7 @@ impl Variant {
         list_length: 0,
         papers_steps: 0,
         outside: 0,
-        tiled: 0,
+        cut: g::CUT_ANY,
     };
 
     /// The variant that draws `object` by the search `solver`, which is that of the settings or
@@ -186,7 +186,7 @@ impl Variant {
                 if papers && !casts { own } else { 0 }
             },
             outside: 0,
-            tiled: 0,
+            cut: g::CUT_ANY,
         };
         match planes {
             Planes::Depth { parallel } => shaded.depth_only(parallel),
@@ -221,7 +221,7 @@ impl Variant {
         if cut && !self.search.is_live() {
             let tiled = self.dispatched(Dispatch::Rectangle, several);
             Self {
-                tiled: 1,
+                cut: g::CUT_TILES,
                 ..tiled.seen_from(false)
             }
         } else {
@@ -229,22 +229,33 @@ impl Variant {
         }
     }
 
-    /// The same of tiles whose patches are listed, by the length of lists.
+    /// The same of lists of tiles: of those whose patches are listed, by the length of lists, and,
+    /// where there is a cut, of those whose rays enter box and solid at once.
     #[must_use]
-    pub fn listed(self, cut: bool, several: bool) -> [Self; LIST_LENGTHS.len()] {
-        LIST_LENGTHS.map(|list_length| Self {
+    pub fn listed(
+        self,
+        cut: bool,
+        several: bool,
+    ) -> [Option<(Self, Kind)>; g::TILE_LISTS as usize] {
+        let of = |list_length| Self {
             search: Search::Quadric,
             list_length,
-            tiled: 0,
+            cut: g::CUT_ANY,
             ..self.dispatched(Dispatch::Lists, several).cut_by_sides(cut)
+        };
+        let solid = self.tiled(true, several).into_solid();
+        std::array::from_fn(|list| match LIST_LENGTHS.get(list) {
+            Some(length) => Some((of(*length), Kind::Listed)),
+            None => cut.then_some((solid, Kind::Compute)),
         })
     }
 
-    /// The same where the search's tables fit into a uniform buffer, or do not.
+    /// The same where the search's tables fit into a uniform buffer, or do not; those that read none
+    /// take the first.
     #[must_use]
     pub fn with_tables(self, fit: bool) -> Self {
         Self {
-            search: self.search.of_tables(fit),
+            search: self.search.of_tables(fit || self.cut == g::CUT_SOLID),
             ..self
         }
     }
@@ -256,7 +267,7 @@ impl Variant {
         let searched = matches!(self.search, Search::Quadric | Search::QuadricLarge)
             && matches!(self.dispatch, Dispatch::Rectangle | Dispatch::Bins);
         Self {
-            outside: u32::from(outside && searched && self.cells == 0 && self.tiled == 0),
+            outside: u32::from(outside && searched && self.cells == 0 && self.cut == g::CUT_ANY),
             ..self
         }
     }
@@ -270,13 +281,24 @@ impl Variant {
         }
     }
 
+    /// The same of sides of the box, or of tiles, where rays enter box and solid at once: none reads
+    /// tables.
+    #[must_use]
+    pub fn into_solid(self) -> Self {
+        let solid = Self {
+            cut: g::CUT_SOLID,
+            ..self
+        };
+        solid.with_tables(true)
+    }
+
     /// Whether it draws a hull or tiles of a solid that the box's sides cut.
     #[must_use]
     pub fn is_cut(&self, kind: Kind) -> bool {
         match kind {
             Kind::Sides => true,
             Kind::Hull | Kind::List | Kind::Listed => self.outside == 0,
-            Kind::Compute => self.tiled != 0,
+            Kind::Compute => self.cut != g::CUT_ANY,
             Kind::Box | Kind::ConvexHull | Kind::Bins | Kind::Beam => false,
         }
     }
@@ -361,7 +383,7 @@ impl Variant {
             (g::LIST_LENGTH_ID, self.list_length),
             (g::PAPERS_STEPS_ID, self.papers_steps),
             (g::OUTSIDE_ID, self.outside),
-            (g::TILED_ID, self.tiled),
+            (g::CUT_ID, self.cut),
         ]
     }
 }

@@ -21,9 +21,10 @@
 //! Let Q be where a ray comes between the sides, or the eye, if it is there, and P the first hit
 //! from there on. If Q is outside the solid and all shells, the ray enters the shell of P's cell
 //! after Q, as it meets nothing in between. So triangles between the sides suffice, and hits
-//! between them. The eye is in neither, as all shells, and the solid with them, are in front of the
-//! near plane. If Q is in the solid or a shell, it is on a side, no farther from the axis than
-//! [`ProxyHull::rows`] say. There the side is drawn, and searched by a search that begins at Q.
+//! between them. An eye between the sides is in neither, as what they leave of the shells, and of
+//! the solid, is in front of the near plane. If Q is in the solid or a shell, it is on a side, no
+//! farther from the axis than [`ProxyHull::rows`] say. There the side is drawn. Where it is solid
+//! throughout, Q is the hit; elsewhere it is searched by a search that begins at Q.
 //!
 //! # Frusta
 //!

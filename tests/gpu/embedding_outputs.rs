@@ -9,11 +9,11 @@ use crate::embedding::{BACKGROUND, assert_silent, borrow, options, srgb, three, 
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, Offscreen, Output, PassFormats, PassKind, Renderer, View,
-    Viewport,
+    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, PassKind,
+    Renderer, View, Viewport,
 };
 use revmap::profile::Profile;
-use revmap::scene::{Object, Scene};
+use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
 use std::sync::Arc;
 
@@ -87,13 +87,20 @@ fn depth_pass(planes: Planes) -> Output {
 }
 
 /// Depths of a scene, drawn into a host's shadow map.
-fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bool) -> Vec<f32> {
+fn depths(
+    host: &Host,
+    device: &Device,
+    scene: &Scene,
+    view: &View,
+    settings: &SearchSettings,
+    parallel: bool,
+) -> Vec<f32> {
     let (width, height) = (options().width, options().height);
     let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
     let bytes = 4 * (width * height) as usize;
     let read = HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST).unwrap();
     let output = depth_pass(Planes::Depth { parallel });
-    let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
+    let mut renderer = Renderer::new(device, output, settings, 1).unwrap();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
@@ -122,6 +129,8 @@ fn depths(host: &Host, device: &Device, scene: &Scene, view: &View, parallel: bo
         // output's formats.
         unsafe {
             renderer.prepare(cmd, 0, view).unwrap();
+            let by_hulls = renderer.draw_paths().iter().all(|p| *p == DrawPath::Hull);
+            assert!(by_hulls || settings.proxy_min_pixels > 0, "not by hulls");
             to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
             let depth = vk::RenderingAttachmentInfo::default()
                 .image_view(image.view)
@@ -183,7 +192,8 @@ fn depth_alone_is_a_pictures_depth() {
     let [view, projection] = host::view_and_projection(eye, target, &options());
     let order = DepthOrder::Normal;
     let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
-    let alone = depths(&host, &device, &scene, &seen, false);
+    let exact = SearchSettings::exact();
+    let alone = depths(&host, &device, &scene, &seen, &exact, false);
     let beside = crate::embedding::drawn(&host, &device, options(), &scene, &seen).1;
     let hits = alone.iter().filter(|d| **d < 1.0).count();
     assert!(hits > 3000, "{hits}");
@@ -195,15 +205,9 @@ fn depth_alone_is_a_pictures_depth() {
     one.objects = vec![Object::new("cylinder", Arc::new(cylinder.unwrap()))];
     let from = DVec3::new(2.0, 1.0, 2.5);
     let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
-    let (near, far) = (0.5, 6.0);
-    let projection = DMat4::from_cols(
-        DVec4::new(1.0 / 0.8, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -1.0 / 0.6, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, -1.0 / (far - near), 0.0),
-        DVec4::new(0.0, 0.0, -near / (far - near), 1.0),
-    );
+    let projection = parallel();
     let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
-    let found = depths(&host, &device, &one, &seen, true);
+    let found = depths(&host, &device, &one, &seen, &exact, true);
     let back = (projection * view).inverse();
     let (width, height) = (options().width as usize, options().height as usize);
     let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
@@ -223,6 +227,62 @@ fn depth_alone_is_a_pictures_depth() {
     println!("parallel: {hits} hits, {wrong} wrong, depth {worst:e}");
     assert!(hits > 3000 && wrong <= 2, "{hits} hits, {wrong} wrong");
     assert!(worst <= 2f64.powi(-20), "{worst:e}");
+    drop(device);
+    assert_silent(&host);
+}
+
+/// Along parallel rays.
+fn parallel() -> DMat4 {
+    let (near, far) = (0.5, 6.0);
+    DMat4::from_cols(
+        DVec4::new(1.0 / 0.8, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -1.0 / 0.6, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0 / (far - near), 0.0),
+        DVec4::new(0.0, 0.0, -near / (far - near), 1.0),
+    )
+}
+
+/// Depth alone of solids that their box cuts, by hulls and sides, is that of their boxes.
+#[test]
+fn depth_alone_of_what_the_box_cuts() {
+    let host = open();
+    let device = borrow(&host);
+    let by = |proxy_min_pixels| SearchSettings {
+        proxy_min_pixels,
+        ..SearchSettings::exact()
+    };
+    for (name, profile) in shapes::all() {
+        for (extend, from) in [
+            (0.12, DVec3::new(2.0, 1.0, 2.5)),
+            (0.3, DVec3::new(-1.5, 2.5, 0.6)),
+            (0.3, DVec3::new(2.8, 0.1, 0.5)),
+        ] {
+            let mut scene = scene_of(profile.clone(), from);
+            let object = &mut scene.objects[0];
+            object.clip = Clip::Box;
+            object.offset.extend = extend;
+            object.axis = [0.45, 0.5];
+            let [view, projection] =
+                host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options());
+            for (is_parallel, projection) in [(false, projection), (true, parallel())] {
+                let order = DepthOrder::Normal;
+                let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
+                let of = |least| depths(&host, &device, &scene, &seen, &by(least), is_parallel);
+                let (hulls, boxes) = (of(0), of(u32::MAX));
+                let hits = boxes.iter().filter(|d| **d < 1.0).count();
+                let pairs = || hulls.iter().zip(&boxes);
+                let alone = pairs().filter(|(a, b)| (**a < 1.0) != (**b < 1.0)).count();
+                let apart = pairs()
+                    .filter(|(a, b)| **a < 1.0 && **b < 1.0 && (**a - **b).abs() > 1e-4)
+                    .count();
+                println!("{name} {extend} {is_parallel}: {alone} + {apart} of {hits}");
+                assert!(
+                    hits > 1000 && alone + apart <= 2,
+                    "{name} with {extend} from {from}, parallel {is_parallel}: {alone} + {apart} of {hits}"
+                );
+            }
+        }
+    }
     drop(device);
     assert_silent(&host);
 }

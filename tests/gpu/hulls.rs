@@ -134,7 +134,12 @@ fn offsets_in_motion() {
 #[test]
 fn what_the_box_cuts() {
     for (name, profile) in shapes::all() {
-        for (extend, axis) in [(0.0, [0.3, 0.62]), (0.12, [0.5, 0.5]), (0.25, [0.4, 0.5])] {
+        for (extend, axis) in [
+            (0.0, [0.3, 0.62]),
+            (0.12, [0.5, 0.5]),
+            (0.25, [0.4, 0.5]),
+            (0.5, [0.45, 0.55]),
+        ] {
             for elevation in [-50.0, 0.0, 30.0, 89.5] {
                 let mut scene = scene_of(profile.clone(), eye(elevation, 2.8));
                 let object = &mut scene.objects[0];

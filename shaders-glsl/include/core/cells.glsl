@@ -99,6 +99,14 @@ bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
     hit.exhausted = false;
     hit.sense = vec3(1.0);
     hit.at_border = false;
+#if SHADOWED
+    bool meets_side = CUT == CUT_SOLID && !casts;
+#else
+    bool meets_side = CUT == CUT_SOLID;
+#endif
+    if (meets_side) {
+        return meet_side(eye, v, hit);
+    }
 #if REPEATED
     return trace_cells(eye, v, base, span, hit);
 #else

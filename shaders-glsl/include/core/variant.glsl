@@ -84,9 +84,9 @@ layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box cuts nothing of 
 const uint OUTSIDE = 0u;
 #endif
 #if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_RECTANGLE
-layout(constant_id = 12) const uint TILED = 0u; // 1: of the rectangle those tiles that beams have listed
+layout(constant_id = 12) const uint CUT = 0u; // which part of a solid that its box cuts: one of CUT_*
 #else
-const uint TILED = 0u;
+const uint CUT = 0u;
 #endif
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
@@ -94,6 +94,10 @@ layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' l
 #if DISPATCH == DISPATCH_LISTS
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // of DISPATCH_LISTS: patches that a pixel tests
 #endif
+
+const uint CUT_ANY = 0u; // any part of any solid
+const uint CUT_TILES = 1u; // compute: tiles that beams have listed
+const uint CUT_SOLID = 2u; // rays that enter box and solid at once: of the sides, or of tiles that beams have listed
 
 const uint REFINEMENT_NONE = 0u;
 const uint REFINEMENT_HALVINGS = 1u;
@@ -126,6 +130,8 @@ const uint SIDE_ROWS = 32u; // strips of each of the box's sides that cut a hull
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made: three vectors each, of PATCH_VECTORS
 const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches
+const uint TILE_LISTS = 5u; // lists of tiles: one for each of these, one of tiles whose rays enter box and solid at once
+const uint SOLID_ROWS = 64u; // rows of equal height of which it is known within which radius all is solid
 const uint SHORT_LIST = 8u; // the first of them
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;

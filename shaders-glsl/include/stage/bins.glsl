@@ -6,6 +6,7 @@
 #include "stage/beams.glsl"
 #include "stage/pixel_words.glsl"
 #include "stage/listed.glsl"
+#include "stage/patch_lists.glsl"
 #include "core/shade.glsl"
 
 const bool SINGLE = DISPATCH != DISPATCH_BINS;
@@ -37,9 +38,12 @@ void begin()
 // A single instance needs no bins: the work groups are those of its rectangle, or of the tiles that beams have listed.
 Bin this_bin()
 {
-    if (DISPATCH == DISPATCH_BEAMS || TILED != 0u) {
+    if (DISPATCH == DISPATCH_BEAMS || CUT == CUT_TILES) {
         uint at = pushed.first_bin + 4u + 4u * gl_WorkGroupID.x;
         return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
+    }
+    if (CUT == CUT_SOLID) {
+        return Bin(bin_words[list_tiles(pushed.list) + 2u * gl_WorkGroupID.x], 0u, 0u, 0u);
     }
     if (SINGLE) {
         return Bin(pushed.corner, 0u, 1u, 0u);
@@ -50,7 +54,7 @@ Bin this_bin()
 
 uvec2 this_pixel(Bin bin)
 {
-    if (DISPATCH == DISPATCH_RECTANGLE && TILED == 0u) {
+    if (DISPATCH == DISPATCH_RECTANGLE && CUT == CUT_ANY) {
         uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16);
         return (corner + gl_WorkGroupID.xy) * GROUP_PIXELS + gl_LocalInvocationID.xy;
     }
