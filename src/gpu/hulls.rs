@@ -84,12 +84,13 @@ const SAMPLES: usize = 64;
 /// The hull of `object`, around its boundary or the envelope of its map, if it shows from this
 /// camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
 /// object is large enough on the screen for its triangles to pay. Besides, whether the box's sides
-/// cut it.
+/// cut it; `widest_cut`: shells have at most so many times half the side of a box that does.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
     view: &View,
     least_pixels: u32,
+    widest_cut: f64,
 ) -> Option<(Vec<Range<u32>>, bool)> {
     if object.repeat != [1; 3] {
         return None;
@@ -97,6 +98,9 @@ pub(crate) fn frusta(
     let cut = !is_whole(object, surface);
     let hull = &surface.hull().hull;
     let copies = object.placements();
+    if cut && hull.extent()[1] > widest_cut * object.profile.radius {
+        return None;
+    }
     if surface.hull().touches || copies.iter().any(|copy| is_lopsided(object, copy)) {
         return None;
     }
@@ -129,10 +133,6 @@ fn flat(p: DVec3) -> DVec2 {
     DVec2::new(p.truncate().length(), p.z)
 }
 
-/// Largest radius of shells that a box's sides cut, over half the box's side. Depths of triangles
-/// that reach much farther than what shows of them are interpolated too roughly.
-const WIDEST_CUT: f64 = 8.0;
-
 /// Whether the eye is in none of a copy's shells, and all that is drawn of them is in front of the
 /// near plane: everything, or what is between the box's sides.
 fn is_in_front(
@@ -149,10 +149,10 @@ fn is_in_front(
     };
     if cut {
         let radius = object.profile.radius;
-        let [_, widest, low, high] = hull.extent();
+        let [_, _, low, high] = hull.extent();
         let reach = radius * (forward.x.abs() + forward.y.abs());
         let middle = -DVec2::from(object.axis_offset());
-        return widest <= WIDEST_CUT * radius && ahead(middle, reach, low, high);
+        return ahead(middle, reach, low, high);
     }
     let aside = forward.truncate().length();
     let all_ahead = hull
