@@ -7,7 +7,6 @@ use super::memory::Buffer;
 use super::offset_surface::OffsetSurface;
 use super::table_slot::{Part, Ranges, Slot};
 use crate::error::{Error, Result, Stage};
-use crate::shader::generated::PATCH_VECTORS;
 use range_alloc::RangeAllocator;
 use std::sync::{Arc, Mutex, Weak};
 
@@ -125,6 +124,6 @@ fn full() -> Error {
 /// With a window's length behind the last unit: the window on the last tables is as long as on all
 /// others.
 fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
-    let vectors = u64::from(unit) * u64::from(units) + u64::from(PATCH_VECTORS);
+    let vectors = u64::from(unit) * u64::from(units) + u64::from(device.own_vectors);
     storage(device, "tables", 16 * vectors)
 }

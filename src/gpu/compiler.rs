@@ -12,6 +12,7 @@ use super::instance::{Instance, into_device};
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
 use super::pipelines::Pipelines;
 use super::report::{DeviceReport, candidates, choose, text, variable};
+use super::tables::own_vectors;
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes, Solver};
 use crate::shader::generated::{CUT_ANY, CUT_SOLID, LONG_LIST, MIDDLE_LIST, SHORT_LIST};
@@ -105,7 +106,8 @@ impl Compiler {
         let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
-        let pipelines = Pipelines::new(raw.clone(), None).map_err(into_device)?;
+        let own = own_vectors(&chosen.properties.limits);
+        let pipelines = Pipelines::new(raw.clone(), None, own).map_err(into_device)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
             clips: chosen.clips(),

@@ -13,7 +13,7 @@ use super::view::View;
 use crate::error::Result;
 use crate::scene::Shadow;
 use crate::settings::SearchSettings;
-use crate::shader::generated::{FRUSTUM_VECTORS, PATCH_VECTORS};
+use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::shader::{Dispatch, Kind, Variant};
 use ash::vk;
 use glam::DVec2;
@@ -201,7 +201,8 @@ impl Renderer {
         };
         let variant = prepared.variant;
         let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
-        let fit = tables.is_none_or(|s| s.tables().own <= PATCH_VECTORS as usize);
+        let most = self.device.own_vectors as usize;
+        let fit = tables.is_none_or(|s| s.tables().own <= most);
         let searched = variant.seen_from(outside).with_tables(fit);
         let (kind, variant) = match &work {
             Work::Hull { cut, .. } => {

@@ -8,7 +8,6 @@ use super::device::Shared;
 use super::memory::Buffer;
 use super::target::ComputeTarget;
 use crate::error::Result;
-use crate::shader::generated::PATCH_VECTORS;
 use ash::vk;
 use std::sync::Arc;
 
@@ -166,7 +165,7 @@ impl FrameSlot {
         }
         use vk::DescriptorType as T;
         let block = size_of::<SolidBlock>() as u64;
-        let window = 16 * u64::from(PATCH_VECTORS);
+        let window = 16 * u64::from(self.device.own_vectors);
         for (binding, (kind, buffer, range)) in (0u32..).zip([
             (T::UNIFORM_BUFFER, self.frame.raw, vk::WHOLE_SIZE),
             (T::UNIFORM_BUFFER_DYNAMIC, self.blocks.raw, block),

@@ -32,6 +32,8 @@ pub(crate) struct Pipelines {
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
     passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
+    /// As that of [`Shared`](super::device::Shared).
+    own_vectors: u32,
     /// Where modules come from that are not those embedded.
     #[cfg(feature = "other-shaders")]
     pub source: Option<ShaderSource>,
@@ -55,7 +57,11 @@ struct Key {
 
 impl Pipelines {
     /// `cache`: a host's.
-    pub fn new(raw: ash::Device, cache: Option<vk::PipelineCache>) -> Result<Self> {
+    pub fn new(
+        raw: ash::Device,
+        cache: Option<vk::PipelineCache>,
+        own_vectors: u32,
+    ) -> Result<Self> {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
             layout: vk::PipelineLayout::null(),
@@ -66,6 +72,7 @@ impl Pipelines {
             owners: AtomicU64::new(0),
             passes: Mutex::default(),
             flags: vk::PipelineCreateFlags::empty(),
+            own_vectors,
             #[cfg(feature = "other-shaders")]
             source: None,
             raw,

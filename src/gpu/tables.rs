@@ -2,8 +2,11 @@
 
 use super::bins::solid_radii;
 use crate::maps::envelope::Envelope;
-use crate::shader::generated::{BEAM_FIRST_NODE, LISTED_PATCHES, PATCH_ROWS};
+use crate::shader::generated::{
+    BEAM_FIRST_NODE, LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS,
+};
 use crate::surface::{Cones, GpuPatch, QuadricPatch, Tables};
+use ash::vk;
 
 /// A table that may stand anywhere in a buffer.
 pub(crate) struct GpuTables {
@@ -84,6 +87,11 @@ impl GpuTables {
             beam_nodes: 0,
         }
     }
+}
+
+/// Most vectors of one solid's tables that a device's uniform buffers hold.
+pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
+    (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
 }
 
 /// Patches of which lists are made, in the layout of `patch_lists.glsl`; nothing if there are too

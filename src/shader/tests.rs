@@ -187,6 +187,8 @@ fn a_variant_sets_every_specialisation_constant() {
         .constants()
         .iter()
         .map(|(id, _)| *id)
+        // That of the device.
+        .chain([g::OWN_VECTORS_ID])
         .collect();
     let mut all = BTreeSet::new();
     for module in modules() {
@@ -194,7 +196,7 @@ fn a_variant_sets_every_specialisation_constant() {
         assert!(used.is_subset(&set), "{}: {used:?}", module.name());
         match module.entry {
             Entry::Beam => assert_eq!(used, BTreeSet::new(), "there is one list of tiles"),
-            Entry::List => assert_eq!(used, BTreeSet::from([g::OUTSIDE_ID])),
+            Entry::List => assert_eq!(used, BTreeSet::from([g::OUTSIDE_ID, g::OWN_VECTORS_ID])),
             _ => {}
         }
         all.extend(used);

@@ -9,6 +9,7 @@ use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use std::sync::Arc;
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
@@ -300,19 +301,31 @@ fn no_cut_compiles_a_pipeline() {
 #[test]
 fn pipelines_of_large_tables_are_compiled() {
     let device = Device::open_validated(None).unwrap();
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
-    let scene = revmap::scene::file::load(file, &[]).unwrap();
-    for stage in STAGES {
+    // Larger than any uniform buffer that is used: 1,700 patches of two vectors and a half.
+    let groove = |n: u32| [0.3 + 0.002 * f64::from(n % 2), f64::from(n) / 1700.0];
+    let mut points = vec![[0.0, 0.0]];
+    points.extend((0..=1700).map(groove));
+    points.push([0.0, 1.0]);
+    let screw = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+    let goblet = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
+    let goblet = revmap::scene::file::load(goblet, &[]).unwrap();
+    let mut large = goblet.clone();
+    large.objects = vec![Object::new("screw", screw)];
+    for (scene, least, stage) in STAGES
+        .into_iter()
+        .flat_map(|stage| [(&goblet, 16_384, stage), (&large, 65_536, stage)])
+    {
         let settings = Settings {
             solver: Solver::Hull,
             tolerance: revmap::settings::Tolerance::EXACT,
             ..settings(stage)
         };
-        let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
+        let mut renderer = Offscreen::new(&device, scene, &settings).unwrap();
         renderer.prewarm().unwrap();
         let compiled = device.pipelines_compiled();
         renderer.draw().unwrap();
         assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}");
+        assert!(renderer.object_costs()[0].table_bytes > least);
     }
     device.check().unwrap();
 }

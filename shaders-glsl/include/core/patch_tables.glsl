@@ -15,7 +15,7 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
 
 // The batch's own tables alone: software drivers gather from uniform buffers several times as fast.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
-    uvec4 own_patch_tables[PATCH_VECTORS];
+    uvec4 own_patch_tables[OWN_VECTORS];
 };
 
 const uint RUN_BITS = 12u;

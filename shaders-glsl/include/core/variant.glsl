@@ -88,6 +88,7 @@ layout(constant_id = 12) const uint CUT = 0u; // which part of a solid that its 
 #else
 const uint CUT = 0u;
 #endif
+layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // of one solid's tables: most that the device's uniform buffers hold
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
 #endif
@@ -119,7 +120,8 @@ const uint SHADOW_SOFT = 2u;
 const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
 
 const uint MAX_LIGHTS = 8u;
-const uint PATCH_VECTORS = 1024u; // of one solid's tables: what every device's uniform buffers hold
+const uint PATCH_VECTORS = 1024u; // least OWN_VECTORS: what every device's uniform buffers hold
+const uint MOST_OWN_VECTORS = 4096u;
 const uint PATCH_ROWS = 256u; // of a solid's tables: a power of 4
 const uint PATCH_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
 const uint BEAM_NODES = 64u; // of one of its levels

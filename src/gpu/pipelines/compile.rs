@@ -5,6 +5,7 @@ use crate::error::{Error, Result, Stage};
 use crate::gpu::call::Call;
 use crate::gpu::output::{DepthOrder, Output, PassFormats, PassKind};
 use crate::gpu::render_pass::color_formats;
+use crate::shader::generated::OWN_VECTORS_ID;
 use crate::shader::{Kind, Module, Variant, depth_less, words};
 use ash::vk;
 
@@ -15,18 +16,18 @@ impl Pipelines {
         kind: Kind,
         output: &Output,
     ) -> Result<vk::Pipeline> {
-        let constants = variant.constants();
-        let entries: Vec<_> = constants
-            .iter()
+        let own = variant.constants();
+        let constants = || own.into_iter().chain([(OWN_VECTORS_ID, self.own_vectors)]);
+        let entries: Vec<_> = constants()
             .zip(0u32..)
             .map(|((id, _), n)| {
                 vk::SpecializationMapEntry::default()
-                    .constant_id(*id)
+                    .constant_id(id)
                     .offset(4 * n)
                     .size(4)
             })
             .collect();
-        let values: Vec<u32> = constants.iter().map(|(_, value)| *value).collect();
+        let values: Vec<u32> = constants().map(|(_, value)| value).collect();
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
