@@ -85,9 +85,14 @@ impl<'a> Drawers<'a> {
         if let Some(multisampled) = self.multisampled(way) {
             return multisampled.picture();
         }
+        self.rays(way, way.rays())
+    }
+
+    /// So many rays per pixel, by the way's renderer.
+    pub fn rays(&mut self, way: Way, count: u32) -> Result<Frame> {
         let scene = self.scene;
         let renderer = self.renderer(way);
-        averaged(way.rays(), scene, |scene| {
+        averaged(count, scene, |scene| {
             renderer.update(scene)?;
             renderer.draw()?;
             renderer.read()
