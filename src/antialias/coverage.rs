@@ -8,12 +8,24 @@ use glam::{DVec2, Vec2Swizzles};
 /// A pixel whose colour is made from those of pixels about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Blend {
-    /// Number of the pixel.
-    pub pixel: u32,
-    /// How much of it shows what its middle does not.
-    pub part: f32,
+    /// The number of the pixel, then how little of it shows what its middle does not: of a pixel's
+    /// blends the first takes most of it.
+    key: u64,
     /// Numbers of pixels, and their weights: beyond the line, at it, and one further in.
     pub sources: [(u32, f32); 3],
+}
+
+impl Blend {
+    /// Number of the pixel.
+    pub fn pixel(&self) -> u32 {
+        (self.key >> 32) as u32
+    }
+
+    /// Leaves of each pixel's blends the one that takes most of it, in the pixels' order.
+    pub fn leave_one_a_pixel(blends: &mut Vec<Self>) {
+        blends.sort_unstable_by_key(|blend| blend.key);
+        blends.dedup_by_key(|blend| blend.pixel());
+    }
 }
 
 /// How much of a pixel lies on its middle's side of a line: a line that passes the middle at
@@ -160,9 +172,10 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
                 let change = further.map_or(0.0, |_| curved(inside, covered));
                 let weights = [1.0 - covered, covered * (1.0 - change), covered * change];
                 let pixels = [other, own, further.unwrap_or(own)];
+                let part = if pixel == own { 1.0 - covered } else { covered } as f32;
                 blends.push(Blend {
-                    pixel,
-                    part: (if pixel == own { 1.0 - covered } else { covered }) as f32,
+                    // Bits of floats that are not negative are in order.
+                    key: u64::from(pixel) << 32 | u64::from(!part.to_bits()),
                     sources: std::array::from_fn(|k| (pixels[k], weights[k] as f32)),
                 });
             }

@@ -38,6 +38,27 @@ const HALVINGS: u32 = 10;
 /// Least distance of the eye from the axis, object units.
 const OFF_AXIS: f64 = 1e-6;
 
+/// A point of a curve, and where it is seen.
+#[derive(Clone, Copy)]
+struct Spot {
+    /// On the surface, and the same from the eye, object units.
+    place: DVec3,
+    from_eye: DVec3,
+    /// As those of [`Point`].
+    at: DVec2,
+    depth: f64,
+}
+
+/// A curve on a solid, over 0 to 1; `None` behind the eye.
+struct Curve<'a, F: Fn(f64) -> Option<Spot>> {
+    sight: &'a Sight,
+    /// The patches that it belongs to.
+    patches: &'a [&'a QuadricPatch],
+    /// As that of [`Point`].
+    curved: bool,
+    at: F,
+}
+
 /// A copy of a solid as the eye sees it, in object units about its axis.
 pub(super) struct Sight {
     /// The eye.
@@ -79,48 +100,18 @@ impl Sight {
         }
     }
 
-    /// A surface's point from the eye, at radius, height, cosine and sine of the azimuth.
-    fn place(&self, p: DVec2, [cos, sin]: [f64; 2]) -> (DVec3, DVec3) {
+    /// A surface's point at radius and height, cosine and sine of the azimuth.
+    fn spot(&self, p: DVec2, [cos, sin]: [f64; 2]) -> Option<Spot> {
         let DVec2 { x: cx, y: cy } = self.azimuth;
         let beside = p.x * DVec2::new(cx * cos - cy * sin, cy * cos + cx * sin);
         let place = beside.extend(p.y);
-        (place, place - self.eye)
-    }
-
-    /// The point of the screen; `None` behind the eye.
-    fn point(&self, patches: [&QuadricPatch; 2], p: DVec2, turn: [f64; 2]) -> Option<Point> {
-        let (place, from_eye) = self.place(p, turn);
+        let from_eye = place - self.eye;
         let depth = from_eye.dot(self.forward);
-        if depth <= 1e-9 || depth.is_nan() {
-            return None;
-        }
-        let at = DVec2::new(from_eye.dot(self.right), from_eye.dot(self.down)) / depth;
-        let ray = from_eye / depth;
-        let (mut reach, mut bulges) = (0.0f64, false);
-        for patch in patches {
-            // Along the ray G is `steep s + bend s^2` about the point, less what a pixel beside
-            // changes it by.
-            let [a, _, k1, k2] = patch.quadric;
-            let gradient = DVec3::new(
-                2.0 * a * place.x,
-                2.0 * a * place.y,
-                k1 + 2.0 * k2 * place.z,
-            );
-            let beside: f64 = self.step.iter().map(|s| gradient.dot(*s).abs()).sum();
-            let change = beside * depth;
-            let bend = a * ray.truncate().length_squared() + k2 * ray.z * ray.z;
-            let steep = gradient.dot(ray).abs();
-            let root = (steep * steep + 4.0 * bend.max(0.0) * change).sqrt();
-            let own = 2.0 * change / (steep + root);
-            reach = reach.max(if own < self.most { own } else { self.most });
-            bulges |= bend > 0.0;
-        }
-        Some(Point {
-            at: at + self.middle,
+        (depth > 1e-9).then(|| Spot {
+            place,
+            from_eye,
+            at: DVec2::new(from_eye.dot(self.right), from_eye.dot(self.down)) / depth + self.middle,
             depth,
-            reach,
-            bulges,
-            curved: true,
         })
     }
 
@@ -176,9 +167,15 @@ impl Sight {
                     if cos.is_nan() {
                         return None;
                     }
-                    self.point([patch; 2], DVec2::new(r, z), [cos, sin])
+                    self.spot(DVec2::new(r, z), [cos, sin])
                 };
-                follow(&at, emit);
+                let curve = Curve {
+                    sight: self,
+                    patches: &[patch],
+                    curved: true,
+                    at,
+                };
+                curve.follow(emit);
             }
         }
     }
@@ -219,11 +216,15 @@ impl Sight {
             for side in [1.0, -1.0] {
                 let at = |part: f64| {
                     let (sin, cos) = (from + (to - from) * part).sin_cos();
-                    let mut point = self.point([before, after], p, [cos, side * sin])?;
-                    (point.bulges, point.curved) = (true, false);
-                    Some(point)
+                    self.spot(p, [cos, side * sin])
                 };
-                follow(&at, emit);
+                let curve = Curve {
+                    sight: self,
+                    patches: &[before, after],
+                    curved: false,
+                    at,
+                };
+                curve.follow(emit);
             }
         }
     }
@@ -244,46 +245,85 @@ impl Sight {
     }
 }
 
-/// Hands on a curve, given over 0 to 1, as lines that it is near to.
-fn follow(at: &impl Fn(f64) -> Option<Point>, emit: &mut impl FnMut(&Point, &Point)) {
-    let ends = [0.0, 0.5, 1.0].map(at);
-    let length = match &ends {
-        [Some(a), Some(m), Some(b)] => a.at.distance(m.at) + m.at.distance(b.at),
-        _ => f64::INFINITY,
-    };
-    // A longer one may bend twice.
-    let parts = if length < SHORT { 1 } else { 4 };
-    let [mut last, _, _] = ends;
-    for k in 1..=parts {
-        let [from, to] = [k - 1, k].map(|k| f64::from(k) / f64::from(parts));
-        let next = if k == parts { ends[2] } else { at(to) };
-        if let (Some(a), Some(b)) = (&last, &next) {
-            halve(at, [(from, a), (to, b)], HALVINGS, emit);
+impl<F: Fn(f64) -> Option<Spot>> Curve<'_, F> {
+    /// Hands the curve on as lines that it is near to.
+    fn follow(&self, emit: &mut impl FnMut(&Point, &Point)) {
+        let ends = [0.0, 0.5, 1.0].map(&self.at);
+        let length = match &ends {
+            [Some(a), Some(m), Some(b)] => a.at.distance(m.at) + m.at.distance(b.at),
+            _ => f64::INFINITY,
+        };
+        // A longer one may bend twice.
+        let spots: &[_] = if length < SHORT {
+            &[(0.0, ends[0]), (1.0, ends[2])]
+        } else {
+            &[
+                (0.0, ends[0]),
+                (0.25, (self.at)(0.25)),
+                (0.5, ends[1]),
+                (0.75, (self.at)(0.75)),
+                (1.0, ends[2]),
+            ]
+        };
+        let point = |(part, spot): &(f64, Option<Spot>)| Some((*part, self.point(spot.as_ref()?)));
+        let mut last = None;
+        for next in spots.iter().map(point) {
+            if let (Some(a), Some(b)) = (&last, &next) {
+                self.halve([a, b], HALVINGS, emit);
+            }
+            last = next;
         }
-        last = next;
     }
-}
 
-fn halve(
-    at: &impl Fn(f64) -> Option<Point>,
-    [(from, a), (to, b)]: [(f64, &Point); 2],
-    left: u32,
-    emit: &mut impl FnMut(&Point, &Point),
-) {
-    let way = b.at - a.at;
-    let length = way.length();
-    let middle = 0.5 * (from + to);
-    if left > 0
-        && length > 0.5
-        && let Some(m) = at(middle)
-        && (m.at - a.at).perp_dot(way).abs() > FLATNESS * length
-    {
-        halve(at, [(from, a), (middle, &m)], left - 1, emit);
-        halve(at, [(middle, &m), (to, b)], left - 1, emit);
-        return;
+    fn halve(&self, ends: [&(f64, Point); 2], left: u32, emit: &mut impl FnMut(&Point, &Point)) {
+        let [(from, a), (to, b)] = ends;
+        let way = b.at - a.at;
+        let length = way.length();
+        let middle = 0.5 * (from + to);
+        if left > 0
+            && length > 0.5
+            && let Some(m) = (self.at)(middle)
+            && (m.at - a.at).perp_dot(way).abs() > FLATNESS * length
+        {
+            let m = (middle, self.point(&m));
+            self.halve([ends[0], &m], left - 1, emit);
+            self.halve([&m, ends[1]], left - 1, emit);
+        } else if a.bulges && b.bulges {
+            emit(a, b);
+        }
     }
-    if a.bulges && b.bulges {
-        emit(a, b);
+
+    /// How far beside a spot the depth is followed, and on which side the solid is.
+    fn point(&self, spot: &Spot) -> Point {
+        let Spot { place, depth, .. } = *spot;
+        let ray = spot.from_eye / depth;
+        let (mut reach, mut bulges) = (0.0f64, !self.curved);
+        for patch in self.patches {
+            // Along the ray G is `steep s + bend s^2` about the point, less what a pixel beside
+            // changes it by.
+            let [a, _, k1, k2] = patch.quadric;
+            let gradient = DVec3::new(
+                2.0 * a * place.x,
+                2.0 * a * place.y,
+                k1 + 2.0 * k2 * place.z,
+            );
+            let steps = self.sight.step.iter();
+            let change = depth * steps.map(|s| gradient.dot(*s).abs()).sum::<f64>();
+            let bend = a * ray.truncate().length_squared() + k2 * ray.z * ray.z;
+            let steep = gradient.dot(ray).abs();
+            let root = (steep * steep + 4.0 * bend.max(0.0) * change).sqrt();
+            let own = 2.0 * change / (steep + root);
+            let most = self.sight.most;
+            reach = reach.max(if own < most { own } else { most });
+            bulges |= bend > 0.0;
+        }
+        Point {
+            at: spot.at,
+            depth,
+            reach,
+            bulges,
+            curved: self.curved,
+        }
     }
 }
 

@@ -41,6 +41,9 @@ pub fn silhouettes(scene: &Scene, frame: &mut Frame) -> Result<()> {
     Ok(())
 }
 
+/// The number of a pixel that smoothing changes, and its colour.
+pub(crate) type Change = (u32, [f32; 4]);
+
 /// The solids of a scene, prepared; those that do not change are kept.
 #[derive(Default)]
 pub(crate) struct Solids {
@@ -72,17 +75,29 @@ impl Solids {
             let (x, y) = (pixel as u32 % size.0, pixel as u32 / size.0);
             f64::from(distance[pixel]) / camera.pixel(x, y).length()
         };
-        let blends = self.blends(camera, size, &depth);
-        apply(&blends, &mut frame.color);
+        let color = |pixel: usize| frame.color[pixel];
+        let changes = self.changes(camera, size, &depth, &color);
+        apply(&changes, frame);
     }
 
-    /// The same by depths along the view, of each pixel number, infinite where nothing is hit.
-    pub fn smooth_by<D>(&self, camera: &CameraFrame, depth: &D, frame: &mut Frame)
+    /// What smoothing changes of a picture, by its depths along the view, infinite where nothing is
+    /// hit, and its colours, each of a pixel's number.
+    pub fn changes<D, C>(
+        &self,
+        camera: &CameraFrame,
+        size: (u32, u32),
+        depth: &D,
+        color: &C,
+    ) -> Vec<Change>
     where
         D: Fn(usize) -> f64 + Sync,
+        C: Fn(usize) -> [f32; 4],
     {
-        let blends = self.blends(camera, (frame.width, frame.height), depth);
-        apply(&blends, &mut frame.color);
+        let blends = self.blends(camera, size, depth);
+        blends
+            .iter()
+            .map(|b| (b.pixel(), mixed(b, color)))
+            .collect()
     }
 
     /// The parts of pixels that show what is beside them; each pixel once.
@@ -96,8 +111,7 @@ impl Solids {
             depth,
             pixel_size: camera.right.length(),
         };
-        let of = |solid: &Meridian, copy: &Placement| {
-            let mut blends = Vec::new();
+        let add = |mut blends: Vec<Blend>, solid: &Meridian, copy: &Placement| {
             let (size, middle) = (solid.size(copy), middle(copy) - camera.eye);
             let depth = middle.dot(camera.forward);
             let step = [camera.right, -camera.up].map(|v| middle.dot(v) / v.length_squared());
@@ -111,21 +125,20 @@ impl Solids {
             }
             blends
         };
-        let solids = self.of.iter().filter_map(|(_, solid)| solid.as_deref());
-        let mut all: Vec<Blend> = solids
-            .flat_map(|solid| {
-                let copies = solid.object.placements().par_iter().with_min_len(16);
-                copies
-                    .flat_map_iter(|copy| of(solid, copy))
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-        // Where several lines cut a pixel, the one that takes most of it.
-        all.sort_unstable_by(|a, b| {
-            let parts = b.part.total_cmp(&a.part);
-            a.pixel.cmp(&b.pixel).then(parts)
-        });
-        all.dedup_by_key(|blend| blend.pixel);
+        let joined = |mut a: Vec<Blend>, b| {
+            if a.is_empty() {
+                return b;
+            }
+            a.extend(b);
+            a
+        };
+        let mut all = Vec::new();
+        for solid in self.of.iter().filter_map(|(_, solid)| solid.as_deref()) {
+            let copies = solid.object.placements().par_iter().with_min_len(16);
+            let parts = copies.fold(Vec::new, |blends, copy| add(blends, solid, copy));
+            all = joined(all, parts.reduce(Vec::new, joined));
+        }
+        Blend::leave_one_a_pixel(&mut all);
         all
     }
 }
@@ -135,27 +148,27 @@ fn middle(copy: &Placement) -> DVec3 {
     copy.position + copy.rotation * (0.5 * copy.scale * DVec3::Z)
 }
 
-/// Blends colours, weighted by alpha.
-fn apply(blends: &[Blend], colors: &mut [[f32; 4]]) {
-    let mixed = |blend: &Blend| {
-        let [beyond, own, further] = blend.sources.map(|(pixel, weight)| {
-            let [r, g, b, a] = colors[pixel as usize];
-            ([r * a, g * a, b * a, a], weight)
-        });
-        let covered = own.1 + further.1;
-        let sum: [f32; 4] = std::array::from_fn(|c| {
-            let (a, b) = (own.0[c], further.0[c]);
-            let near = a * own.1 + b * further.1;
-            // What is taken on from further in stays near both.
-            let [least, most] = [0.5 * a.min(b), a.max(b)].map(|v| covered * v);
-            beyond.0[c] * beyond.1 + near.max(least).min(most)
-        });
-        let [r, g, b, a] = sum;
-        let scale = if a > 0.0 { a.recip() } else { 0.0 };
-        [r * scale, g * scale, b * scale, a.min(1.0)]
-    };
-    let mixed: Vec<_> = blends.iter().map(mixed).collect();
-    for (blend, color) in blends.iter().zip(mixed) {
-        colors[blend.pixel as usize] = color;
+/// The colours of a blend's sources, mixed, weighted by alpha.
+fn mixed(blend: &Blend, color: &impl Fn(usize) -> [f32; 4]) -> [f32; 4] {
+    let [beyond, own, further] = blend.sources.map(|(pixel, weight)| {
+        let [r, g, b, a] = color(pixel as usize);
+        ([r * a, g * a, b * a, a], weight)
+    });
+    let covered = own.1 + further.1;
+    let [r, g, b, a]: [f32; 4] = std::array::from_fn(|c| {
+        let (a, b) = (own.0[c], further.0[c]);
+        let near = a * own.1 + b * further.1;
+        // What is taken on from further in stays near both.
+        let [least, most] = [0.5 * a.min(b), a.max(b)].map(|v| covered * v);
+        beyond.0[c] * beyond.1 + near.max(least).min(most)
+    });
+    let scale = if a > 0.0 { a.recip() } else { 0.0 };
+    [r * scale, g * scale, b * scale, a.min(1.0)]
+}
+
+/// Takes over what smoothing changes.
+pub(crate) fn apply(changes: &[Change], frame: &mut Frame) {
+    for (pixel, color) in changes {
+        frame.color[*pixel as usize] = *color;
     }
 }

@@ -10,6 +10,7 @@ pub use openexr::{read_exr, write_exr};
 pub use png::{Picture, linear_from_srgb, srgb_from_linear, write_png};
 
 use crate::error::{Error, Result, Stage};
+use bytemuck::{Zeroable, allocation::try_zeroed_vec};
 
 /// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
 /// is 9 GB.
@@ -102,11 +103,11 @@ impl Frame {
             height,
             color: plane(pixels, background)?,
             distance: plane(pixels, f32::INFINITY)?,
-            normal: plane(pixels, [0.0; 3])?,
-            shading_normal: plane(pixels, [0.0; 3])?,
-            albedo: plane(pixels, [0.0; 3])?,
-            uv: plane(pixels, [0.0; 2])?,
-            steps: plane(pixels, 0.0)?,
+            normal: zeros(pixels)?,
+            shading_normal: zeros(pixels)?,
+            albedo: zeros(pixels)?,
+            uv: zeros(pixels)?,
+            steps: zeros(pixels)?,
             exhausted: 0,
         })
     }
@@ -237,14 +238,23 @@ pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
 
 fn plane<T: Copy>(pixels: usize, value: T) -> Result<Vec<T>> {
     let mut values = Vec::new();
-    values.try_reserve_exact(pixels).map_err(|_| {
-        Error::new(
-            Stage::Frame,
-            format!("no memory for a picture of {pixels} pixels; give a smaller size"),
-        )
-    })?;
+    values
+        .try_reserve_exact(pixels)
+        .map_err(|_| no_memory(pixels))?;
     values.resize(pixels, value);
     Ok(values)
+}
+
+/// A plane of zeros, whose pages take no memory before they are written.
+fn zeros<T: Zeroable>(pixels: usize) -> Result<Vec<T>> {
+    try_zeroed_vec(pixels).map_err(|()| no_memory(pixels))
+}
+
+fn no_memory(pixels: usize) -> Error {
+    Error::new(
+        Stage::Frame,
+        format!("no memory for a picture of {pixels} pixels; give a smaller size"),
+    )
 }
 
 #[cfg(test)]

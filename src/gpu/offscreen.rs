@@ -7,10 +7,11 @@ use super::device::{Device, Shared};
 use super::entry::ObjectId;
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
 use super::plan::DrawPath;
+use super::read_back::{self, Linear};
 use super::renderer::Renderer;
 use super::target::Target;
 use super::view::View;
-use crate::antialias::Solids;
+use crate::antialias::{self, Solids};
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Growth, Object, Placement, Scene};
@@ -342,22 +343,30 @@ impl Offscreen {
     pub fn read(&mut self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
-        let mut frame = super::read_back::frame(&self.settings, self.background, &planes)?;
-        if let Some((solids, camera)) = &self.solids {
-            match self.settings.planes {
-                Planes::All => solids.smooth(camera, &mut frame),
-                _ => {
-                    let bytes = planes.last().copied().unwrap_or_default();
-                    let view = &self.view;
-                    let depth = |pixel: usize| {
-                        let word = &bytes[4 * pixel..4 * pixel + 4];
-                        view.along_at(bytemuck::pod_read_unaligned(word))
-                    };
-                    solids.smooth_by(camera, &depth, &mut frame);
-                }
+        let read = || read_back::frame(&self.settings, self.background, &planes);
+        let (view, size) = (&self.view, (self.settings.width, self.settings.height));
+        match (&self.solids, planes.as_slice()) {
+            (Some((solids, camera)), [colors, depths]) => {
+                let (colors, depths) = (colors.as_chunks().0, depths.as_chunks().0);
+                let linear = Linear::new();
+                let color = |pixel: usize| linear.color(&colors[pixel]);
+                let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
+                let mut changes = Vec::new();
+                // Neither needs the other. A thread frees and takes again its own memory faster.
+                let mut frame = rayon::in_place_scope(|scope| {
+                    scope.spawn(|_| changes = solids.changes(camera, size, &depth, &color));
+                    read()
+                })?;
+                antialias::apply(&changes, &mut frame);
+                Ok(frame)
             }
+            (Some((solids, camera)), _) => {
+                let mut frame = read()?;
+                solids.smooth(camera, &mut frame);
+                Ok(frame)
+            }
+            (None, _) => read(),
         }
-        Ok(frame)
     }
 
     /// As [`Renderer::map_bytes`].

@@ -10,13 +10,10 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
     let mut frame = Frame::new(settings.width, settings.height, background)?;
     match settings.planes {
         Planes::Color => {
-            let linear: [f32; 256] =
-                std::array::from_fn(|byte| linear_from_srgb(byte as f64 / 255.0) as f32);
+            let linear = Linear::new();
             let bytes = planes.first().copied().unwrap_or_default();
             for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks().0) {
-                let &[r, g, b, a]: &[u8; 4] = rgba;
-                let [r, g, b] = [r, g, b].map(|byte| linear[usize::from(byte)]);
-                *color = [r, g, b, f32::from(a) / 255.0];
+                *color = linear.color(rgba);
             }
         }
         Planes::Depth { .. } => {}
@@ -45,6 +42,23 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
         }
     }
     Ok(frame)
+}
+
+/// Linear values of 8-bit ones.
+pub(crate) struct Linear([f32; 256]);
+
+impl Linear {
+    pub fn new() -> Self {
+        Self(std::array::from_fn(|byte| {
+            linear_from_srgb(byte as f64 / 255.0) as f32
+        }))
+    }
+
+    /// The colour of a pixel.
+    pub fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
+        let [r, g, b] = [r, g, b].map(|byte| self.0[usize::from(byte)]);
+        [r, g, b, f32::from(a) / 255.0]
+    }
 }
 
 fn vec4(bytes: &[u8], pixel: usize) -> [f32; 4] {

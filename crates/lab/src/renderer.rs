@@ -1,7 +1,7 @@
 //! One renderer for every method: searches and meshes behind the same calls.
 
 use crate::floor;
-use crate::mesh::{MeshOffscreen, MeshPipelines};
+use crate::mesh::{MeshOffscreen, MeshPipelines, Multisampled};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
@@ -62,6 +62,14 @@ impl MethodDevice {
             let device = self.device_of(scene, settings.method)?;
             MethodRenderer::Search(Box::new(Offscreen::new(device, scene, &own)?))
         })
+    }
+
+    /// Makes all ready for a picture of four samples a pixel.
+    ///
+    /// # Errors
+    /// As [`Multisampled::new`].
+    pub fn multisampled(&self, scene: &Scene, settings: &MethodSettings) -> Result<Multisampled> {
+        Multisampled::new(&self.pipelines, scene, settings)
     }
 
     fn device_of(&self, scene: &Scene, method: Method) -> Result<&Device> {

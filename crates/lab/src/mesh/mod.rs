@@ -11,6 +11,7 @@
 mod blocks;
 mod drawer;
 mod meridian;
+mod multisampled;
 mod offscreen;
 mod placed;
 mod tessellation;
@@ -18,5 +19,6 @@ mod tessellation;
 mod tests;
 
 pub use drawer::MeshPipelines;
+pub use multisampled::Multisampled;
 pub use offscreen::MeshOffscreen;
 pub use tessellation::{BAND, Mesh, Vertex};

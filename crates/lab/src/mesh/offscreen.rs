@@ -1,12 +1,13 @@
 //! A scene drawn as meshes in an off-screen frame.
 
 use super::blocks::FrameBlock;
-use super::drawer::{MeshDrawer, MeshPipelines};
+use super::drawer::{DrawnPass, MeshDrawer, MeshPipelines, SAMPLES};
 use super::placed::SceneMeshes;
 use crate::method::{Method, MethodSettings};
+use ash::vk;
 use revmap::error::{Error, Result, Stage};
 use revmap::frame::Frame;
-use revmap::gpu::{Offscreen, Times};
+use revmap::gpu::{Guest, Offscreen, Times};
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::{DrawStage, Settings};
 use std::sync::Arc;
@@ -30,6 +31,16 @@ impl MeshOffscreen {
         scene: &Scene,
         settings: &MethodSettings,
     ) -> Result<Self> {
+        Self::for_pass(pipelines, scene, settings, None)
+    }
+
+    /// The same; with a multisampled pass another frame draws it there as a guest.
+    pub(super) fn for_pass(
+        pipelines: &Arc<MeshPipelines>,
+        scene: &Scene,
+        settings: &MethodSettings,
+        multisampled: Option<vk::RenderPass>,
+    ) -> Result<Self> {
         let method = settings.method;
         let levels = match method {
             Method::Mesh { segments, rings } => {
@@ -51,7 +62,11 @@ impl MeshOffscreen {
         }
         let own = Settings::from(settings);
         let offscreen = Offscreen::for_guests(pipelines.device(), scene, &own)?;
-        let pass = (offscreen.render_pass(), settings.planes);
+        let pass = DrawnPass {
+            raw: multisampled.unwrap_or(offscreen.render_pass()),
+            samples: multisampled.map_or(vk::SampleCountFlags::TYPE_1, |_| SAMPLES),
+            planes: settings.planes,
+        };
         let mut all = Self {
             drawer: MeshDrawer::new(pipelines, pass)?,
             offscreen,
@@ -77,14 +92,24 @@ impl MeshOffscreen {
         self.drawer.update(&frame, lighting.lights.len(), &placed)
     }
 
+    /// What is drawn in a pass.
+    pub(super) fn guest(&self) -> &dyn Guest {
+        &self.drawer
+    }
+
     /// Draws one frame and waits for it.
     ///
     /// # Errors
     /// Of Vulkan ([`Stage::Draw`]).
     pub fn draw(&mut self) -> Result<Times> {
         let times = self.offscreen.draw_with(Some(&self.drawer))?;
-        self.drawer.drop_staging();
+        self.drop_staging();
         Ok(times)
+    }
+
+    /// Drops what meshes were copied from, once a frame was drawn.
+    pub(super) fn drop_staging(&mut self) {
+        self.drawer.drop_staging();
     }
 
     /// The frame that was drawn last.

@@ -1,9 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use super::blocks::FrameBlock;
-use super::drawer::{MeshDrawer, MeshPipelines};
+use super::drawer::{DrawnPass, MeshDrawer, MeshPipelines};
 use super::placed::SceneMeshes;
 use super::tessellation::Mesh;
 use crate::compare::{CompareOptions, compare};
+use ash::vk;
 use glam::{DVec3, Vec3};
 use revmap::gpu::{Device, Offscreen};
 use revmap::profile::Profile;
@@ -208,7 +209,11 @@ fn meshes_and_searches_hide_each_other() {
     let frame = CameraFrame::new(&camera, settings.width, settings.height).unwrap();
     let mut offscreen = Offscreen::new(&device, &ours, &settings).unwrap();
     let pipelines = MeshPipelines::new(&device).unwrap();
-    let pass = (offscreen.render_pass(), settings.planes);
+    let pass = DrawnPass {
+        raw: offscreen.render_pass(),
+        samples: vk::SampleCountFlags::TYPE_1,
+        planes: settings.planes,
+    };
     let mut drawer = MeshDrawer::new(&pipelines, pass).unwrap();
     let placed = SceneMeshes::new(vec![(256, 512, 0.0)], (64, 64))
         .place(&theirs, &frame)

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 #[cfg(feature = "report")]
+mod antialiasing;
+#[cfg(feature = "report")]
 mod benchmark;
 #[cfg(feature = "report")]
 mod crowds;

@@ -2,9 +2,13 @@
 //! `unsafe`.
 #![allow(unsafe_code)]
 
+mod multisampled;
 mod pipelines;
+mod search;
 
+pub(super) use multisampled::{MultisampledTarget, SAMPLES, Within};
 pub use pipelines::MeshPipelines;
+pub(super) use search::SearchGuest;
 
 use super::blocks::{FrameBlock, InstanceBlock, MAX_LIGHTS, ObjectBlock};
 use super::placed::PlacedMesh;
@@ -26,8 +30,16 @@ pub(super) struct MeshDrawer {
     instances: Buffer,
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
-    pass: (vk::RenderPass, Planes),
+    pass: DrawnPass,
     pipelines: Arc<MeshPipelines>,
+}
+
+/// A pass that meshes are drawn in; it lives as long as the device's pipelines.
+#[derive(Clone, Copy)]
+pub(super) struct DrawnPass {
+    pub raw: vk::RenderPass,
+    pub samples: vk::SampleCountFlags,
+    pub planes: Planes,
 }
 
 struct DrawnObject {
@@ -40,8 +52,8 @@ struct DrawnObject {
 }
 
 impl MeshDrawer {
-    /// A drawer of nothing, for a pass that lives as long as the device.
-    pub fn new(pipelines: &Arc<MeshPipelines>, pass: (vk::RenderPass, Planes)) -> Result<Self> {
+    /// A drawer of nothing.
+    pub fn new(pipelines: &Arc<MeshPipelines>, pass: DrawnPass) -> Result<Self> {
         let device = pipelines.device();
         let mut drawer = Self {
             objects: Vec::new(),
@@ -108,8 +120,9 @@ impl MeshDrawer {
                 }
             };
             let key = PipelineKey {
-                pass: self.pass.0,
-                planes: self.pass.1,
+                pass: self.pass.raw,
+                samples: self.pass.samples,
+                planes: self.pass.planes,
                 lights: lights.min(MAX_LIGHTS) as u32,
                 single: one.instances.len() == 1,
                 projection: one.projection,

@@ -2,7 +2,7 @@
 
 use super::super::blocks::ObjectBlock;
 use super::super::tessellation::Vertex;
-use super::vulkan;
+use super::{multisampled, vulkan};
 use ash::vk;
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
@@ -21,6 +21,7 @@ const PLANES: &[u8] = include_bytes!("../../../shaders/spirv/mesh_planes.frag.sp
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct PipelineKey {
     pub pass: vk::RenderPass,
+    pub samples: vk::SampleCountFlags,
     pub planes: Planes,
     pub lights: u32,
     /// Whether the object is one instance, which its block holds.
@@ -35,6 +36,8 @@ pub struct MeshPipelines {
     pub(super) set_layout: vk::DescriptorSetLayout,
     pub(super) layout: vk::PipelineLayout,
     made: Mutex<HashMap<PipelineKey, vk::Pipeline>>,
+    /// Multisampled passes, by the format of their colours.
+    passes: Mutex<HashMap<vk::Format, vk::RenderPass>>,
     device: Device,
 }
 
@@ -48,6 +51,7 @@ impl MeshPipelines {
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
             made: Mutex::default(),
+            passes: Mutex::default(),
             device: device.clone(),
         };
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
@@ -87,14 +91,24 @@ impl MeshPipelines {
 
     /// The pipeline of a key, compiled now if it is new.
     pub(super) fn get(&self, key: PipelineKey) -> Result<vk::Pipeline> {
-        let gone = |_| Error::new(Stage::Draw, "the mesh pipelines are gone after a panic");
-        let mut made = self.made.lock().map_err(gone)?;
+        let mut made = self.made.lock().map_err(|_| gone())?;
         if let Some(pipeline) = made.get(&key) {
             return Ok(*pipeline);
         }
         let pipeline = self.make(key)?;
         made.insert(key, pipeline);
         Ok(pipeline)
+    }
+
+    /// The pass of four samples for colours in a format.
+    pub(super) fn multisampled_pass(&self, format: vk::Format) -> Result<vk::RenderPass> {
+        let mut passes = self.passes.lock().map_err(|_| gone())?;
+        if let Some(pass) = passes.get(&format) {
+            return Ok(*pass);
+        }
+        let pass = multisampled::pass(&self.device, format)?;
+        passes.insert(format, pass);
+        Ok(pass)
     }
 
     fn make(&self, key: PipelineKey) -> Result<vk::Pipeline> {
@@ -155,8 +169,8 @@ impl MeshPipelines {
             })
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
-        let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let samples =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(key.samples);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
@@ -205,16 +219,24 @@ impl Drop for MeshPipelines {
     fn drop(&mut self) {
         let raw = self.device.raw();
         let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
+        let passes = (self.passes.get_mut()).map_or_else(|_| HashMap::new(), std::mem::take);
         // SAFETY: all that draws with them holds `self` and waits for its frames; null handles may
         // be destroyed.
         unsafe {
             for pipeline in made.values() {
                 raw.destroy_pipeline(*pipeline, None);
             }
+            for pass in passes.values() {
+                raw.destroy_render_pass(*pass, None);
+            }
             raw.destroy_pipeline_layout(self.layout, None);
             raw.destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
+}
+
+fn gone() -> Error {
+    Error::new(Stage::Draw, "the mesh pipelines are gone after a panic")
 }
 
 struct Module<'a> {

@@ -1,5 +1,7 @@
-//! Anti-aliasing: how far pictures of one ray per pixel, of smoothed silhouettes and of several rays
-//! are from pictures of 64, and what each costs.
+//! Anti-aliasing: how far pictures of one ray per pixel, of smoothed silhouettes, of several rays and
+//! of meshes are from pictures of 64 rays, and what each costs.
+
+mod drawers;
 
 use super::folder::write_text;
 use super::machine::Machine;
@@ -10,15 +12,13 @@ use super::suite::{Extent, views};
 use super::table::Table;
 use super::view::View;
 use crate::compare::{PIXELS_PER_DEGREE, flip_map};
-use crate::method::MethodSettings;
-use crate::renderer::{MethodDevice, MethodRenderer};
-use crate::samples::averaged;
+use crate::method::Method;
+use crate::renderer::MethodDevice;
+use drawers::Drawers;
 use revmap::error::Result;
 use revmap::frame::{Frame, write_png};
-use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes};
 use std::path::Path;
-use std::time::Instant;
 
 /// Rays per pixel of the pictures that are compared with.
 const TRUTH: u32 = 64;
@@ -30,29 +30,56 @@ pub enum Way {
     Rays(u32),
     /// One ray, and silhouettes smoothed.
     Silhouettes,
+    /// One ray, in a pass of four samples.
+    Msaa,
+    /// The mesh baseline, one sample.
+    Mesh,
+    /// The mesh baseline, four samples.
+    MeshMsaa,
 }
+
+/// The mesh baseline.
+const MESH: Method = Method::Mesh {
+    segments: 128,
+    rings: 256,
+};
 
 impl Way {
     /// What is compared, one ray first.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 7] = [
         Self::Rays(1),
         Self::Silhouettes,
         Self::Rays(4),
         Self::Rays(16),
+        Self::Msaa,
+        Self::Mesh,
+        Self::MeshMsaa,
     ];
+
+    /// Those of a stage: compute shaders do not rasterise.
+    #[must_use]
+    pub fn of(stage: DrawStage) -> &'static [Self] {
+        match stage {
+            DrawStage::Compute => &Self::ALL[..4],
+            _ => &Self::ALL,
+        }
+    }
 
     fn name(self) -> String {
         match self {
             Self::Rays(1) => "1 ray".into(),
             Self::Rays(count) => format!("{count} rays"),
             Self::Silhouettes => "silhouettes".into(),
+            Self::Msaa => "1 ray, MSAA 4".into(),
+            Self::Mesh => MESH.to_string(),
+            Self::MeshMsaa => format!("{MESH}, MSAA 4"),
         }
     }
 
     fn rays(self) -> u32 {
         match self {
             Self::Rays(count) => count,
-            Self::Silhouettes => 1,
+            _ => 1,
         }
     }
 }
@@ -68,73 +95,15 @@ pub struct Line {
     pub way: Way,
     /// Mean FLIP against the picture of 64 rays.
     pub flip: f64,
+    /// That against 64 rays of the same method: of a mesh without what its triangles change.
+    pub own: f64,
     /// Milliseconds of drawing, and of reading beyond what one ray takes; median over the rounds.
     pub ms: f64,
     /// That over the time of one ray in the same round; median.
     pub ratio: f64,
 }
 
-/// The renderers of one scene, planes and stage: without and with smoothed silhouettes.
-struct Drawers<'a> {
-    scene: &'a Scene,
-    plain: MethodRenderer,
-    smoothed: MethodRenderer,
-}
-
-impl<'a> Drawers<'a> {
-    fn new(
-        device: &MethodDevice,
-        scene: &'a Scene,
-        stage: DrawStage,
-        planes: Planes,
-    ) -> Result<Self> {
-        let renderer = |antialias| {
-            let settings = MethodSettings {
-                stage,
-                planes,
-                antialias,
-                ..MethodSettings::default()
-            };
-            device.renderer(scene, &settings)
-        };
-        Ok(Self {
-            scene,
-            plain: renderer(false)?,
-            smoothed: renderer(true)?,
-        })
-    }
-
-    fn renderer(&mut self, way: Way) -> &mut MethodRenderer {
-        match way {
-            Way::Silhouettes => &mut self.smoothed,
-            Way::Rays(_) => &mut self.plain,
-        }
-    }
-
-    fn picture(&mut self, way: Way) -> Result<Frame> {
-        let scene = self.scene;
-        let renderer = self.renderer(way);
-        averaged(way.rays(), scene, |scene| {
-            renderer.update(scene)?;
-            renderer.draw()?;
-            renderer.read()
-        })
-    }
-
-    /// Milliseconds of drawing and of reading back.
-    fn time(&mut self, way: Way) -> Result<[f64; 2]> {
-        let renderer = self.renderer(way);
-        let mut drawn = 0.0;
-        for _ in 0..way.rays() {
-            drawn += renderer.draw()?.frame_ms;
-        }
-        let start = Instant::now();
-        renderer.read()?;
-        Ok([drawn, start.elapsed().as_secs_f64() * 1e3])
-    }
-}
-
-/// A part of a picture, enlarged: by each of [`Way::ALL`], then by 64 rays.
+/// A part of a picture, enlarged: by each of [`Way::of`] its stage, then by 64 rays.
 #[derive(Clone, Debug)]
 pub struct Sheet {
     /// The solid.
@@ -209,34 +178,46 @@ fn one(
     rounds: usize,
 ) -> Result<(Vec<Line>, Sheet)> {
     let mut pictures = Drawers::new(device, &view.scene, stage, Planes::All)?;
-    let truth = pictures.picture(Way::Rays(TRUTH))?;
-    let mut drawn = Vec::new();
-    for way in Way::ALL {
-        drawn.push(pictures.picture(way)?);
+    let truth = pictures.rays(Way::Rays(1), TRUTH)?;
+    let ways = Way::of(stage);
+    let meshed = match ways.contains(&Way::Mesh) {
+        true => Some(pictures.rays(Way::Mesh, TRUTH)?),
+        false => None,
+    };
+    let mean = |map: &[f32]| map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len() as f64;
+    let (mut drawn, mut flips, mut first) = (Vec::new(), Vec::new(), None);
+    for &way in ways {
+        let picture = pictures.picture(way)?;
+        let map = flip_map(&truth, &picture, PIXELS_PER_DEGREE);
+        let own = match (way, &meshed) {
+            (Way::Mesh | Way::MeshMsaa, Some(truth)) => {
+                mean(&flip_map(truth, &picture, PIXELS_PER_DEGREE))
+            }
+            _ => mean(&map),
+        };
+        flips.push([mean(&map), own]);
+        first.get_or_insert(map);
+        drawn.push(picture);
     }
-    let flips: Vec<_> = drawn
-        .iter()
-        .map(|picture| flip_map(&truth, picture, PIXELS_PER_DEGREE))
-        .collect();
     drawn.push(truth);
-    let sheet = Sheet::new(view, stage, &flips[0], &drawn)?;
+    let sheet = Sheet::new(view, stage, &first.unwrap_or_default(), &drawn)?;
     drop(drawn);
     let mut drawers = Drawers::new(device, &view.scene, stage, Planes::Color)?;
-    for way in Way::ALL {
-        drawers.time(way)?;
+    for way in ways {
+        drawers.time(*way)?;
     }
-    let mut times = vec![Vec::with_capacity(rounds); Way::ALL.len()];
+    let mut times = vec![Vec::with_capacity(rounds); ways.len()];
     for _ in 0..rounds {
-        for (times, way) in times.iter_mut().zip(Way::ALL) {
-            times.push(drawers.time(way)?);
+        for (times, way) in times.iter_mut().zip(ways) {
+            times.push(drawers.time(*way)?);
         }
     }
     let line = |k: usize| {
-        let way = Way::ALL[k];
+        let way = ways[k];
         // What a picture takes to be read is the same for all but what smoothing adds.
         let spent = |round: usize| match way {
-            Way::Rays(_) => times[k][round][0],
             Way::Silhouettes => times[k][round][0] + times[k][round][1] - times[0][round][1],
+            _ => times[k][round][0],
         };
         let all: Vec<f64> = (0..rounds).map(spent).collect();
         let ratios: Vec<f64> = (0..rounds).map(|r| all[r] / times[0][r][0]).collect();
@@ -244,12 +225,13 @@ fn one(
             scene: view.name.clone(),
             stage,
             way,
-            flip: flips[k].iter().map(|v| f64::from(*v)).sum::<f64>() / flips[k].len() as f64,
+            flip: flips[k][0],
+            own: flips[k][1],
             ms: stats::median(&all).unwrap_or(f64::NAN),
             ratio: stats::median(&ratios).unwrap_or(f64::NAN),
         }
     };
-    Ok(((0..Way::ALL.len()).map(line).collect(), sheet))
+    Ok(((0..ways.len()).map(line).collect(), sheet))
 }
 
 /// FLIP over that of one ray in the same picture.
@@ -267,6 +249,7 @@ fn table(lines: &[Line]) -> Table {
         "stage",
         "way",
         "flip",
+        "flip_own",
         "flip_over_1_ray",
         "time_ms",
         "time_over_1_ray",
@@ -277,6 +260,7 @@ fn table(lines: &[Line]) -> Table {
             line.stage.name().to_owned(),
             line.way.name(),
             number(line.flip, 3),
+            number(line.own, 3),
             number(gain(lines, line), 3),
             number(line.ms, 3),
             number(line.ratio, 3),
@@ -289,7 +273,7 @@ fn table(lines: &[Line]) -> Table {
 fn means(lines: &[Line]) -> Table {
     let mut records = Vec::new();
     for of in [DrawStage::Fragment, DrawStage::Compute] {
-        for way in Way::ALL {
+        for &way in Way::of(of) {
             let at: Vec<&Line> = lines
                 .iter()
                 .filter(|l| l.stage == of && l.way == way)
@@ -304,13 +288,21 @@ fn means(lines: &[Line]) -> Table {
                     of.name().to_owned(),
                     way.name(),
                     mean(&|l| l.flip),
+                    mean(&|l| l.own),
                     mean(&|l| gain(lines, l)),
                     mean(&|l| l.ratio),
                 ]);
             }
         }
     }
-    let header = ["stage", "way", "FLIP", "FLIP / 1 ray", "time / 1 ray"];
+    let header = [
+        "stage",
+        "way",
+        "FLIP",
+        "FLIP, own",
+        "FLIP / 1 ray",
+        "time / 1 ray",
+    ];
     Table::new(header, records)
 }
 
@@ -341,12 +333,12 @@ pub fn write(
     page.chapter("Geometric means over the pictures");
     page.text(&format!(
         "FLIP is the mean over all pixels, against a picture of {TRUTH} rays per pixel by the same search, all in floats. Times are of pictures of colour alone and count from submission to completion, medians of {rounds} \
-         rounds in which all ways are drawn in turn. Of smoothed silhouettes reading back counts, too, by what it takes longer than of one ray: there they are smoothed. \
+         rounds in which all ways are drawn in turn. MSAA 4 is a pass of four samples per pixel that is resolved: of the search as in a host's pass, and of the mesh baseline. A mesh shows smooth normals and no exact solid: FLIP, own compares it with 64 rays of the mesh. Of smoothed silhouettes reading back counts, too, by what it takes longer than of one ray: there they are smoothed. \
          Several rays are as many pictures; adding them up is not counted.",
     ));
     page.table(&means(lines), &[0, 1]);
     page.chapter("Every picture");
-    page.text("The pictures beside this page (antialiasing-SCENE-STAGE.png) show where one ray is worst, enlarged: 1 ray, silhouettes, 4, 16 and 64 rays.");
+    page.text("The pictures beside this page (antialiasing-SCENE-STAGE.png) show where one ray is worst, enlarged, in the order of the rows, then by 64 rays.");
     page.table(&table(lines), &[0, 1, 2]);
     write_text(&folder.join("report.html"), &page.html())
 }
@@ -363,6 +355,7 @@ mod tests {
             stage: DrawStage::Compute,
             way,
             flip,
+            own: flip,
             ms: 3.0,
             ratio,
         };
@@ -383,7 +376,7 @@ mod tests {
         assert_eq!(means.records.len(), 2);
         assert_eq!(
             means.records[1][1..],
-            ["silhouettes", "0.000632", "0.5", "1.22"]
+            ["silhouettes", "0.000632", "0.000632", "0.5", "1.22"]
         );
     }
 }
