@@ -7,11 +7,11 @@ use super::device::{Device, Shared};
 use super::entry::ObjectId;
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
 use super::plan::DrawPath;
-use super::read_back::{self, Linear};
+use super::read_back;
 use super::renderer::Renderer;
 use super::target::Target;
 use super::view::View;
-use crate::antialias::{self, Solids};
+use crate::antialias::Solids;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
 use crate::scene::{CameraFrame, Growth, Object, Placement, Scene};
@@ -343,29 +343,10 @@ impl Offscreen {
     pub fn read(&mut self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
-        let read = || read_back::frame(&self.settings, self.background, &planes);
-        let (view, size) = (&self.view, (self.settings.width, self.settings.height));
-        match (&self.solids, planes.as_slice()) {
-            (Some((solids, camera)), [colors, depths]) => {
-                let (colors, depths) = (colors.as_chunks().0, depths.as_chunks().0);
-                let linear = Linear::new();
-                let color = |pixel: usize| linear.color(&colors[pixel]);
-                let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
-                let mut changes = Vec::new();
-                // Neither needs the other. A thread frees and takes again its own memory faster.
-                let mut frame = rayon::in_place_scope(|scope| {
-                    scope.spawn(|_| changes = solids.changes(camera, size, &depth, &color));
-                    read()
-                })?;
-                antialias::apply(&changes, &mut frame);
-                Ok(frame)
-            }
-            (Some((solids, camera)), _) => {
-                let mut frame = read()?;
-                solids.smooth(camera, &mut frame);
-                Ok(frame)
-            }
-            (None, _) => read(),
+        let (settings, background) = (&self.settings, self.background);
+        match &self.solids {
+            Some(by) => read_back::smoothed(settings, background, &planes, by, &self.view),
+            None => read_back::frame(settings, background, &planes),
         }
     }
 

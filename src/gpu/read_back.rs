@@ -1,7 +1,10 @@
 //! From the bytes of a target to a frame.
 
+use super::view::View;
+use crate::antialias::{self, Solids};
 use crate::error::Result;
 use crate::frame::{Frame, linear_from_srgb};
+use crate::scene::CameraFrame;
 use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;
 
@@ -44,18 +47,47 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
     Ok(frame)
 }
 
+/// The same with smoothed silhouettes, by depths where these are read beside colours.
+pub(crate) fn smoothed(
+    settings: &Settings,
+    background: [f32; 4],
+    planes: &[&[u8]],
+    (solids, camera): &(Solids, CameraFrame),
+    view: &View,
+) -> Result<Frame> {
+    let [colors, depths] = planes else {
+        let mut frame = frame(settings, background, planes)?;
+        solids.smooth(camera, &mut frame);
+        return Ok(frame);
+    };
+    let (colors, depths) = (colors.as_chunks().0, depths.as_chunks().0);
+    let linear = Linear::new();
+    let color = |pixel: usize| linear.color(&colors[pixel]);
+    let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
+    let size = (settings.width, settings.height);
+    let mut changes = Vec::new();
+    // Neither needs the other. The frame is made on this thread, which is to free it: memory that
+    // goes from one to another is slow to take again.
+    let mut frame = rayon::in_place_scope(|scope| {
+        scope.spawn(|_| changes = solids.changes(camera, size, &depth, &color));
+        frame(settings, background, planes)
+    })?;
+    antialias::apply(&changes, &mut frame);
+    Ok(frame)
+}
+
 /// Linear values of 8-bit ones.
-pub(crate) struct Linear([f32; 256]);
+struct Linear([f32; 256]);
 
 impl Linear {
-    pub fn new() -> Self {
+    fn new() -> Self {
         Self(std::array::from_fn(|byte| {
             linear_from_srgb(byte as f64 / 255.0) as f32
         }))
     }
 
     /// The colour of a pixel.
-    pub fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
+    fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
         let [r, g, b] = [r, g, b].map(|byte| self.0[usize::from(byte)]);
         [r, g, b, f32::from(a) / 255.0]
     }

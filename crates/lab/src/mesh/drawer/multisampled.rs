@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 /// Samples a pixel. Every device has them, of colours and of depths.
 pub(in super::super) const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
+const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// Images of four samples, what they are resolved to, and its bytes on the host.
@@ -47,6 +48,7 @@ impl Guest for Within<'_> {
     unsafe fn record(&self, _cmd: vk::CommandBuffer) {}
 }
 
+#[derive(Default)]
 struct Image {
     raw: vk::Image,
     view: vk::ImageView,
@@ -74,29 +76,17 @@ impl MultisampledTarget {
             host: device.buffer("read back", bytes, usage, MemoryLocation::GpuToCpu)?,
             pipelines: pipelines.clone(),
         };
-        use vk::ImageUsageFlags as Usage;
-        let color = Usage::COLOR_ATTACHMENT;
+        use vk::ImageUsageFlags as U;
+        let (color, depth) = (U::COLOR_ATTACHMENT, U::DEPTH_STENCIL_ATTACHMENT);
         for (format, samples, usage) in [
-            (format, SAMPLES, color | Usage::TRANSIENT_ATTACHMENT),
-            (
-                format,
-                vk::SampleCountFlags::TYPE_1,
-                color | Usage::TRANSFER_SRC,
-            ),
-            (
-                DEPTH,
-                SAMPLES,
-                Usage::DEPTH_STENCIL_ATTACHMENT | Usage::TRANSIENT_ATTACHMENT,
-            ),
+            (format, SAMPLES, color),
+            (format, ONE, color | U::TRANSFER_SRC),
+            (DEPTH, SAMPLES, depth),
         ] {
-            target.images.push(Image {
-                raw: vk::Image::null(),
-                view: vk::ImageView::null(),
-                allocation: None,
-            });
-            if let Some(image) = target.images.last_mut() {
-                image.make(device, size, format, samples, usage)?;
-            }
+            let mut image = Image::default();
+            let made = image.make(device, size, format, samples, usage);
+            target.images.push(image);
+            made?;
         }
         let views: Vec<_> = target.images.iter().map(|image| image.view).collect();
         let info = vk::FramebufferCreateInfo::default()
@@ -113,20 +103,14 @@ impl MultisampledTarget {
 
     /// The bytes of the last frame, which was copied.
     pub fn bytes(&mut self) -> Result<&[u8]> {
-        Ok(self.host.mapped()?)
+        self.host.mapped().map(|bytes| &*bytes)
     }
 
     /// Begins the pass.
     unsafe fn begin(&self, cmd: vk::CommandBuffer) {
         let raw = self.pipelines.device().raw();
-        let extent = vk::Extent2D {
-            width: self.size.0,
-            height: self.size.1,
-        };
-        let area = vk::Rect2D {
-            offset: vk::Offset2D::default(),
-            extent,
-        };
+        let (width, height) = self.size;
+        let area = vk::Rect2D::default().extent(vk::Extent2D { width, height });
         let float32 = self.background;
         let color = vk::ClearValue {
             color: vk::ClearColorValue { float32 },
@@ -142,8 +126,8 @@ impl MultisampledTarget {
             .render_area(area)
             .clear_values(&clears);
         let viewport = vk::Viewport {
-            width: self.size.0 as f32,
-            height: self.size.1 as f32,
+            width: width as f32,
+            height: height as f32,
             max_depth: 1.0,
             ..Default::default()
         };
@@ -173,15 +157,15 @@ impl MultisampledTarget {
         let barrier = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(vk::AccessFlags::HOST_READ);
-        use vk::PipelineStageFlags as Stages;
-        let (from, to, none) = (Stages::TRANSFER, Stages::HOST, vk::DependencyFlags::empty());
+        use vk::PipelineStageFlags as S;
+        let none = vk::DependencyFlags::empty();
         // SAFETY: `cmd` is recording in the pass, which leaves the image in this layout; the buffer
         // holds it.
         unsafe {
             raw.cmd_end_render_pass(cmd);
             if self.copies.get() {
                 raw.cmd_copy_image_to_buffer(cmd, image, layout, host, &[region]);
-                raw.cmd_pipeline_barrier(cmd, from, to, none, &[barrier], &[], &[]);
+                raw.cmd_pipeline_barrier(cmd, S::TRANSFER, S::HOST, none, &[barrier], &[], &[]);
             }
         }
     }
@@ -244,12 +228,10 @@ impl Image {
                 linear: false,
                 allocation_scheme: AllocationScheme::GpuAllocatorManaged,
             };
-            let none = |e: &dyn std::fmt::Display| {
-                Error::new(Stage::Draw, format!("no memory for samples: {e}"))
-            };
+            let none = |e: String| Error::new(Stage::Draw, format!("no memory for samples: {e}"));
             let allocator = device.allocator()?;
-            let mut allocator = allocator.lock().map_err(|e| none(&e))?;
-            let made = allocator.allocate(&made).map_err(|e| none(&e))?;
+            let mut allocator = allocator.lock().map_err(|e| none(e.to_string()))?;
+            let made = (allocator.allocate(&made)).map_err(|e| none(e.to_string()))?;
             let made = self.allocation.insert(made);
             raw.bind_image_memory(self.raw, made.memory(), made.offset())
                 .map_err(|c| vulkan("vkBindImageMemory", c))?;
@@ -278,28 +260,22 @@ impl Image {
 /// copied from.
 pub(super) fn pass(device: &Device, format: vk::Format) -> Result<vk::RenderPass> {
     use vk::ImageLayout as Layout;
-    let attachment = |format, samples, store, layout| {
+    use vk::{AttachmentLoadOp as Load, AttachmentStoreOp as Store};
+    let attachment = |format, samples, load, store, layout| {
         vk::AttachmentDescription::default()
             .format(format)
             .samples(samples)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .load_op(load)
             .store_op(store)
             .final_layout(layout)
     };
-    let (drop, one) = (
-        vk::AttachmentStoreOp::DONT_CARE,
-        vk::SampleCountFlags::TYPE_1,
-    );
-    let (color, depth) = (
-        Layout::COLOR_ATTACHMENT_OPTIMAL,
-        Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-    );
-    let store = vk::AttachmentStoreOp::STORE;
+    let color = Layout::COLOR_ATTACHMENT_OPTIMAL;
+    let depth = Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    let copied = Layout::TRANSFER_SRC_OPTIMAL;
     let attachments = [
-        attachment(format, SAMPLES, drop, color),
-        attachment(format, one, store, Layout::TRANSFER_SRC_OPTIMAL)
-            .load_op(vk::AttachmentLoadOp::DONT_CARE),
-        attachment(DEPTH, SAMPLES, drop, depth),
+        attachment(format, SAMPLES, Load::CLEAR, Store::DONT_CARE, color),
+        attachment(format, ONE, Load::DONT_CARE, Store::STORE, copied),
+        attachment(DEPTH, SAMPLES, Load::CLEAR, Store::DONT_CARE, depth),
     ];
     let refer = |n, layout| {
         vk::AttachmentReference::default()
