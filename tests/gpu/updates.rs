@@ -9,7 +9,6 @@ use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
-use std::sync::Arc;
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
@@ -306,7 +305,7 @@ fn pipelines_of_large_tables_are_compiled() {
     let mut points = vec![[0.0, 0.0]];
     points.extend((0..=1700).map(groove));
     points.push([0.0, 1.0]);
-    let screw = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+    let screw = std::sync::Arc::new(Profile::polygon(&points, 0.5).unwrap());
     let goblet = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
     let goblet = revmap::scene::file::load(goblet, &[]).unwrap();
     let mut large = goblet.clone();
