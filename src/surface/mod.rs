@@ -31,6 +31,7 @@ mod frusta;
 pub mod hull;
 mod offset;
 pub mod rows;
+mod solid_radii;
 mod tree;
 pub mod walk;
 
@@ -39,7 +40,9 @@ pub use cones::Cones;
 pub use contour::{Contour, ContourSource};
 pub use fit::{FitOptions, fit_patches};
 pub use hull::{Frustum, ProxyHull, ProxyHullOptions};
+pub(crate) use rows::extents;
 pub use rows::{GpuPatch, ROWS, Tables};
+pub(crate) use solid_radii::solid_radii;
 pub use walk::{PatchHit, Walk, entering_root, trace_patches};
 
 use glam::DVec2;

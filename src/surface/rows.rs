@@ -20,6 +20,7 @@
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
+use std::ops::RangeInclusive;
 
 /// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's
 /// order): roundings of 32 bits.
@@ -75,22 +76,15 @@ impl Tables {
     #[must_use]
     pub fn new(patches: &[QuadricPatch], rows: u32) -> Self {
         let rows = rows.clamp(1, 4096) as usize;
-        let n = rows as f64;
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); rows];
-        let mut nodes = vec![EMPTY; rows];
         for (index, patch) in patches.iter().enumerate() {
-            let row = |z: f64| ((z * n).floor().max(0.0) as usize).min(rows - 1);
-            for i in row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN) {
-                if members[i].len() == MOST {
-                    continue;
+            for list in &mut members[touched(patch, rows)] {
+                if list.len() < MOST {
+                    list.push(index as u32);
                 }
-                members[i].push(index as u32);
-                let [low, high] = squares(patch, i as f64 / n, (i + 1) as f64 / n);
-                let node: &mut [f32; 2] = &mut nodes[i];
-                node[0] = node[0].min(low);
-                node[1] = node[1].max(high);
             }
         }
+        let mut nodes = extents(patches, rows);
         let (starts, records) = runs(patches, &members);
         let mut levels = vec![0];
         let mut from = 0;
@@ -126,6 +120,25 @@ impl Tables {
 /// Most patches that a row can hold.
 const MOST: usize = (1 << 12) - 1;
 const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// Rows that a patch touches, of so many.
+fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
+    let row = |z: f64| ((z * rows as f64).floor().max(0.0) as usize).min(rows - 1);
+    row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN)
+}
+
+/// `[min r^2, max r^2]` of the boundary in each of so many rows; of an empty one `[+inf, -inf]`.
+pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
+    let n = rows as f64;
+    let mut nodes = vec![EMPTY; rows];
+    for patch in patches {
+        for i in touched(patch, rows) {
+            let [low, high] = squares(patch, i as f64 / n, (i + 1) as f64 / n);
+            nodes[i] = [nodes[i][0].min(low), nodes[i][1].max(high)];
+        }
+    }
+    nodes
+}
 
 /// Runs of each row and the records they run over.
 fn runs(patches: &[QuadricPatch], members: &[Vec<u32>]) -> (Vec<u32>, Vec<GpuPatch>) {

@@ -1,7 +1,7 @@
 //! What a solid is sure to hide: cylinders about its axis that it holds.
 
 use crate::shader::generated::SOLID_ROWS;
-use crate::surface::{QuadricPatch, Tables};
+use crate::surface::{QuadricPatch, solid_radii};
 
 /// A cylinder, object units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,29 +26,12 @@ pub(super) const ROWS: usize = SOLID_ROWS as usize;
 impl Inner {
     /// Of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
-        let radii = solid_radii(patches);
+        let radii = solid_radii::<ROWS>(patches);
         Self {
             pieces: cylinders(&radii, 8, f64::min),
             few: cylinders(&radii, 3, f64::min),
         }
     }
-}
-
-/// Of rows of equal height the radius within which all is solid, a little less than it is.
-pub(crate) fn solid_radii(patches: &[QuadricPatch]) -> [f64; ROWS] {
-    let tables = Tables::new(patches, ROWS as u32);
-    std::array::from_fn(|row| {
-        let z = (row as f64 + 0.5) / ROWS as f64;
-        let around = |p: &&QuadricPatch| !p.is_plane() && p.z[0] <= z && z < p.z[1];
-        let solid = patches.iter().filter(around).count() % 2 == 1;
-        let least = f64::from(tables.nodes[row][0]).max(0.0).sqrt();
-        let inset = least * (1.0 - 1e-3) - 1e-4;
-        if solid && least.is_finite() {
-            inset.max(0.0)
-        } else {
-            0.0
-        }
-    })
 }
 
 /// At most `count` runs of rows, each with its least or largest radius, as `bound` says, that

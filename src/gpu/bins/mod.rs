@@ -18,7 +18,7 @@ mod outer;
 mod rectangle;
 mod seen;
 
-pub(crate) use inner::{Inner, solid_radii};
+pub(crate) use inner::Inner;
 pub(crate) use outer::Outer;
 pub(crate) use rectangle::{Rectangle, rectangle};
 pub(crate) use seen::{Cylinder, Forms};

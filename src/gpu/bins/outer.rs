@@ -2,7 +2,7 @@
 
 use super::inner::{Piece, ROWS, cylinders};
 use super::seen::Spread;
-use crate::surface::{QuadricPatch, Tables};
+use crate::surface::{QuadricPatch, extents};
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -38,9 +38,8 @@ const CORNERS: [(f64, f64); 8] = {
 impl Outer {
     /// Of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
-        let tables = Tables::new(patches, ROWS as u32);
         let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
-        let radii: Vec<f64> = tables.nodes[..ROWS].iter().map(most).collect();
+        let radii: Vec<f64> = extents(patches, ROWS).iter().map(most).collect();
         let of = |count| cylinders(&radii, count, f64::max);
         Self {
             pieces: of(8),

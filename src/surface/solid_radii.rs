@@ -1,0 +1,79 @@
+//! What of a solid is sure to be solid: of rows of equal height a radius about the axis.
+
+use super::QuadricPatch;
+use super::rows::extents;
+
+/// Of `N` rows of equal height over `0 <= z <= 1` the radius within which all is solid, object
+/// units: a little less than it is, 0 where there is none.
+pub(crate) fn solid_radii<const N: usize>(patches: &[QuadricPatch]) -> [f64; N] {
+    // A row's middle is in the solid on the axis if an odd number of patches lies beside it.
+    let mut solid = [false; N];
+    for patch in patches.iter().filter(|p| !p.is_plane()) {
+        let [first, end] = patch
+            .z
+            .map(|z| ((z * N as f64 - 0.5).ceil().max(0.0) as usize).min(N));
+        for row in &mut solid[first.min(end)..end] {
+            *row = !*row;
+        }
+    }
+    let extents = extents(patches, N);
+    std::array::from_fn(|row| {
+        let least = f64::from(extents[row][0]).max(0.0).sqrt();
+        if solid[row] && least.is_finite() {
+            (least * (1.0 - 1e-3) - 1e-4).max(0.0)
+        } else {
+            0.0
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::Outline;
+    use crate::scene::Offset;
+    use crate::surface::{ContourSource, FitOptions, Tables, fit_patches};
+    use glam::DVec2;
+
+    fn patches(points: &[[f64; 2]]) -> Vec<QuadricPatch> {
+        let points = points.iter().map(|&p| DVec2::from(p)).collect();
+        let outline = Outline {
+            loops: vec![points],
+        };
+        let contour = ContourSource::new(&outline).unwrap();
+        let contour = contour.contour(&Offset::default()).unwrap();
+        fit_patches(&contour, &FitOptions::default())
+    }
+
+    #[test]
+    fn all_within_is_solid_and_little_else_is() {
+        // A cup on a foot: its bowl is hollow, its foot undercut.
+        let cup = [
+            [0.0, 0.1],
+            [0.2, 0.1],
+            [0.3, 0.0],
+            [0.4, 0.0],
+            [0.1, 0.5],
+            [0.4, 1.0],
+            [0.3, 1.0],
+            [0.0, 0.6],
+        ];
+        let patches = patches(&cup);
+        let radii = solid_radii::<64>(&patches);
+        let tables = Tables::new(&patches, 64);
+        for (row, &radius) in radii.iter().enumerate() {
+            for k in 0..=100 {
+                let z = (row as f64 + f64::from(k) / 100.0) / 64.0;
+                for part in [0.0, 0.5, 1.0] {
+                    let r = radius * part;
+                    let inside = tables.contains((r * r) as f32, z as f32);
+                    assert!(radius == 0.0 || inside, "row {row}, {r} {z}");
+                }
+            }
+        }
+        // Below and above the axis' part of the solid, and in the rows of its ends, nothing.
+        assert!(radii[..7].iter().chain(&radii[38..]).all(|r| *r == 0.0));
+        // The narrowest is where the cup stands on its foot.
+        assert!((radii[31] - 0.1).abs() < 0.01 && radii[10] > 0.25);
+    }
+}
