@@ -12,16 +12,15 @@ void main()
     take_solid();
     take_lights();
     uint at = 4u * (uint(gl_VertexIndex) / 6u);
-    uvec2 corner = uvec2(bin_words[at] & 0xffffu, bin_words[at] >> 16);
-    uint length = bin_words[at + 2u];
+    uvec2 x = uvec2(bin_words[at], bin_words[at + 2u]) & 0xffffu;
+    uvec2 y = uvec2(bin_words[at], bin_words[at + 2u]) >> 16;
     uint bit = 1u << (uint(gl_VertexIndex) % 6u);
-    uvec2 away = uvec2((0x32u & bit) != 0u ? length : 0u, (0x2cu & bit) != 0u ? 1u : 0u);
-    vec2 pixel = vec2((corner + away) * GROUP_PIXELS);
+    vec2 pixel = vec2((0x32u & bit) != 0u ? x.y : x.x, (0x2cu & bit) != 0u ? y.y : y.x);
     // No fragment's depth is less.
     float depth = depth_of(max(uintBitsToFloat(bin_words[at + 3u]), 1e-30));
     gl_Position = vec4(pixel * frame.pixels.xz + frame.pixels.yw, depth, 1.0);
 
-    bins_run = uvec2(bin_words[at + 1u], corner.x);
+    bins_run = uvec2(bin_words[at + 1u], x.x / GROUP_PIXELS);
     bins_dir_00 = frame.dir_00;
     bins_dir_x = frame.dir_x;
     bins_dir_y = frame.dir_y;

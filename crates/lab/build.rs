@@ -1,5 +1,6 @@
-//! Compiles the floor's shaders (`shaders/floor/`, on the renderer's own includes) where the feature
-//! `shaderc` is on. None of them is kept in the repository: they are for measuring alone.
+//! Compiles the floor's shaders where the feature `shaderc` is on: those of the renderer, with what
+//! `shaders/floor/` has in place of theirs. None is kept in the repository: they are for measuring
+//! alone.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,7 +13,7 @@ type Fallible<T> = Result<T, Box<dyn Error>>;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=shaders/floor");
-    println!("cargo::rerun-if-changed=../../shaders-glsl/include");
+    println!("cargo::rerun-if-changed=../../shaders-glsl");
     if let Err(error) = generate() {
         for line in error.to_string().lines() {
             println!("cargo::error={line}");
@@ -48,9 +49,11 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     let entries = [
         ("hull.frag", None),
         ("box.frag", None),
+        ("bins.frag", None),
         ("listed.comp", Some("DISPATCH_LISTS")),
         ("trace.comp", None),
         ("trace.comp", Some("DISPATCH_BEAMS")),
+        ("trace.comp", Some("DISPATCH_BINS")),
     ];
     let compiler = shaderc_link::Compiler::new()?;
     let mut modules = vec![module(&compiler, "hull.vert", &[])?];
@@ -71,9 +74,8 @@ fn module(
     file: &str,
     macros: &[(&str, &str)],
 ) -> Fallible<(String, Vec<u32>)> {
-    let path = Path::new("shaders/floor").join(file);
-    let source = std::fs::read_to_string(&path)?;
-    let source = (&*path.to_string_lossy(), source.as_str());
+    let (path, source) = read(file, "../../shaders-glsl")?;
+    let source = (path.as_str(), source.as_str());
     let level = shaderc_link::OptimizationLevel::Performance;
     let made = shaderc_link::spirv(compiler, source, macros, level, include)?;
     Ok((name(file, macros), made.as_binary().to_vec()))
@@ -98,8 +100,13 @@ fn name(file: &str, macros: &[(&str, &str)]) -> String {
 
 #[cfg(feature = "shaderc")]
 fn include(wanted: &str) -> Result<(String, String), String> {
-    let folders = ["shaders/floor", "../../shaders-glsl/include"];
-    let path = folders
+    read(wanted, "../../shaders-glsl/include")
+}
+
+/// A file's path and text: the floor's, or else the renderer's.
+#[cfg(feature = "shaderc")]
+fn read(wanted: &str, renderer: &str) -> Result<(String, String), String> {
+    let path = ["shaders/floor", renderer]
         .iter()
         .map(|folder| Path::new(folder).join(wanted))
         .find(|path| path.exists())

@@ -1,10 +1,10 @@
 //! The floor: a frame of the default search in which nothing is searched. Each pixel returns its
-//! first possible point: in the fragment stage where the hull's own triangle is, in compute where
-//! its ray enters the solid's bounding cylinder. Corners, tiles, depth, shading and store are those
-//! of the frame itself, so what a search takes is its time above the floor.
+//! first possible point: where the hull's own triangle is, or where its ray enters the solid's
+//! bounding cylinder. Corners, tiles, lists of copies, depth, shading and store are those of the
+//! frame itself, so what a search takes is its time above the floor.
 //!
-//! Its shaders stand in `shaders/floor/` and are compiled with the feature `shaderc`; the renderer
-//! holds nothing of them.
+//! Its shaders are compiled with the feature `shaderc`: the renderer's own, with what stands in
+//! `shaders/floor/` in place of the search. The renderer holds nothing of them.
 
 use revmap::error::{Error, Result, Stage};
 use revmap::gpu::Device;
@@ -37,13 +37,12 @@ pub fn device(device: &Device) -> Result<Device> {
 /// What the floor is not made for.
 ///
 /// # Errors
-/// [`Stage::Usage`] for shadows, for replicas and for several copies of a solid.
+/// [`Stage::Usage`] for shadows and for replicas.
 pub fn check(scene: &Scene) -> Result<()> {
-    let plain = |o: &revmap::scene::Object| o.repeat == [1; 3] && o.placements().len() == 1;
-    if scene.shadow == Shadow::Off && scene.objects.iter().all(plain) {
+    if scene.shadow == Shadow::Off && scene.objects.iter().all(|o| o.repeat == [1; 3]) {
         return Ok(());
     }
-    refused("it is measured of single solids without shadows and replicas")
+    refused("it is measured of solids without shadows and replicas")
 }
 
 fn refused<T>(why: &str) -> Result<T> {

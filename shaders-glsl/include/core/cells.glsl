@@ -92,6 +92,18 @@ bool trace_cells(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 }
 #endif
 
+// Of rays that enter the solid where they come between the box's sides: the cut is closed.
+bool meet_side(vec3 eye, vec3 v, inout Hit hit)
+{
+    vec2 side = mix(sides_of_box().xy, sides_of_box().zw, lessThan(v.xy, vec2(0.0)));
+    // Along a side that is not met.
+    vec2 enter = mix((side - eye.xy) / v.xy, vec2(-1e30), equal(v.xy, vec2(0.0)));
+    hit.t = max(enter.x, enter.y);
+    hit.point = eye + hit.t * v;
+    hit.normal = face_normal(enter.x > enter.y ? FACE_X : FACE_Y, v, -1.0);
+    return true;
+}
+
 // Of the ray `eye + t v`, t >= -base.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {

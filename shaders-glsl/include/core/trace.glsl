@@ -112,18 +112,6 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 #endif
 }
 
-// Of rays that enter the solid where they come between the box's sides: the cut is closed.
-bool meet_side(vec3 eye, vec3 v, inout Hit hit)
-{
-    vec2 side = mix(sides_of_box().xy, sides_of_box().zw, lessThan(v.xy, vec2(0.0)));
-    // Along a side that is not met.
-    vec2 enter = mix((side - eye.xy) / v.xy, vec2(-1e30), equal(v.xy, vec2(0.0)));
-    hit.t = max(enter.x, enter.y);
-    hit.point = eye + hit.t * v;
-    hit.normal = face_normal(enter.x > enter.y ? FACE_X : FACE_Y, v, -1.0);
-    return true;
-}
-
 // Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
 //
 // Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid

@@ -1,13 +1,14 @@
 // The words that say which pixels are visited and what may show there. First come records of four words, then lists.
 //
-// A bin is a square of GROUP_PIXELS^2: its corner in bins (x | y << 16), the word where its list begins, how many
+// A bin is a square of GROUP_PIXELS^2: its corner in pixels (x | y << 16), the word where its list begins, how many
 // copies the list holds, the bits of the nearest depth. A list has two words a copy, nearest first: the instance's
 // number, the bits of the nearest depth of the copy. Where BIN_SPLIT stands in place of the number, each pixel has a
 // list: the first words are two for each, where it begins, from the first of these words on, and how many copies it
-// holds.
+// holds. In compute such a bin is no square: it holds as many pixels from anywhere, and before the two words of each
+// stands which (x | y << 16). So no invocation is spent on pixels that show nothing.
 //
-// A run is a row of bins that fragments are drawn for: the corner of the first, its number, how many, the bits of the
-// nearest depth.
+// A run is a rectangle that fragments are drawn for, a bin high and some bins wide at most: its corner in pixels, the
+// number of its first bin, its other corner (exclusive), the bits of the nearest depth.
 //
 // Of batches that take beams: the three words of an indirect dispatch, one unused, and four words a tile: its corner,
 // the bits of its first and last t, one unused; or what patch_lists.glsl says.

@@ -52,13 +52,25 @@ Bin this_bin()
     return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
 }
 
-uvec2 this_pixel(Bin bin)
+// Takes the list of this pixel, where the bin is split.
+uvec2 this_pixel(inout Bin bin)
 {
     if (DISPATCH == DISPATCH_RECTANGLE && CUT == CUT_ANY) {
         uvec2 corner = uvec2(bin.corner & 0xffffu, bin.corner >> 16);
         return (corner + gl_WorkGroupID.xy) * GROUP_PIXELS + gl_LocalInvocationID.xy;
     }
+#if DISPATCH == DISPATCH_BINS
+    uint place = bin.corner + (gl_LocalInvocationID.x | gl_LocalInvocationID.y << 16);
+    if (bin.count == BIN_SPLIT) {
+        uint at = bin.first + 3u * gl_LocalInvocationIndex;
+        place = bin_words[at];
+        bin.first += bin_words[at + 1u];
+        bin.count = bin_words[at + 2u];
+    }
+    return uvec2(place & 0xffffu, place >> 16);
+#else
     return uvec2(bin.corner & 0xffffu, bin.corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
+#endif
 }
 
 bool nearest_hit(Bin bin, uvec2 pixel, out Nearest nearest)

@@ -39,7 +39,14 @@ bool nearest_hit(uvec2 pixel, out Nearest nearest)
     nearest.instance = 0u;
     nearest.steps = 0u;
     nearest.exhausted = false;
-    return nearest_listed(bin_words[at + 1u], bin_words[at + 2u], pixel, nearest);
+    uint first = bin_words[at + 1u];
+    uint count = bin_words[at + 2u];
+    if (count == BIN_SPLIT) {
+        at = first + 2u * (GROUP_PIXELS * (pixel.y % GROUP_PIXELS) + pixel.x % GROUP_PIXELS);
+        first += bin_words[at];
+        count = bin_words[at + 1u];
+    }
+    return nearest_listed(first, count, pixel, nearest);
 }
 
 #endif

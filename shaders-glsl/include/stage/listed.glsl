@@ -18,11 +18,6 @@ bool nearest_listed(uint first, uint count, uvec2 pixel, inout Nearest nearest)
 {
     bool found = false;
     float sense = frame.forward.w;
-    if (count == BIN_SPLIT) {
-        uint at = first + 2u * (GROUP_PIXELS * (pixel.y % GROUP_PIXELS) + pixel.x % GROUP_PIXELS);
-        first += bin_words[at];
-        count = bin_words[at + 1u];
-    }
     for (uint n = 0u; n < count; ++n) {
         float begins = uintBitsToFloat(bin_words[first + 2u * n + 1u]);
         if (sense * depth_of(max(begins, 1e-30)) >= sense * nearest.depth) {

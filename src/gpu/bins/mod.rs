@@ -14,8 +14,10 @@
 
 mod cover;
 mod inner;
+mod lists;
 mod outer;
 mod rectangle;
+mod runs;
 mod seen;
 
 pub(crate) use inner::Inner;
@@ -27,9 +29,10 @@ use super::hulls::is_apart;
 use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::scene::Placement;
-use crate::shader::generated::BIN_SPLIT;
 use cover::{Cover, SIDE};
+use lists::{Listed, Lists};
 use rayon::prelude::*;
+use runs::Run;
 use seen::Seen;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -78,25 +81,12 @@ struct Item {
     pixels: [u16; 4],
 }
 
-/// A copy in a square.
-#[derive(Clone, Copy)]
-struct Listed {
-    square: u32,
-    copy: u32,
-    near: u32,
-    pixels: u64,
-}
-
-/// Four words and lists of one batch in one band. Lists count from the band's first.
-#[derive(Default)]
+/// What one batch has in one band.
 struct Part {
-    bins: Vec<[u32; 4]>,
-    lists: Vec<u32>,
+    lists: Lists,
+    /// Copies that may show.
     copies: Vec<u32>,
 }
-
-/// From so many pixels on each of a square's copies covers it well enough for one list for all.
-const LEAST_PIXELS: u32 = 24;
 
 impl Bins {
     /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as
@@ -145,7 +135,7 @@ impl Bins {
             .into_par_iter()
             .map(|first| {
                 let cover = Cover::new(across, first, (first + band).min(down));
-                fill(cover, across, &forms, batches, &items)
+                fill(cover, across, &forms, batches, &items, in_runs)
             })
             .collect();
         Self::joined(&parts, batches, &outside, in_runs)
@@ -153,16 +143,19 @@ impl Bins {
 
     fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool], in_runs: bool) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
+        let mut masks: Vec<u64> = Vec::new();
         let mut lists = 0;
         let mut shown = Vec::with_capacity(batches.len());
         for (number, batch) in batches.iter().enumerate() {
             let first = bins.len() as u32;
             let mut shows = vec![false; batch.placements.len()];
             for part in parts.iter().map(|band| &band[number]) {
-                bins.extend(part.bins.iter().map(|[corner, list, count, near]| {
+                let Lists { words, .. } = &part.lists;
+                bins.extend(part.lists.bins.iter().map(|[corner, list, count, near]| {
                     [*corner, list + lists as u32, *count, *near]
                 }));
-                lists += part.lists.len();
+                masks.extend(&part.lists.masks);
+                lists += words.len();
                 for &copy in &part.copies {
                     shows[copy as usize] = true;
                 }
@@ -176,20 +169,21 @@ impl Bins {
         }
         let mut runs: Vec<[u32; 4]> = Vec::new();
         if in_runs {
-            let begin = bins.len();
+            let begin = bins.len() as u32;
             for one in &mut shown {
-                let first = runs.len();
+                let first = begin + runs.len() as u32;
+                let mut last: Option<Run> = None;
                 for number in one.range.clone() {
-                    let [corner, _, _, near] = bins[number as usize];
-                    match runs[first..].last_mut() {
-                        Some([at, _, length, nearest]) if *at + *length == corner => {
-                            *length += 1;
-                            *nearest = near.min(*nearest);
-                        }
-                        _ => runs.push([corner, number, 1, near]),
+                    let at = number as usize;
+                    let run = Run::new(number, bins[at], masks[at]);
+                    let joined = last.and_then(|last| last.joined(run));
+                    if joined.is_none() {
+                        runs.extend(last.map(Run::words));
                     }
+                    last = joined.or(Some(run));
                 }
-                one.range = (begin + first) as u32..(begin + runs.len()) as u32;
+                runs.extend(last.map(Run::words));
+                one.range = first..begin + runs.len() as u32;
             }
         }
         let behind = 4 * (bins.len() + runs.len()) as u32;
@@ -201,7 +195,7 @@ impl Bins {
         words.extend(runs.as_flattened());
         for number in 0..batches.len() {
             for band in parts {
-                words.extend(&band[number].lists);
+                words.extend(&band[number].lists.words);
             }
         }
         Self { words, shown }
@@ -215,9 +209,10 @@ fn fill(
     forms: &Forms,
     batches: &[Batch],
     items: &[Item],
+    in_squares: bool,
 ) -> Vec<Part> {
     let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
-    let mut parts: Vec<Part> = batches.iter().map(|_| Part::default()).collect();
+    let mut copies: Vec<Vec<u32>> = vec![Vec::new(); batches.len()];
     let (top, bottom) = (cover.top, cover.bottom);
     let mut rows = Vec::new();
     for item in items {
@@ -251,88 +246,17 @@ fn fill(
         if list.len() == before {
             continue;
         }
-        parts[number].copies.push(item.copy);
+        copies[number].push(item.copy);
         if let Some(inner) = batch.inner.filter(|_| item.near > 0) {
             cover.add(&spread(), inner, item.pixels);
         }
     }
     let squares = across * (bottom - top) / SIDE;
-    for (part, listed) in parts.iter_mut().zip(&listed) {
-        part.list(listed, squares, |square| {
-            (square % across) | ((square / across + top / SIDE) << 16)
-        });
-    }
-    parts
-}
-
-impl Part {
-    /// Deals copies out to their squares.
-    fn list(&mut self, listed: &[Listed], squares: u32, corner: impl Fn(u32) -> u32) {
-        let mut ends = vec![0u32; squares as usize + 1];
-        for one in listed {
-            ends[one.square as usize + 1] += 1;
-        }
-        for square in 1..ends.len() {
-            ends[square] += ends[square - 1];
-        }
-        let mut next = ends.clone();
-        let mut sorted = vec![0u32; listed.len()];
-        for (n, one) in (0u32..).zip(listed) {
-            let place = &mut next[one.square as usize];
-            sorted[*place as usize] = n;
-            *place += 1;
-        }
-        for square in 0..squares {
-            let [begin, end] = [square, square + 1].map(|s| ends[s as usize] as usize);
-            let Some(&nearest) = sorted[begin..end].first() else {
-                continue;
-            };
-            let here = sorted[begin..end].iter().map(|n| &listed[*n as usize]);
-            let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
-            let first = self.lists.len() as u32;
-            let count = (end - begin) as u32;
-            let split = pixels < LEAST_PIXELS * count;
-            if split {
-                self.split(here);
-            } else {
-                self.lists.extend(here.flat_map(|one| [one.copy, one.near]));
-            }
-            let count = if split { BIN_SPLIT } else { count };
-            self.bins
-                .push([corner(square), first, count, listed[nearest as usize].near]);
-        }
-    }
-
-    /// A list for each of a square's pixels: first where each begins, from the first word on, and
-    /// how long it is.
-    fn split<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone) {
-        const PIXELS: usize = (SIDE * SIDE) as usize;
-        let mut counts = [0u32; PIXELS];
-        let each = |one: &Listed, visit: &mut dyn FnMut(usize)| {
-            let mut pixels = one.pixels;
-            while pixels != 0 {
-                visit(pixels.trailing_zeros() as usize);
-                pixels &= pixels - 1;
-            }
-        };
-        for one in here.clone() {
-            each(one, &mut |pixel| counts[pixel] += 1);
-        }
-        let start = self.lists.len();
-        let mut next = [0usize; PIXELS];
-        let mut at = 2 * PIXELS;
-        for (next, count) in next.iter_mut().zip(counts) {
-            self.lists.extend([at as u32, count]);
-            *next = start + at;
-            at += 2 * count as usize;
-        }
-        self.lists.resize(start + at, 0);
-        for one in here {
-            each(one, &mut |pixel| {
-                self.lists[next[pixel]] = one.copy;
-                self.lists[next[pixel] + 1] = one.near;
-                next[pixel] += 2;
-            });
-        }
-    }
+    let corner = |square: u32| [square % across, square / across + top / SIDE];
+    (listed.iter().zip(copies))
+        .map(|(listed, copies)| Part {
+            lists: Lists::new(listed, squares, !in_squares, corner),
+            copies,
+        })
+        .collect()
 }

@@ -20,7 +20,7 @@ use super::series_style::SeriesStyles;
 use super::stats::{self, Interval};
 use super::table::Table;
 use crate::compare::{PixelErrors, pixel_errors};
-use crate::method::MethodSettings;
+use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use std::path::Path;
@@ -56,6 +56,7 @@ pub fn plan(stages: &[DrawStage], quick: bool) -> Result<Plan> {
             plan.add(view, baseline);
         }
     }
+    plan.add_floors();
     Ok(plan)
 }
 
@@ -67,8 +68,11 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Measures a picture.
+    /// Measures a picture; the floor's has no surface to err from.
     pub fn add(&mut self, seen: &RenderedCase) {
+        if seen.case.settings.method == Method::Floor {
+            return;
+        }
         let scene = &seen.plan.views[seen.case.view].scene;
         match pixel_errors(scene, seen.truth, seen.frame) {
             Ok(errors) => self.of.push((*seen.case, errors)),
@@ -103,7 +107,7 @@ fn lines<'a>(rows: &'a [Row], errors: &'a Errors) -> Vec<Line<'a>> {
             row,
             errors: errors.row(row),
             exact: beside(row, &|s| {
-                s.method.follows_tolerance() && s.tolerance == Tolerance::EXACT
+                s.method == Method::default() && s.tolerance == Tolerance::EXACT
             }),
             baseline: beside(row, &is_rbm_baseline),
         })
@@ -113,6 +117,8 @@ fn lines<'a>(rows: &'a [Row], errors: &'a Errors) -> Vec<Line<'a>> {
 fn name(settings: &MethodSettings) -> String {
     if is_rbm_baseline(settings) {
         super::plan::RBM_BASELINE.into()
+    } else if settings.method == Method::Floor {
+        settings.method.to_string()
     } else {
         settings.tolerance.to_string()
     }
@@ -172,24 +178,23 @@ fn table(lines: &[Line]) -> Table {
 fn means(lines: &[Line]) -> Table {
     let mut records = Vec::new();
     for stage_of in [DrawStage::Fragment, DrawStage::Compute] {
-        for pixels in TOLERANCES {
-            let at: Vec<&Line> = (lines.iter())
-                .filter(|l| l.row.settings.stage == stage_of)
-                .filter(|l| l.row.settings.tolerance.pixels() == pixels)
-                .collect();
+        let of_stage = lines.iter().filter(|l| l.row.settings.stage == stage_of);
+        let of_stage: Vec<&Line> = of_stage.collect();
+        let tolerances = TOLERANCES.map(|t| t.to_string());
+        for of in tolerances.into_iter().chain([Method::Floor.to_string()]) {
+            let named = |l: &&&Line| name(&l.row.settings) == of;
+            let at: Vec<&Line> = of_stage.iter().filter(named).copied().collect();
             let mean = |of: &dyn Fn(&Line) -> Option<Interval>| {
                 let values: Vec<f64> = at.iter().filter_map(|l| Some(of(l)?.value)).collect();
                 interval(stats::geometric(&values))
             };
-            let worst = at
-                .iter()
-                .filter_map(|l| Some(l.errors?.p999))
-                .fold(0.0, f64::max);
+            let errors = at.iter().filter_map(|l| Some(l.errors?.p999));
+            let worst = errors.reduce(f64::max).map(|worst| number(worst, 3));
             if !at.is_empty() {
                 records.push(vec![
                     stage_of.name().to_owned(),
-                    number(pixels, 3),
-                    number(worst, 3),
+                    of,
+                    worst.unwrap_or_default(),
                     mean(&|l| l.exact),
                     mean(&|l| l.baseline),
                 ]);

@@ -49,7 +49,7 @@ pub fn settings(stage: DrawStage) -> MethodSettings {
 }
 
 /// The plan: one solid, then armies of the first `numbers` of [`COPIES`]; the default search exact
-/// and with a tolerance, and meshes.
+/// and with a tolerance, its floor, and meshes.
 ///
 /// # Errors
 /// Of the solids that the program carries.
@@ -87,13 +87,19 @@ pub fn plan(stages: &[DrawStage], numbers: usize) -> Result<Plan> {
             }
         }
     }
+    plan.add_floors();
     Ok(plan)
 }
 
-/// A row beside the one solid drawn in the same way: time over time, and the same by equal numbers
-/// of pixels hit.
+/// A row beside the one solid drawn in the same way, the floor beside the one that is searched with
+/// a tolerance: time over time, and the same by equal numbers of pixels hit.
 fn beside(rows: &[Row], row: &Row) -> Option<(Interval, f64)> {
-    let same = |r: &&Row| r.view == 0 && r.settings == row.settings;
+    let like = if row.settings.method == Method::Floor {
+        settings(row.settings.stage)
+    } else {
+        row.settings
+    };
+    let same = |r: &&Row| r.view == 0 && r.settings == like;
     let one = rows.iter().find(same).filter(|_| row.view > 0)?;
     let ratio = ratios::between(row, one)?;
     Some((ratio, one.covered() / row.covered()))

@@ -1,0 +1,33 @@
+// What takes the place of the renderer's searches: a ray hits where it enters the box, the height range and the
+// bounding cylinder of a solid, and between two t, where these begin.
+#ifndef TRACE_GLSL
+#define TRACE_GLSL
+#include "core/hit.glsl"
+#include "core/pixel_ray.glsl"
+#include "search/quadric.glsl"
+
+bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
+{
+    hit.t = t;
+    hit.point = o + t * v;
+    hit.normal = vec3(hit.point.xy, 0.0);
+    hit.sense = vec3(1.0);
+    hit.steps = 0u;
+    hit.exhausted = false;
+    hit.at_border = false;
+    return true;
+}
+
+bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
+{
+    return hit_at(eye, v, span.x, hit);
+}
+
+bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
+{
+    Meridian m;
+    // Vertices hand over whether there are patches, and fragments must take what they are handed.
+    return clip_ray(eye, v, base, m) && solid.patches.z != 0u && hit_at(eye, v, m.t_start, hit);
+}
+
+#endif

@@ -1,0 +1,295 @@
+//! Copies dealt out to bins: to squares of the screen, or to single pixels of them.
+
+use super::cover::SIDE;
+use crate::shader::generated::BIN_SPLIT;
+
+/// A copy in a square.
+#[derive(Clone, Copy)]
+pub(super) struct Listed {
+    pub square: u32,
+    /// Number of the instance.
+    pub copy: u32,
+    pub near: u32,
+    /// Those that it may show in, one bit each.
+    pub pixels: u64,
+}
+
+/// Bins and lists of one batch in one band, as `bin_words.glsl` has them. Lists count from the
+/// band's first.
+#[derive(Default)]
+pub(super) struct Lists {
+    pub bins: Vec<[u32; 4]>,
+    /// Of bins that are squares the pixels that may show something, one bit each.
+    pub masks: Vec<u64>,
+    pub words: Vec<u32>,
+    /// Pixels that wait for others to fill a bin: where they are, where their list begins, how many
+    /// copies it holds.
+    waiting: Vec<[u32; 3]>,
+}
+
+/// Pixels of a bin.
+const PIXELS: usize = (SIDE * SIDE) as usize;
+/// From so many pixels on each of a square's copies covers it well enough for one list for all.
+const LEAST_PIXELS: u32 = 48;
+
+impl Lists {
+    /// Deals copies, nearest first, out to so many squares. `gathered`: pixels with lists of their
+    /// own need not stay with their square. `corner`: of a square, in squares.
+    pub fn new(
+        listed: &[Listed],
+        squares: u32,
+        gathered: bool,
+        corner: impl Fn(u32) -> [u32; 2],
+    ) -> Self {
+        let mut ends = vec![0u32; squares as usize + 1];
+        for one in listed {
+            ends[one.square as usize + 1] += 1;
+        }
+        for square in 1..ends.len() {
+            ends[square] += ends[square - 1];
+        }
+        let mut next = ends.clone();
+        let mut sorted = vec![0u32; listed.len()];
+        for (n, one) in (0u32..).zip(listed) {
+            let place = &mut next[one.square as usize];
+            sorted[*place as usize] = n;
+            *place += 1;
+        }
+        let mut lists = Self::default();
+        for square in 0..squares {
+            let [begin, end] = [square, square + 1].map(|s| ends[s as usize] as usize);
+            let here = sorted[begin..end].iter().map(|n| &listed[*n as usize]);
+            if begin < end {
+                lists.add(here, corner(square), gathered);
+            }
+        }
+        lists.gather();
+        lists
+    }
+
+    /// The copies of a square.
+    fn add<'a>(
+        &mut self,
+        here: impl ExactSizeIterator<Item = &'a Listed> + Clone,
+        [x, y]: [u32; 2],
+        gathered: bool,
+    ) {
+        let corner = x * SIDE | (y * SIDE) << 16;
+        let count = here.len() as u32;
+        let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
+        let split = pixels < LEAST_PIXELS * count;
+        if split && gathered {
+            let lists = self.split(here);
+            let place = |k: u32| corner + (k % SIDE | (k / SIDE) << 16);
+            for (k, [begin, count]) in (0..).zip(lists).filter(|(_, [_, count])| *count > 0) {
+                self.waiting.push([place(k), begin, count]);
+                if self.waiting.len() == PIXELS {
+                    self.gather();
+                }
+            }
+            return;
+        }
+        let near = here.clone().next().map_or(0, |one| one.near);
+        self.masks
+            .push(here.clone().fold(0, |mask, one| mask | one.pixels));
+        if split {
+            let lists = self.split(here);
+            let first = self.words.len() as u32;
+            let away = |[begin, count]: [u32; 2]| [begin.wrapping_sub(first), count];
+            self.words.extend(lists.into_iter().flat_map(away));
+            self.bins.push([corner, first, BIN_SPLIT, near]);
+        } else {
+            let first = self.words.len() as u32;
+            self.words.extend(here.flat_map(|one| [one.copy, one.near]));
+            self.bins.push([corner, first, count, near]);
+        }
+    }
+
+    /// Lists of each of a square's pixels: where it begins, and how many copies it holds.
+    fn split<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone) -> [[u32; 2]; PIXELS] {
+        let mut lists = [[0u32; 2]; PIXELS];
+        let each = |one: &Listed, visit: &mut dyn FnMut(usize)| {
+            let mut pixels = one.pixels;
+            while pixels != 0 {
+                visit(pixels.trailing_zeros() as usize);
+                pixels &= pixels - 1;
+            }
+        };
+        for one in here.clone() {
+            each(one, &mut |pixel| lists[pixel][1] += 1);
+        }
+        let mut next = [0usize; PIXELS];
+        let mut at = self.words.len();
+        for (next, list) in next.iter_mut().zip(&mut lists) {
+            *next = at;
+            list[0] = at as u32;
+            at += 2 * list[1] as usize;
+        }
+        self.words.resize(at, 0);
+        for one in here {
+            each(one, &mut |pixel| {
+                self.words[next[pixel]] = one.copy;
+                self.words[next[pixel] + 1] = one.near;
+                next[pixel] += 2;
+            });
+        }
+        lists
+    }
+
+    /// A bin of the pixels that wait, and of some that are nowhere.
+    fn gather(&mut self) {
+        if self.waiting.is_empty() {
+            return;
+        }
+        let first = self.words.len() as u32;
+        self.waiting.resize(PIXELS, [u32::MAX, first, 0]);
+        let lists = self.waiting.drain(..);
+        let words = lists.flat_map(|[place, begin, n]| [place, begin.wrapping_sub(first), n]);
+        self.words.extend(words);
+        self.bins.push([0, first, BIN_SPLIT, 0]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::bins::runs::Run;
+    use std::collections::BTreeMap;
+
+    const ACROSS: u32 = 5;
+    const SQUARES: u32 = 3 * ACROSS;
+
+    /// Copies of many sizes, from whole squares to single pixels, nearest first.
+    fn copies() -> Vec<Listed> {
+        let mut state = 7u64;
+        let mut next = move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            state >> 16
+        };
+        (0..90)
+            .map(|copy| {
+                let few = next() & next() >> 7 & next() << 3;
+                Listed {
+                    square: (next() % u64::from(SQUARES)) as u32,
+                    copy,
+                    near: 100 + copy,
+                    pixels: if copy % 3 == 0 {
+                        u64::MAX
+                    } else {
+                        1 << (copy % 60) | few
+                    },
+                }
+            })
+            .collect()
+    }
+
+    /// What each pixel may show.
+    fn shown() -> BTreeMap<(u32, u32), Vec<u32>> {
+        let mut all = BTreeMap::<_, Vec<u32>>::new();
+        for one in copies() {
+            for k in (0..64).filter(|k| one.pixels >> k & 1 == 1) {
+                let (x, y) = (one.square % ACROSS, one.square / ACROSS);
+                let pixel = (SIDE * x + k % SIDE, SIDE * y + k / SIDE);
+                all.entry(pixel).or_default().push(one.copy);
+            }
+        }
+        all
+    }
+
+    fn list(words: &[u32], begin: u32, count: u32) -> Vec<u32> {
+        let words = &words[begin as usize..][..2 * count as usize];
+        let copies = words.chunks_exact(2);
+        assert!(copies.clone().all(|w| w[1] == 100 + w[0]));
+        copies.map(|w| w[0]).collect()
+    }
+
+    fn lists(gathered: bool) -> Lists {
+        let corner = |square| [square % ACROSS, square / ACROSS];
+        Lists::new(&copies(), SQUARES, gathered, corner)
+    }
+
+    /// Lists hold what a pixel may show, in order; those of whole squares maybe more.
+    fn check(found: &BTreeMap<(u32, u32), (Vec<u32>, bool)>) {
+        for (pixel, wanted) in shown() {
+            let (list, own) = &found[&pixel];
+            assert!(list.is_sorted() && (!own || *list == wanted));
+            assert!(wanted.iter().all(|copy| list.contains(copy)));
+        }
+    }
+
+    #[test]
+    fn squares_list_what_their_pixels_show() {
+        let lists = lists(false);
+        let mut found = BTreeMap::new();
+        let mut spare = 0;
+        let runs = (0..).zip(lists.bins.iter().zip(&lists.masks));
+        let mut drawn: Vec<Run> = Vec::new();
+        for (number, (&bin, &mask)) in runs {
+            let run = Run::new(number, bin, mask);
+            match drawn.last().and_then(|last| last.joined(run)) {
+                Some(both) => *drawn.last_mut().unwrap() = both,
+                None => drawn.push(run),
+            }
+        }
+        assert!(drawn.len() < lists.bins.len());
+        for [from, number, to, near] in drawn.into_iter().map(Run::words) {
+            for (x, y) in (from & 0xffff..to & 0xffff)
+                .flat_map(|x| (from >> 16..to >> 16).map(move |y| (x, y)))
+            {
+                let bin = number + x / SIDE - (from & 0xffff) / SIDE;
+                let [corner, first, count, nearest] = lists.bins[bin as usize];
+                assert!(near <= nearest);
+                assert_eq!(
+                    (corner & 0xffff, corner >> 16),
+                    (x / SIDE * SIDE, y / SIDE * SIDE)
+                );
+                let split = count == BIN_SPLIT;
+                let at = (first + 2 * (SIDE * (y % SIDE) + x % SIDE)) as usize;
+                let (begin, count) = if split {
+                    (first.wrapping_add(lists.words[at]), lists.words[at + 1])
+                } else {
+                    (first, count)
+                };
+                spare += u32::from(count == 0);
+                let list = list(&lists.words, begin, count);
+                assert!(found.insert((x, y), (list, split)).is_none());
+            }
+        }
+        check(&found);
+        assert!(spare > 0);
+    }
+
+    #[test]
+    fn gathered_pixels_list_what_they_show_and_none_is_idle() {
+        let lists = lists(true);
+        let mut found = BTreeMap::new();
+        let mut idle = 0;
+        for &[corner, first, count, _] in &lists.bins {
+            let split = count == BIN_SPLIT;
+            for k in 0..SIDE * SIDE {
+                let at = (first + 3 * k) as usize;
+                let [place, begin, count] = if split {
+                    let [place, away, count] = [0, 1, 2].map(|n| lists.words[at + n]);
+                    [place, first.wrapping_add(away), count]
+                } else {
+                    [corner + (k % SIDE | (k / SIDE) << 16), first, count]
+                };
+                if place == u32::MAX {
+                    idle += 1;
+                    continue;
+                }
+                let list = list(&lists.words, begin, count);
+                assert!(
+                    found
+                        .insert((place & 0xffff, place >> 16), (list, split))
+                        .is_none()
+                );
+            }
+        }
+        check(&found);
+        // In the last bin alone.
+        assert!(idle < 64);
+    }
+}
