@@ -37,8 +37,8 @@ void main()
 
     // The first and the last patch, and the widest gap between two that follow.
     Beam beam = beam_of(rays, tile * GROUP_PIXELS, GROUP_PIXELS, farthest, unit);
-    // Where the box cuts the solid, a tile of which some ray may have been in it before the box's sides has no list: that
-    // ray may meet a cut.
+    // Where the box cuts the solid, a tile of which some ray may have been in it before the box's sides has no list:
+    // that ray may meet a cut.
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);

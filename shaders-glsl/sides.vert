@@ -15,7 +15,8 @@ void main()
     uint beside = CUT == CUT_SOLID ? 0u : strip & 1u;
     strip = CUT == CUT_SOLID ? strip : strip >> 1;
     uint side = strip & 3u;
-    vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]); // lowest and highest z, radii: of all, of what is solid
+    // Lowest and highest z, radii: of all, of what is solid.
+    vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]);
 
     // Of the sides the normal's axis comes first, the horizontal one second.
     bool along_x = side < 2u;
@@ -39,7 +40,8 @@ void main()
     vec2 xy = vec2(sense * R, across);
     float z = (0x34u & bit) != 0u ? row.y + grow.z : row.x - grow.z;
     gl_Position = clip_of(i, vec3(along_x ? xy : xy.yx, z));
-    // A little nearer, as no hit may be before its triangle. Not outwards: along a side, rays by its edge would miss it.
+    // A little nearer, as no hit may be before its triangle. Not outwards: along a side, rays by its edge would miss
+    // it.
     gl_Position.z += (frame.clip_x.w != 0.0 ? -1e-5 : 1e-5) * frame.dir_y.w;
 
     hand_over(i, frame.dir_00.w);

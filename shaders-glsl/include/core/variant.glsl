@@ -79,7 +79,8 @@ layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn befo
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
 #if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS || SEARCH == SEARCH_NONE
-layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and tiles always is
+// 1: the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and tiles always is.
+layout(constant_id = 11) const uint OUTSIDE = 0u;
 #else
 const uint OUTSIDE = 0u;
 #endif
@@ -88,7 +89,8 @@ layout(constant_id = 12) const uint CUT = 0u; // which part of a solid that its 
 #else
 const uint CUT = 0u;
 #endif
-layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // of one solid's tables: most that the device's uniform buffers hold
+// Of one solid's tables: most that the device's uniform buffers hold.
+layout(constant_id = 13) const uint OWN_VECTORS = 1024u;
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
 #endif
@@ -130,9 +132,9 @@ const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
 const uint SIDE_ROWS = 32u; // strips of each of the box's sides that cut a hull
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
-const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made: three vectors each, of PATCH_VECTORS
+const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made, three vectors each
 const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches
-const uint TILE_LISTS = 5u; // lists of tiles: one for each of these, one of tiles whose rays enter box and solid at once
+const uint TILE_LISTS = 5u; // lists of tiles: one for each, and one of tiles whose rays enter box and solid at once
 const uint SOLID_ROWS = 64u; // rows of equal height of which it is known within which radius all is solid
 const uint SHORT_LIST = 8u; // the first of them
 const uint MIDDLE_LIST = 16u;

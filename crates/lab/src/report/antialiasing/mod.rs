@@ -332,13 +332,21 @@ pub fn write(
     page.facts(&machine.lines());
     page.chapter("Geometric means over the pictures");
     page.text(&format!(
-        "FLIP is the mean over all pixels, against a picture of {TRUTH} rays per pixel by the same search, all in floats. Times are of pictures of colour alone and count from submission to completion, medians of {rounds} \
-         rounds in which all ways are drawn in turn. MSAA 4 is a pass of four samples per pixel that is resolved: of the search as in a host's pass, and of the mesh baseline. A mesh shows smooth normals and no exact solid: FLIP, own compares it with 64 rays of the mesh. Of smoothed silhouettes reading back counts, too, by what it takes longer than of one ray: there they are smoothed. \
-         Several rays are as many pictures; adding them up is not counted.",
+        "FLIP is the mean over all pixels, against a picture of {TRUTH} rays per pixel by the same \
+         search, all in floats. Times are of pictures of colour alone and count from submission to \
+         completion, medians of {rounds} rounds in which all ways are drawn in turn. MSAA 4 is a \
+         pass of four samples per pixel that is resolved: of the search as in a host's pass, and \
+         of the mesh baseline. A mesh shows smooth normals and no exact solid: FLIP, own compares \
+         it with 64 rays of the mesh. Of smoothed silhouettes reading back counts, too, by what it \
+         takes longer than of one ray: there they are smoothed. Several rays are as many pictures; \
+         adding them up is not counted.",
     ));
     page.table(&means(lines), &[0, 1]);
     page.chapter("Every picture");
-    page.text("The pictures beside this page (antialiasing-SCENE-STAGE.png) show where one ray is worst, enlarged, in the order of the rows, then by 64 rays.");
+    page.text(
+        "The pictures beside this page (antialiasing-SCENE-STAGE.png) show where one ray is worst, \
+         enlarged, in the order of the rows, then by 64 rays.",
+    );
     page.table(&table(lines), &[0, 1, 2]);
     write_text(&folder.join("report.html"), &page.html())
 }
