@@ -74,13 +74,14 @@ impl Lists {
         [x, y]: [u32; 2],
         gathered: bool,
     ) {
-        let corner = x * SIDE | (y * SIDE) << 16;
+        let at = |x: u32, y: u32| x | (y << 16);
+        let corner = at(x * SIDE, y * SIDE);
         let count = here.len() as u32;
         let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
         let split = pixels < LEAST_PIXELS * count;
         if split && gathered {
             let lists = self.split(here);
-            let place = |k: u32| corner + (k % SIDE | (k / SIDE) << 16);
+            let place = |k: u32| corner + at(k % SIDE, k / SIDE);
             for (k, [begin, count]) in (0..).zip(lists).filter(|(_, [_, count])| *count > 0) {
                 self.waiting.push([place(k), begin, count]);
                 if self.waiting.len() == PIXELS {
@@ -274,7 +275,7 @@ mod tests {
                     let [place, away, count] = [0, 1, 2].map(|n| lists.words[at + n]);
                     [place, first.wrapping_add(away), count]
                 } else {
-                    [corner + (k % SIDE | (k / SIDE) << 16), first, count]
+                    [corner + k % SIDE + ((k / SIDE) << 16), first, count]
                 };
                 if place == u32::MAX {
                     idle += 1;
