@@ -78,9 +78,9 @@ impl Tables {
         let rows = rows.clamp(1, 4096) as usize;
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); rows];
         for (index, patch) in patches.iter().enumerate() {
-            for list in &mut members[touched(patch, rows)] {
-                if list.len() < MOST {
-                    list.push(index as u32);
+            for i in touched(patch, rows) {
+                if members[i].len() < MOST {
+                    members[i].push(index as u32);
                 }
             }
         }

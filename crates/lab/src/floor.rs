@@ -55,6 +55,10 @@ fn words(file: &str, macros: &[(&str, &str)]) -> Result<Option<Vec<u32>>> {
     if file != "hull.vert" && (file.ends_with(".vert") || of("SEARCH").is_none()) {
         return Ok(None);
     }
+    // Contours that do not close are drawn by another search, whose vertices hand over other things.
+    if of("SEARCH").is_some_and(|search| search != "SEARCH_QUADRIC") {
+        return refused("the default search cannot draw an object, and another takes its place");
+    }
     let output = of("OUTPUT").unwrap_or("OUTPUT_COLOR");
     let dispatch = of("DISPATCH").unwrap_or("DISPATCH_RECTANGLE");
     // Every plane is stored by one module, which shades textures or not.

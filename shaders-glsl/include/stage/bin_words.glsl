@@ -4,8 +4,9 @@
 // copies the list holds, the bits of the nearest depth. A list has two words a copy, nearest first: the instance's
 // number, the bits of the nearest depth of the copy. Where BIN_SPLIT stands in place of the number, each pixel has a
 // list: the first words are two for each, where it begins, from the first of these words on, and how many copies it
-// holds. In compute such a bin is no square: it holds as many pixels from anywhere, and before the two words of each
-// stands which (x | y << 16). So no invocation is spent on pixels that show nothing.
+// holds. In compute a split bin is no square: it holds as many pixels from anywhere, so that no invocation is spent on
+// pixels that show nothing. Each has three words: its place (x | y << 16), where its list begins, how many copies it
+// holds. Places behind the last pixel are 0xffffffff, outside of every picture; corner and depth of such a bin are 0.
 //
 // A run is a rectangle that fragments are drawn for, a bin high and some bins wide at most: its corner in pixels, the
 // number of its first bin, its other corner (exclusive), the bits of the nearest depth.

@@ -1,5 +1,5 @@
-// Compute visits bins: squares of the screen in which at least one of a batch's copies may show, with a list of these
-// copies. Work groups count along y from bin to bin.
+// Compute visits bins: squares of the screen, or as many pixels from anywhere, in which at least one of a batch's copies
+// may show, with lists of these copies. Work groups count along y from bin to bin.
 #ifndef BINS_GLSL
 #define BINS_GLSL
 #define SPANS (SEARCH == SEARCH_LIVE && DISPATCH == DISPATCH_BEAMS)
@@ -52,7 +52,7 @@ Bin this_bin()
     return Bin(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], 0u);
 }
 
-// Takes the list of this pixel, where the bin is split.
+// The pixel of this invocation. A split bin becomes the one of this pixel.
 uvec2 this_pixel(inout Bin bin)
 {
     if (DISPATCH == DISPATCH_RECTANGLE && CUT == CUT_ANY) {

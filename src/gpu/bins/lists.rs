@@ -17,9 +17,9 @@ pub(super) struct Listed {
 /// Bins and lists of one batch in one band, as `bin_words.glsl` has them. Lists count from the
 /// band's first.
 #[derive(Default)]
-pub(super) struct Lists {
+pub(super) struct BandLists {
     pub bins: Vec<[u32; 4]>,
-    /// Of bins that are squares the pixels that may show something, one bit each.
+    /// For fragments: of each bin the pixels that may show something, one bit each.
     pub masks: Vec<u64>,
     pub words: Vec<u32>,
     /// Pixels that wait for others to fill a bin: where they are, where their list begins, how many
@@ -29,16 +29,20 @@ pub(super) struct Lists {
 
 /// Pixels of a bin.
 const PIXELS: usize = (SIDE * SIDE) as usize;
-/// From so many pixels on each of a square's copies covers it well enough for one list for all.
+/// One list serves a square if its copies cover at least so many of its pixels on average.
 const LEAST_PIXELS: u32 = 48;
+/// Most entries of the lists of a square's pixels: where many copies lie behind each other these
+/// would take too much memory.
+const MOST_ENTRIES: u32 = 512;
 
-impl Lists {
-    /// Deals copies, nearest first, out to so many squares. `gathered`: pixels with lists of their
-    /// own need not stay with their square. `corner`: of a square, in squares.
+impl BandLists {
+    /// Deals copies, nearest first, out to so many squares. `fragments`: they are drawn for bins,
+    /// which are squares then; else pixels with lists of their own leave theirs. `corner`: of a
+    /// square, in squares.
     pub fn new(
         listed: &[Listed],
         squares: u32,
-        gathered: bool,
+        fragments: bool,
         corner: impl Fn(u32) -> [u32; 2],
     ) -> Self {
         let mut ends = vec![0u32; squares as usize + 1];
@@ -60,7 +64,7 @@ impl Lists {
             let [begin, end] = [square, square + 1].map(|s| ends[s as usize] as usize);
             let here = sorted[begin..end].iter().map(|n| &listed[*n as usize]);
             if begin < end {
-                lists.add(here, corner(square), gathered);
+                lists.add(here, corner(square), fragments);
             }
         }
         lists.gather();
@@ -72,14 +76,14 @@ impl Lists {
         &mut self,
         here: impl ExactSizeIterator<Item = &'a Listed> + Clone,
         [x, y]: [u32; 2],
-        gathered: bool,
+        fragments: bool,
     ) {
         let at = |x: u32, y: u32| x | (y << 16);
         let corner = at(x * SIDE, y * SIDE);
         let count = here.len() as u32;
         let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
-        let split = pixels < LEAST_PIXELS * count;
-        if split && gathered {
+        let split = pixels < (LEAST_PIXELS * count).min(MOST_ENTRIES);
+        if split && !fragments {
             let lists = self.split(here);
             let place = |k: u32| corner + at(k % SIDE, k / SIDE);
             for (k, [begin, count]) in (0..).zip(lists).filter(|(_, [_, count])| *count > 0) {
@@ -91,8 +95,10 @@ impl Lists {
             return;
         }
         let near = here.clone().next().map_or(0, |one| one.near);
-        self.masks
-            .push(here.clone().fold(0, |mask, one| mask | one.pixels));
+        if fragments {
+            let mask = here.clone().fold(0, |mask, one| mask | one.pixels);
+            self.masks.push(mask);
+        }
         if split {
             let lists = self.split(here);
             let first = self.words.len() as u32;
@@ -154,7 +160,7 @@ impl Lists {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::bins::runs::Run;
+    use crate::gpu::bins::runs::runs;
     use std::collections::BTreeMap;
 
     const ACROSS: u32 = 5;
@@ -206,9 +212,9 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn lists(gathered: bool) -> Lists {
+    fn lists(fragments: bool) -> BandLists {
         let corner = |square| [square % ACROSS, square / ACROSS];
-        Lists::new(&copies(), SQUARES, gathered, corner)
+        BandLists::new(&copies(), SQUARES, fragments, corner)
     }
 
     /// Lists hold what a pixel may show, in order; those of whole squares maybe more.
@@ -222,20 +228,12 @@ mod tests {
 
     #[test]
     fn squares_list_what_their_pixels_show() {
-        let lists = lists(false);
+        let lists = lists(true);
         let mut found = BTreeMap::new();
         let mut spare = 0;
-        let runs = (0..).zip(lists.bins.iter().zip(&lists.masks));
-        let mut drawn: Vec<Run> = Vec::new();
-        for (number, (&bin, &mask)) in runs {
-            let run = Run::new(number, bin, mask);
-            match drawn.last().and_then(|last| last.joined(run)) {
-                Some(both) => *drawn.last_mut().unwrap() = both,
-                None => drawn.push(run),
-            }
-        }
+        let drawn = runs(0, &lists.bins, &lists.masks);
         assert!(drawn.len() < lists.bins.len());
-        for [from, number, to, near] in drawn.into_iter().map(Run::words) {
+        for [from, number, to, near] in drawn {
             for (x, y) in (from & 0xffff..to & 0xffff)
                 .flat_map(|x| (from >> 16..to >> 16).map(move |y| (x, y)))
             {
@@ -264,7 +262,7 @@ mod tests {
 
     #[test]
     fn gathered_pixels_list_what_they_show_and_none_is_idle() {
-        let lists = lists(true);
+        let lists = lists(false);
         let mut found = BTreeMap::new();
         let mut idle = 0;
         for &[corner, first, count, _] in &lists.bins {

@@ -30,9 +30,9 @@ use super::offset_surface::OffsetSurface;
 use super::view::View;
 use crate::scene::Placement;
 use cover::{Cover, SIDE};
-use lists::{Listed, Lists};
+use lists::{BandLists, Listed};
 use rayon::prelude::*;
-use runs::Run;
+use runs::runs;
 use seen::Seen;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -83,15 +83,15 @@ struct Item {
 
 /// What one batch has in one band.
 struct Part {
-    lists: Lists,
+    lists: BandLists,
     /// Copies that may show.
     copies: Vec<u32>,
 }
 
 impl Bins {
-    /// What of these batches a view of perspective shows. `in_runs`: bins side by side are drawn as
-    /// one, by a rectangle.
-    pub fn new(view: &View, batches: &[Batch], in_runs: bool) -> Self {
+    /// What of these batches a view of perspective shows. `fragments`: they are drawn for bins, by
+    /// rectangles; else work groups.
+    pub fn new(view: &View, batches: &[Batch], fragments: bool) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
         let mut outside = Vec::with_capacity(batches.len());
@@ -135,13 +135,13 @@ impl Bins {
             .into_par_iter()
             .map(|first| {
                 let cover = Cover::new(across, first, (first + band).min(down));
-                fill(cover, across, &forms, batches, &items, in_runs)
+                fill(cover, across, &forms, batches, &items, fragments)
             })
             .collect();
-        Self::joined(&parts, batches, &outside, in_runs)
+        Self::joined(&parts, batches, &outside, fragments)
     }
 
-    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool], in_runs: bool) -> Self {
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool], fragments: bool) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
         let mut masks: Vec<u64> = Vec::new();
         let mut lists = 0;
@@ -150,12 +150,11 @@ impl Bins {
             let first = bins.len() as u32;
             let mut shows = vec![false; batch.placements.len()];
             for part in parts.iter().map(|band| &band[number]) {
-                let Lists { words, .. } = &part.lists;
                 bins.extend(part.lists.bins.iter().map(|[corner, list, count, near]| {
                     [*corner, list + lists as u32, *count, *near]
                 }));
                 masks.extend(&part.lists.masks);
-                lists += words.len();
+                lists += part.lists.words.len();
                 for &copy in &part.copies {
                     shows[copy as usize] = true;
                 }
@@ -167,32 +166,23 @@ impl Bins {
                 outside: outside[number],
             });
         }
-        let mut runs: Vec<[u32; 4]> = Vec::new();
-        if in_runs {
+        let mut rectangles: Vec<[u32; 4]> = Vec::new();
+        if fragments {
             let begin = bins.len() as u32;
             for one in &mut shown {
-                let first = begin + runs.len() as u32;
-                let mut last: Option<Run> = None;
-                for number in one.range.clone() {
-                    let at = number as usize;
-                    let run = Run::new(number, bins[at], masks[at]);
-                    let joined = last.and_then(|last| last.joined(run));
-                    if joined.is_none() {
-                        runs.extend(last.map(Run::words));
-                    }
-                    last = joined.or(Some(run));
-                }
-                runs.extend(last.map(Run::words));
-                one.range = first..begin + runs.len() as u32;
+                let own = one.range.start as usize..one.range.end as usize;
+                let first = begin + rectangles.len() as u32;
+                rectangles.extend(runs(one.range.start, &bins[own.clone()], &masks[own]));
+                one.range = first..begin + rectangles.len() as u32;
             }
         }
-        let behind = 4 * (bins.len() + runs.len()) as u32;
+        let behind = 4 * (bins.len() + rectangles.len()) as u32;
         for bin in &mut bins {
             bin[1] += behind;
         }
         let mut words = Vec::with_capacity(behind as usize + lists);
         words.extend(bins.as_flattened());
-        words.extend(runs.as_flattened());
+        words.extend(rectangles.as_flattened());
         for number in 0..batches.len() {
             for band in parts {
                 words.extend(&band[number].lists.words);
@@ -209,7 +199,7 @@ fn fill(
     forms: &Forms,
     batches: &[Batch],
     items: &[Item],
-    in_squares: bool,
+    fragments: bool,
 ) -> Vec<Part> {
     let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
     let mut copies: Vec<Vec<u32>> = vec![Vec::new(); batches.len()];
@@ -255,7 +245,7 @@ fn fill(
     let corner = |square: u32| [square % across, square / across + top / SIDE];
     (listed.iter().zip(copies))
         .map(|(listed, copies)| Part {
-            lists: Lists::new(listed, squares, !in_squares, corner),
+            lists: BandLists::new(listed, squares, fragments, corner),
             copies,
         })
         .collect()

@@ -3,8 +3,7 @@
 use super::cover::SIDE;
 
 /// Part of a row of bins, in pixels.
-#[derive(Clone, Copy)]
-pub(super) struct Run {
+struct Run {
     /// Number of its first bin.
     number: u32,
     /// The end of its last bin.
@@ -14,13 +13,27 @@ pub(super) struct Run {
     near: u32,
 }
 
-/// Blocks of pixels that a rectangle may hold more than two do that it is drawn in place of: what
-/// two triangles cost.
+/// Two rectangles become one if that one holds at most so many blocks of pixels more than both: its
+/// two triangles less cost about as much.
 const SPARE_BLOCKS: u32 = 4;
+
+/// Rectangles of bins, of which the first has this number; `masks`: the pixels of each that show
+/// something. As `bin_words.glsl` has them.
+pub(super) fn runs(first: u32, bins: &[[u32; 4]], masks: &[u64]) -> Vec<[u32; 4]> {
+    let mut all: Vec<Run> = Vec::new();
+    for (number, (&bin, &mask)) in (first..).zip(bins.iter().zip(masks)) {
+        let run = Run::new(number, bin, mask);
+        match all.last_mut() {
+            Some(last) if last.takes(&run) => *last = last.with(&run),
+            _ => all.push(run),
+        }
+    }
+    all.into_iter().map(Run::words).collect()
+}
 
 impl Run {
     /// Of the pixels of a bin that show something.
-    pub fn new(number: u32, [corner, _, _, near]: [u32; 4], mask: u64) -> Self {
+    fn new(number: u32, [corner, _, _, near]: [u32; 4], mask: u64) -> Self {
         let [left, top] = [corner & 0xffff, corner >> 16];
         let columns = (0..8).fold(0u64, |all, row| all | mask >> (8 * row) & 0xff);
         let ends = |bits: u64| [bits.trailing_zeros(), u64::BITS - bits.leading_zeros()];
@@ -34,20 +47,21 @@ impl Run {
         }
     }
 
-    /// Both as one, if they lie side by side and little is drawn besides.
-    pub fn joined(self, next: Self) -> Option<Self> {
-        if self.end + SIDE != next.end || self.y[0] / SIDE != next.y[0] / SIDE {
-            return None;
-        }
-        let both = Self {
+    /// Whether both are drawn as one: they lie side by side, and little is drawn besides.
+    fn takes(&self, next: &Self) -> bool {
+        let beside = self.end + SIDE == next.end && self.y[0] / SIDE == next.y[0] / SIDE;
+        beside && self.with(next).blocks() <= self.blocks() + next.blocks() + SPARE_BLOCKS
+    }
+
+    /// Both, the next to the right.
+    fn with(&self, next: &Self) -> Self {
+        Self {
+            number: self.number,
             end: next.end,
             x: [self.x[0], next.x[1]],
             y: [self.y[0].min(next.y[0]), self.y[1].max(next.y[1])],
             near: self.near.min(next.near),
-            ..self
-        };
-        let most = self.blocks() + next.blocks() + SPARE_BLOCKS;
-        (both.blocks() <= most).then_some(both)
+        }
     }
 
     /// Blocks of 4x2 pixels that it touches.
@@ -57,7 +71,7 @@ impl Run {
     }
 
     /// As `bin_words.glsl` has it.
-    pub fn words(self) -> [u32; 4] {
+    fn words(self) -> [u32; 4] {
         let [from, to] = [0, 1].map(|k| self.x[k] | self.y[k] << 16);
         [from, self.number, to, self.near]
     }

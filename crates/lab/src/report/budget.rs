@@ -27,9 +27,11 @@ use std::path::Path;
 
 /// The tolerances, pixels.
 pub const TOLERANCES: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 2.0];
+/// Those of the floor.
+const FLOORS: [Tolerance; 2] = [Tolerance::EXACT, Tolerance::DEFAULT];
 
-/// The plan: every scene at every tolerance and exact by the default search, and by the RBM
-/// baseline.
+/// The plan: every scene at every tolerance and exact by the default search, by the RBM baseline,
+/// and by the floor, exact and at the default tolerance.
 ///
 /// # Errors
 /// Of the solids that the program carries.
@@ -54,9 +56,11 @@ pub fn plan(stages: &[DrawStage], quick: bool) -> Result<Plan> {
             }
             let baseline = rbm_baseline(&plan.views[view], &exact);
             plan.add(view, baseline);
+            for tolerance in FLOORS {
+                plan.add_floor(view, MethodSettings { tolerance, ..exact });
+            }
         }
     }
-    plan.add_floors();
     Ok(plan)
 }
 
@@ -118,10 +122,14 @@ fn name(settings: &MethodSettings) -> String {
     if is_rbm_baseline(settings) {
         super::plan::RBM_BASELINE.into()
     } else if settings.method == Method::Floor {
-        settings.method.to_string()
+        floor_at(settings.tolerance)
     } else {
         settings.tolerance.to_string()
     }
+}
+
+fn floor_at(tolerance: Tolerance) -> String {
+    format!("{} at {tolerance}", Method::Floor)
 }
 
 fn interval(ratio: Option<Interval>) -> String {
@@ -180,9 +188,9 @@ fn means(lines: &[Line]) -> Table {
     for stage_of in [DrawStage::Fragment, DrawStage::Compute] {
         let of_stage = lines.iter().filter(|l| l.row.settings.stage == stage_of);
         let of_stage: Vec<&Line> = of_stage.collect();
-        let tolerances = TOLERANCES.map(|t| t.to_string());
-        for of in tolerances.into_iter().chain([Method::Floor.to_string()]) {
-            let named = |l: &&&Line| name(&l.row.settings) == of;
+        let ways = TOLERANCES.iter().map(f64::to_string);
+        for way in ways.chain(FLOORS.map(floor_at)) {
+            let named = |l: &&&Line| name(&l.row.settings) == way;
             let at: Vec<&Line> = of_stage.iter().filter(named).copied().collect();
             let mean = |of: &dyn Fn(&Line) -> Option<Interval>| {
                 let values: Vec<f64> = at.iter().filter_map(|l| Some(of(l)?.value)).collect();
@@ -193,7 +201,7 @@ fn means(lines: &[Line]) -> Table {
             if !at.is_empty() {
                 records.push(vec![
                     stage_of.name().to_owned(),
-                    of,
+                    way,
                     worst.unwrap_or_default(),
                     mean(&|l| l.exact),
                     mean(&|l| l.baseline),
@@ -221,7 +229,8 @@ pub fn as_text(rows: &[Row], errors: &Errors) -> String {
 /// Points of each scene in one stage, by tolerance.
 fn series(lines: &[Line], of: DrawStage, value: impl Fn(&Line) -> Option<f64>) -> Vec<Series> {
     let mut all: Vec<Series> = Vec::new();
-    for line in lines.iter().filter(|l| l.row.settings.stage == of) {
+    let searched = |l: &&Line| l.row.settings.method != Method::Floor;
+    for line in (lines.iter()).filter(|l| l.row.settings.stage == of && searched(l)) {
         let x = line.row.settings.tolerance.pixels();
         let Some(y) = value(line).filter(|y| x > 0.0 && *y > 0.0) else {
             continue;

@@ -149,13 +149,17 @@ impl Plan {
     /// Adds, for every view, size and stage of the plan, the floor, where the program holds it and it
     /// is made for the view.
     pub fn add_floors(&mut self) {
-        if !floor::is_available() {
-            return;
-        }
         for case in self.cases.clone() {
-            if floor::check(&self.views[case.view].scene).is_ok() {
-                self.add(case.view, plain(&case.settings, Method::Floor));
-            }
+            self.add_floor(case.view, plain(&case.settings, Method::Floor));
+        }
+    }
+
+    /// Adds the floor of a frame with these settings, where the program holds it and it is made for
+    /// the view.
+    pub fn add_floor(&mut self, view: usize, settings: MethodSettings) {
+        if floor::is_available() && floor::check(&self.views[view].scene).is_ok() {
+            let method = Method::Floor;
+            self.add(view, MethodSettings { method, ..settings });
         }
     }
 

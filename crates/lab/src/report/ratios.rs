@@ -187,8 +187,9 @@ fn baseline_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     })
 }
 
-/// The time of a row above the floor of its picture and stage, ms; `None` where the floor is not
-/// known, and of the floor itself.
+/// The time of a row above the floor of its picture and stage, ms: the floor at its tolerance, if
+/// that was measured, else the exact one. `None` where the floor is not known, and of the floor
+/// itself.
 #[must_use]
 pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
     let of_this = |r: &&Row| {
@@ -196,7 +197,9 @@ pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
             && same_picture(r, row)
             && r.settings.stage == row.settings.stage
     };
-    let floor = rows.iter().find(of_this)?;
+    let alike = |r: &&Row| r.settings.tolerance == row.settings.tolerance;
+    let mut floors = rows.iter().filter(of_this);
+    let floor = floors.clone().find(alike).or_else(|| floors.next())?;
     let above = row.time()?.value - floor.time()?.value;
     (row.settings.method != Method::Floor).then_some(above)
 }

@@ -2,10 +2,11 @@
 
 use crate::scenes::{eye, scene_of};
 use crate::shapes;
+use glam::DVec3;
 use revmap::error::Stage;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
-use revmap::scene::{Scene, Shadow};
+use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::MethodDevice;
@@ -25,12 +26,10 @@ fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Fra
 }
 
 /// Each pixel that the search hits is hit, no farther away, without a look-up.
-#[test]
-fn the_floor_is_the_first_possible_point() {
-    let scene = scene_of(shapes::vase(), eye(25.0, 2.6));
+fn is_first_possible_point(scene: &Scene) {
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let floor = drawn(&scene, Method::Floor, stage, Planes::All);
-        let found = drawn(&scene, Solver::Hull.into(), stage, Planes::All);
+        let floor = drawn(scene, Method::Floor, stage, Planes::All);
+        let found = drawn(scene, Solver::Hull.into(), stage, Planes::All);
         let mut nearer = 0;
         for (k, (first, hit)) in floor.distance.iter().zip(&found.distance).enumerate() {
             assert!(
@@ -47,10 +46,31 @@ fn the_floor_is_the_first_possible_point() {
         );
         assert!(floor.steps.iter().all(|steps| *steps == 0.0));
         // Frames that are timed hold colour alone.
-        let color = drawn(&scene, Method::Floor, stage, Planes::Color);
+        let color = drawn(scene, Method::Floor, stage, Planes::Color);
         for (k, (a, b)) in color.color.iter().zip(&floor.color).enumerate() {
             assert!((a[3] - b[3]).abs() < 1e-3, "{stage:?}, pixel {k}");
         }
+    }
+}
+
+#[test]
+fn the_floor_is_the_first_possible_point() {
+    is_first_possible_point(&scene_of(shapes::vase(), eye(25.0, 2.6)));
+}
+
+/// A few copies, drawn like single solids, and many, drawn from bins.
+#[test]
+fn the_floor_of_copies() {
+    for across in [2, 12] {
+        let mut scene = scene_of(shapes::vase(), eye(25.0, 4.0));
+        scene.objects[0].instances = (0..across * across)
+            .map(|k| Placement {
+                position: DVec3::new(f64::from(k / across), f64::from(k % across), 0.0)
+                    - DVec3::new(1.0, 1.0, 0.0) * (0.5 * f64::from(across)),
+                ..Placement::default()
+            })
+            .collect();
+        is_first_possible_point(&scene);
     }
 }
 
