@@ -291,4 +291,23 @@ mod tests {
         // In the last bin alone.
         assert!(idle < 64);
     }
+
+    #[test]
+    fn deep_squares_keep_one_list() {
+        let deep: Vec<Listed> = (0..100)
+            .map(|copy| Listed {
+                square: 0,
+                copy,
+                near: 100 + copy,
+                pixels: 0xff << (copy % 7),
+            })
+            .collect();
+        for fragments in [false, true] {
+            let of = |copies: &[Listed]| BandLists::new(copies, 1, fragments, |_| [0, 0]);
+            let lists = of(&deep);
+            assert_eq!(lists.words.len(), 2 * deep.len());
+            assert_eq!(lists.bins, [[0, 0, 100, 100]]);
+            assert_eq!(of(&deep[..10]).bins[0][2], BIN_SPLIT);
+        }
+    }
 }
