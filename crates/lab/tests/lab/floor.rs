@@ -32,8 +32,9 @@ fn is_first_possible_point(scene: &Scene) {
         let found = drawn(scene, Solver::Hull.into(), stage, Planes::All);
         let mut nearer = 0;
         for (k, (first, hit)) in floor.distance.iter().zip(&found.distance).enumerate() {
+            // Rasterisers snap corners: SwiftShader's 1 / w is off by 6e-4 of it in one pixel.
             assert!(
-                *first <= hit + 1e-4,
+                *first <= hit * 1.001,
                 "{stage:?}, pixel {k}: {first} > {hit}"
             );
             nearer += usize::from(*first < hit - 1e-3);
