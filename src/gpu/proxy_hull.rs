@@ -1,9 +1,7 @@
 //! Proxy hulls as the vertex shader grows them.
 
 use crate::maps::envelope::Envelope;
-use crate::shader::generated::{
-    FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS, SOLID_ROWS,
-};
+use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch, solid_radii};
 
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics
@@ -58,7 +56,7 @@ pub(crate) const SIDE_VERTICES: u32 = 6 * 4 * SIDE_ROWS;
 /// The rows of `sides.vert`: lowest and highest `z`; the radius that shells stay within, and the
 /// one within which the row and those beside it are solid.
 fn rows(hull: &ProxyHull, patches: &[QuadricPatch]) -> impl Iterator<Item = [u32; 4]> {
-    let solid = solid_radii::<{ SOLID_ROWS as usize }>(patches);
+    let solid = solid_radii(patches);
     hull.rows::<{ SIDE_ROWS as usize }>()
         .into_iter()
         .map(move |[low, high, radius]| {

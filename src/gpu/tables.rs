@@ -2,7 +2,7 @@
 
 use crate::maps::envelope::Envelope;
 use crate::shader::generated::{
-    BEAM_FIRST_NODE, LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS, SOLID_ROWS,
+    BEAM_FIRST_NODE, LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS,
 };
 use crate::surface::{Cones, GpuPatch, QuadricPatch, Tables, solid_radii};
 use ash::vk;
@@ -122,7 +122,7 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     };
     // A guard that nothing passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
-    let radii = solid_radii::<{ SOLID_ROWS as usize }>(patches).map(|r| (r as f32).to_bits());
+    let radii = solid_radii(patches).map(|r| (r as f32).to_bits());
     let solid = radii.as_chunks().0.iter().copied();
     std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
         .chain(patches.iter().enumerate().flat_map(record))

@@ -2,10 +2,13 @@
 
 use super::QuadricPatch;
 use super::rows::extents;
+use crate::shader::generated::SOLID_ROWS;
 
-/// Of `N` rows of equal height over `0 <= z <= 1` the radius within which all is solid, object
+const N: usize = SOLID_ROWS as usize;
+
+/// Of rows of equal height over `0 <= z <= 1` the radius within which all is solid, object
 /// units: a little less than it is, 0 where there is none.
-pub(crate) fn solid_radii<const N: usize>(patches: &[QuadricPatch]) -> [f64; N] {
+pub(crate) fn solid_radii(patches: &[QuadricPatch]) -> [f64; N] {
     // A row's middle is in the solid on the axis if an odd number of patches lies beside it.
     let mut solid = [false; N];
     for patch in patches.iter().filter(|p| !p.is_plane()) {
@@ -59,7 +62,7 @@ mod tests {
             [0.0, 0.6],
         ];
         let patches = patches(&cup);
-        let radii = solid_radii::<64>(&patches);
+        let radii = solid_radii(&patches);
         let tables = Tables::new(&patches, 64);
         for (row, &radius) in radii.iter().enumerate() {
             for k in 0..=100 {

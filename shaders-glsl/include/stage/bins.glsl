@@ -1,5 +1,5 @@
-// Compute visits bins: squares of the screen, or as many pixels from anywhere, in which at least one of a batch's copies
-// may show, with lists of these copies. Work groups count along y from bin to bin.
+// Compute visits bins: squares of the screen, or as many pixels from anywhere, in which at least one of a batch's
+// copies may show, with lists of these copies. Work groups count along y from bin to bin.
 #ifndef BINS_GLSL
 #define BINS_GLSL
 #define SPANS (SEARCH == SEARCH_LIVE && DISPATCH == DISPATCH_BEAMS)

@@ -26,7 +26,7 @@ pub(super) const ROWS: usize = SOLID_ROWS as usize;
 impl Inner {
     /// Of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
-        let radii = solid_radii::<ROWS>(patches);
+        let radii = solid_radii(patches);
         Self {
             pieces: cylinders(&radii, 8, f64::min),
             few: cylinders(&radii, 3, f64::min),

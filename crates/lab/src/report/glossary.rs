@@ -36,7 +36,7 @@ pub fn meaning(method: Method) -> &'static str {
             "the mesh baseline with levels of detail: 16 x 32, 32 x 64 or 64 x 128 by the height of each copy on the screen (to 40, to 160 pixels, above); copies beside the picture are left out"
         }
         Method::Floor => {
-            "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. Some pixels beside the solid are shaded, too, and of copies only the nearest are asked: so it is near to what a search cannot go below, not a proven bound"
+            "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. It is an estimate of the least time of a search, not a proven bound: it shades some pixels beside the solid, and asks only the nearest copies"
         }
         Method::Mesh { .. } => {
             "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"

@@ -30,13 +30,13 @@ fn is_first_possible_point(scene: &Scene) {
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let floor = drawn(scene, Method::Floor, stage, Planes::All);
         let found = drawn(scene, Solver::Hull.into(), stage, Planes::All);
-        let mut nearer = 0;
+        let (mut nearer, mut farther) = (0, 0);
         for (k, (first, hit)) in floor.distance.iter().zip(&found.distance).enumerate() {
-            // Rasterisers snap corners: SwiftShader's 1 / w is off by 6e-4 of it in one pixel.
             assert!(
                 *first <= hit * 1.001,
                 "{stage:?}, pixel {k}: {first} > {hit}"
             );
+            farther += usize::from(*first > hit + 1e-4);
             nearer += usize::from(*first < hit - 1e-3);
         }
         // It is no search: most of its points lie before the surface.
@@ -44,6 +44,12 @@ fn is_first_possible_point(scene: &Scene) {
         assert!(
             hits > 2000 && nearer > hits / 4,
             "{stage:?}: {nearer} of {hits}"
+        );
+        // Rasterisers snap corners, so that depths slip along slanted triangles: lavapipe keeps all
+        // pixels within 1e-4, SwiftShader 95 of 100, and the worst within 6e-4 of the distance.
+        assert!(
+            farther <= hits / 15,
+            "{stage:?}: {farther} of {hits} farther"
         );
         assert!(floor.steps.iter().all(|steps| *steps == 0.0));
         // Frames that are timed hold colour alone.
