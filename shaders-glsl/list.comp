@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Lists, for each tile, the patches that its rays may meet. A work group has a square of tiles: its invocations first
 // share the patches out and keep those that the square's rays may meet; of these each then takes its own tile's.
-#include "stage/patch_lists.glsl"
+#include "stage/patch_runs.glsl"
 #include "stage/beam.glsl"
 #include "core/meridian.glsl"
 
@@ -14,7 +14,7 @@ void main()
     take_frame();
     take_solid();
     PixelRays rays = pixel_rays(solid.single);
-    float farthest = farthest_of(rays);
+    float farthest = farthest_of(rays, solid.single);
     uvec2 tile = uvec2(pushed.corner & 0xffffu, pushed.corner >> 16) + gl_GlobalInvocationID.xy;
     uvec2 square = tile - gl_LocalInvocationID.xy;
     // Not from the uniform buffer: lavapipe 22 takes uniforms that loops depend on for constants.
@@ -35,7 +35,6 @@ void main()
     }
     barrier();
 
-    // The first and the last patch, and the widest gap between two that follow.
     Beam beam = beam_of(rays, tile * GROUP_PIXELS, GROUP_PIXELS, farthest, unit);
     // Where the box cuts the solid, a tile of which some ray may have been in it before the box's sides has no list:
     // that ray may meet a cut.
@@ -48,10 +47,7 @@ void main()
         inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
         inner.x = inner.x <= inner.y ? inner.x : 1e30;
     }
-    uint first = 0u;
-    uint last = 0u;
-    uvec2 gap = uvec2(0u);
-    bool any_met = false;
+    PatchRuns runs = NO_PATCHES;
     vec2 range = vec2(1e30, -1e30);
     for (uint w = 0u; w << 5 < header.x; ++w) {
         uint rest = met[w];
@@ -62,17 +58,13 @@ void main()
             bool meets = may_meet(beam, k, span) && span.x <= outer.y;
             cut = cut || meets && span.x < inner.x;
             range = meets ? vec2(min(range.x, span.x), max(range.y, span.y)) : range;
-            gap = meets && any_met && k - last > gap.y - gap.x ? uvec2(last, k) : gap;
-            first = meets && !any_met ? k : first;
-            last = meets ? k : last;
-            any_met = any_met || meets;
+            take_patch(runs, k, meets);
         }
     }
-    bool split = gap.y - gap.x > 1u;
-    uvec2 lengths = split ? uvec2(gap.x + 1u - first, last + 1u - gap.y) : uvec2(last + 1u - first, 0u);
-    uint listed = lengths.x + lengths.y;
-    bool shows = any_met && outer.x <= outer.y && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
-    bool is_long = cut || listed > LONGEST_LIST;
+    uvec2 lengths = lengths_of(runs);
+    uint place = tile.x | tile.y << 16;
+    bool shows = runs.any && outer.x <= outer.y && all(lessThan(tile * GROUP_PIXELS, frame.size.xy));
+    bool is_long = cut || lengths.x + lengths.y > LONGEST_LIST;
     if (OUTSIDE == 0u) {
         // Most of a cut: no ray of the tile has to be searched.
         bool into_solid = shows && cut && inner.x < 1e30;
@@ -90,21 +82,17 @@ void main()
             ++row;
         }
         if (into_solid) {
-            uint at = list_tiles(LIST_LENGTHS) + 2u * atomicAdd(bin_words[list_heads() + 4u * LIST_LENGTHS], 1u);
-            bin_words[at] = tile.x | tile.y << 16;
+            append(LIST_LENGTHS, place, 0u);
             shows = false;
         }
     }
     if (shows && is_long) {
         uint at = pushed.first_bin + 4u + 4u * atomicAdd(bin_words[pushed.first_bin], 1u);
-        bin_words[at] = tile.x | tile.y << 16;
+        bin_words[at] = place;
         bin_words[at + 1u] = floatBitsToUint(max(range.x, -rays.base));
         bin_words[at + 2u] = floatBitsToUint(range.y);
     }
     if (shows && !is_long) {
-        uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
-        uint at = list_tiles(n) + 2u * atomicAdd(bin_words[list_heads() + 4u * n], 1u);
-        bin_words[at] = tile.x | tile.y << 16;
-        bin_words[at + 1u] = first | lengths.x << 9 | gap.y << 15 | lengths.y << 24;
+        append_patches(place, runs, lengths);
     }
 }

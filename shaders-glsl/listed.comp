@@ -6,9 +6,10 @@
 
 void main()
 {
-    uvec2 tile = take_list();
+    take_list();
     begin();
-    uvec2 pixel = tile * GROUP_PIXELS + gl_LocalInvocationID.xy;
+    take_single(tile_instance());
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     bool found = nearest_in_tile(pixel, nearest);
     if (all(lessThan(pixel, frame.size.xy))) {

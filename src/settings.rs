@@ -214,8 +214,8 @@ pub struct Settings {
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,
-    /// Whether copies are left out that others are proven to hide. No pixel differs; false is there
-    /// to show it.
+    /// Whether copies are left out that others are proven to hide. No pixel differs by more than a
+    /// rounding; false is there to show it.
     pub occlusion_culling: bool,
     /// Whether silhouettes are smoothed in frames that are read back ([`crate::antialias`]). Else
     /// every colour is that of the ray through the pixel's middle. Embedded renderers do without.

@@ -15,7 +15,7 @@ use super::report::{DeviceReport, candidates, choose, text, variable};
 use super::tables::own_vectors;
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes, Solver};
-use crate::shader::generated::{CUT_ANY, CUT_SOLID, LONG_LIST, MIDDLE_LIST, SHORT_LIST};
+use crate::shader::generated::{CUT_ANY, CUT_SOLID};
 use crate::shader::{Dispatch, Kind, Variant, listed};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
@@ -32,7 +32,7 @@ pub struct CompiledShader {
     pub solver: Solver,
     /// What is drawn or dispatched: `hull`, `box`, `rectangle`, ... In compute, one object alone or
     /// one of several, whose depths are compared.
-    pub path: &'static str,
+    pub path: String,
     /// The driver's name of the shader: `vertex`, `fragment`, `compute`.
     pub shader: String,
     /// The SPIR-V module that it was compiled from.
@@ -183,9 +183,9 @@ fn stage_name(name: &str) -> String {
     name.strip_suffix(" shader").unwrap_or(&name).to_owned()
 }
 
-fn path(variant: Variant, kind: Kind) -> &'static str {
+fn path(variant: Variant, kind: Kind) -> String {
     let several = variant.depth_test != 0;
-    match (kind, variant.dispatch) {
+    let name = match (kind, variant.dispatch) {
         (Kind::Box, _) => "box",
         (Kind::Hull, _) => "hull",
         (Kind::Sides, _) if variant.cut == CUT_SOLID => "solid sides",
@@ -194,17 +194,14 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
         (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",
         (Kind::List, _) => "lists of patches",
+        (Kind::ListCopies, _) => "lists of patches of copies",
         (Kind::Listed, _) | (Kind::Compute, Dispatch::Lists) => {
-            match (variant.list_length, several) {
-                (SHORT_LIST, false) => "tiles of 8 patches",
-                (SHORT_LIST, true) => "tiles of 8 patches of several",
-                (MIDDLE_LIST, false) => "tiles of 16 patches",
-                (MIDDLE_LIST, true) => "tiles of 16 patches of several",
-                (LONG_LIST, false) => "tiles of 32 patches",
-                (LONG_LIST, true) => "tiles of 32 patches of several",
-                (_, false) => "tiles of 48 patches",
-                (_, true) => "tiles of 48 patches of several",
-            }
+            let of = match (variant.alone != 0, several) {
+                (true, _) => " of bins of one copy",
+                (false, true) => " of several",
+                (false, false) => "",
+            };
+            return format!("tiles of {} patches{of}", variant.list_length);
         }
         (Kind::Compute, Dispatch::Rectangle) if variant.cut != CUT_ANY => {
             match (variant.cut == CUT_SOLID, several) {
@@ -219,7 +216,8 @@ fn path(variant: Variant, kind: Kind) -> &'static str {
         (Kind::Compute, Dispatch::Bins) => "bins",
         (Kind::Compute, Dispatch::Beams) if several => "tiles of several",
         (Kind::Compute, Dispatch::Beams) => "tiles",
-    }
+    };
+    name.to_owned()
 }
 
 /// A number by its name, unless it is a hash.

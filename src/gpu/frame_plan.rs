@@ -5,7 +5,7 @@ use super::buffers::{indices, write_slice};
 use super::entry::Entry;
 use super::hulls;
 use super::output::Output;
-use super::plan::{Lists, Planner, Work};
+use super::plan::{Lists, Planner, Work, takes_lists};
 use super::proxy_hull;
 use super::renderer::Renderer;
 use super::table_slot::Part;
@@ -81,21 +81,28 @@ impl Renderer {
             .copied()
             .filter(|&n| self.has_bins(n))
             .collect();
+        let subgroup_size = self.device.subgroup_size;
         let batches: Vec<Batch> = numbers
             .iter()
             .filter_map(|&number| {
                 self.entries[number as usize]
                     .as_ref()?
-                    .batch(&self.settings)
+                    .batch(&self.settings, subgroup_size)
             })
             .collect();
-        let bins = Bins::new(view, &batches, self.draws_hulls());
+        let room = (self.planner(view).room()).saturating_sub(self.lists.1 as u64);
+        let mut bins = Bins::new(view, &batches, self.draws_hulls(), room);
         drop(batches);
-        for (number, shown) in numbers.into_iter().zip(bins.shown) {
+        // Lists that hold bins begin where a bin could.
+        bins.words.resize(bins.words.len().next_multiple_of(4), 0);
+        let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
+        self.lists.1 = self.lists.1.next_multiple_of(4);
+        self.lists.0 = bins.words;
+        for (number, mut shown) in numbers.into_iter().zip(bins.shown) {
+            shown.lists = begin + self.lists.1 as u32;
+            self.lists.1 += shown.words() as usize;
             self.choose(number, Work::Bins(shown))?;
         }
-        let begin = u32::try_from(bins.words.len()).unwrap_or(u32::MAX);
-        self.lists.0 = bins.words;
         for entry in self.entries.iter_mut().flatten() {
             if let Some(Work::Beams { copies, .. }) = &mut entry.draw.work {
                 for tiles in copies {
@@ -223,7 +230,11 @@ impl Renderer {
                 (Kind::Compute, searched.tiled(*cut, several))
             }
             Work::Bins(_) if in_pass => (Kind::Bins, searched),
-            Work::Bins(_) | Work::Nothing if entry.drawn().placements().len() > 1 => {
+            Work::Bins(shown) if entry.drawn().placements().len() > 1 => {
+                let several = several || !shown.alone.is_empty();
+                (Kind::Compute, searched.dispatched(Dispatch::Bins, several))
+            }
+            Work::Nothing if entry.drawn().placements().len() > 1 => {
                 (Kind::Compute, searched.dispatched(Dispatch::Bins, several))
             }
             Work::Rectangle(_) | Work::Bins(_) | Work::Nothing => {
@@ -242,7 +253,11 @@ impl Renderer {
         };
         let frusta_at = put(frusta, Part::Frusta)?;
         let tables_at = put(tables, Part::Tables)?;
-        let listed = matches!(&work, Work::Beams { copies, .. } if copies.iter().any(|c| c.listed));
+        let listed = match &work {
+            Work::Beams { copies, .. } => copies.iter().any(|c| c.listed),
+            Work::Bins(shown) => !shown.alone.is_empty(),
+            _ => false,
+        };
         let patches_at = put(prepared.proxy.as_ref().filter(|_| listed), Part::Patches)?;
         let most = frusta.map_or(0, |s| s.hull().hull.frusta.len());
         if matches!(work, Work::Hull { cut: true, .. }) {
@@ -257,16 +272,18 @@ impl Renderer {
             entry.draw.pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
             entry.draw.key = Some((variant, kind));
         }
-        if let Work::Beams { cut, .. } = work {
+        if let (Work::Beams { .. }, _) | (_, true) = (&work, listed) {
             let pipelines = self.device.pipelines()?;
             let get = |variant, kind| pipelines.get(variant, kind, &self.output, self.owner);
-            entry.draw.list = if listed {
-                get(Variant::BEAM.cut_by_sides(cut), Kind::List)?
-            } else {
-                get(Variant::BEAM, Kind::Beam)?
+            let cut = matches!(work, Work::Beams { cut: true, .. });
+            let bins = matches!(work, Work::Bins(_));
+            entry.draw.list = match () {
+                () if bins => get(Variant::BEAM, Kind::ListCopies)?,
+                () if listed => get(Variant::BEAM.cut_by_sides(cut), Kind::List)?,
+                () => get(Variant::BEAM, Kind::Beam)?,
             };
             if listed {
-                let lists = variant.listed(cut, variant.depth_test != 0);
+                let lists = variant.of_bins(bins).listed(cut, variant.depth_test != 0);
                 for (to, list) in entry.draw.listed.iter_mut().zip(lists) {
                     *to = match list {
                         Some((variant, kind)) => get(variant.keeping(keeps), kind)?,
@@ -306,7 +323,7 @@ impl Renderer {
 
 impl Entry {
     /// Its copies, as bins are found for them.
-    fn batch(&self, settings: &SearchSettings) -> Option<Batch<'_>> {
+    fn batch(&self, settings: &SearchSettings, subgroup_size: u32) -> Option<Batch<'_>> {
         let (prepared, object) = (self.prepared.as_ref()?, self.drawn());
         let block = self.block(settings)?;
         let [side, radius, low, high] = block.bounds.map(f64::from);
@@ -329,8 +346,13 @@ impl Entry {
             .surface
             .as_deref()
             .filter(|s| s.is_boundary() && hulls::is_whole(object, s));
+        let lists = prepared
+            .proxy
+            .as_deref()
+            .is_some_and(|s| takes_lists(subgroup_size, s));
         Some(Batch {
             whole,
+            lists: lists.then_some(object.profile.radius),
             placements: object.placements(),
             first: self.instances.start,
             shape,

@@ -71,9 +71,8 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
 /// solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
 const LOPSIDED: f64 = 32.0;
 
-/// Whether a copy's box is too flat or too slender for its hull.
-pub(crate) fn is_lopsided(object: &Object, copy: &Placement) -> bool {
-    let radius = object.profile.radius;
+/// Whether a copy's box, of twice this width, is too flat or too slender for its hull.
+pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()
 }
@@ -101,7 +100,11 @@ pub(crate) fn frusta(
     if cut && hull.extent()[1] > widest_cut * object.profile.radius {
         return None;
     }
-    if surface.hull().touches || copies.iter().any(|copy| is_lopsided(object, copy)) {
+    if surface.hull().touches
+        || copies
+            .iter()
+            .any(|copy| is_lopsided(object.profile.radius, copy))
+    {
         return None;
     }
     let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));

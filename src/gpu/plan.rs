@@ -85,11 +85,48 @@ impl Tiles {
     /// Words of all its lists: a dispatch and four words a tile, or what `patch_lists.glsl` says.
     fn words(&self) -> u32 {
         if self.listed {
-            self.heads() - self.at + TILE_LISTS * (4 + 2 * self.rectangle.padded())
+            list_words(self.rectangle.padded())
         } else {
             4 + 4 * self.rectangle.padded()
         }
     }
+}
+
+/// Words of the lists of patches of so many tiles: see `patch_lists.glsl`.
+pub(crate) fn list_words(tiles: u32) -> u32 {
+    4 + 4 * tiles + TILE_LISTS * (4 + 2 * tiles)
+}
+
+/// Whether patches may be listed for tiles of a surface.
+pub(crate) fn takes_lists(subgroup_size: u32, surface: &OffsetSurface) -> bool {
+    subgroup_size >= LEAST_SUBGROUP && surface.is_boundary() && !surface.listed().is_empty()
+}
+
+impl Shown {
+    /// Runs of its bins of one copy, each with the word where their lists of patches begin.
+    pub fn listed(&self) -> impl Iterator<Item = (Range<u32>, u32)> {
+        let end = self.alone.end;
+        let starts = self.alone.clone().step_by(MOST_LISTED as usize);
+        starts.zip(0u32..).map(move |(start, n)| {
+            let bins = start..end.min(start + MOST_LISTED);
+            (bins, self.lists + n * list_words(MOST_LISTED))
+        })
+    }
+
+    /// Words of all their lists.
+    pub fn words(&self) -> u32 {
+        let of = |(bins, _): (Range<u32>, u32)| list_words(listed_tiles(&bins));
+        self.listed().map(of).sum()
+    }
+}
+
+/// Bins that go through one dispatch: as many work groups as every device takes, and a multiple of
+/// 4, so that the words behind their lists may be numbered as bins.
+const MOST_LISTED: u32 = 65_532;
+
+/// For how many tiles the lists of these bins have room.
+pub(crate) fn listed_tiles(bins: &Range<u32>) -> u32 {
+    (bins.end - bins.start).next_multiple_of(4)
 }
 
 impl Work {
@@ -99,7 +136,7 @@ impl Work {
             Self::Box => DrawPath::Box,
             Self::Hull { .. } => DrawPath::Hull,
             Self::Rectangle(_) => DrawPath::Rectangle,
-            Self::Bins(shown) if shown.range.is_empty() => DrawPath::Nothing,
+            Self::Bins(shown) if shown.copies.is_empty() => DrawPath::Nothing,
             Self::Bins(_) => DrawPath::Bins,
             Self::Beams { .. } => DrawPath::Beams,
         }
@@ -198,12 +235,10 @@ impl Planner<'_> {
             if shown.is_empty() {
                 return Work::Nothing;
             }
-            let listed = self.subgroup_size >= LEAST_SUBGROUP
-                && surface.is_boundary()
-                && !surface.listed().is_empty()
+            let listed = takes_lists(self.subgroup_size, surface)
                 && !placements
                     .iter()
-                    .any(|copy| hulls::is_lopsided(object, copy));
+                    .any(|copy| hulls::is_lopsided(radius, copy));
             let tiles = lists.tiles(&shown, placements.len(), listed);
             // Of a solid that is cut, tiles without lists are searched as the rectangle is.
             if (listed || !cut) && self.beams_pay(&shown, &tiles, placements.len(), lists) {
@@ -217,6 +252,12 @@ impl Planner<'_> {
         }
     }
 
+    /// Most words of lists of tiles. All lists stand in one buffer, of which a quarter is for these:
+    /// bins need the rest.
+    pub fn room(&self) -> u64 {
+        u64::from(self.limits.max_storage_buffer_range) / 16
+    }
+
     fn beams_pay(
         &self,
         shown: &[(usize, Rectangle)],
@@ -226,11 +267,9 @@ impl Planner<'_> {
     ) -> bool {
         // A tile listed is a work group.
         let most = self.limits.max_compute_work_group_count[0];
-        // All lists stand in one buffer, of which a quarter is for them: bins need the rest.
         let words: u64 = tiles.iter().map(|t| u64::from(t.words())).sum();
-        let room = u64::from(self.limits.max_storage_buffer_range) / 16;
-        let fits =
-            lists.tiles as u64 + words <= room && shown.iter().all(|(_, r)| r.padded() <= most);
+        let fits = lists.tiles as u64 + words <= self.room()
+            && shown.iter().all(|(_, r)| r.padded() <= most);
         let squares: u64 = shown.iter().map(|(_, r)| r.squares()).sum();
         fits && (copies == 1 || squares >= LEAST_TILES * shown.len() as u64)
     }
@@ -293,5 +332,32 @@ impl Lists {
         self.tiles += copies.iter().map(|t| t.words() as usize).sum::<usize>();
         self.copies += copies.iter().filter(|t| t.block.is_some()).count() as u32;
         Work::Beams { copies, cut }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What goes through dispatches of one work group for each bin: no more of them than devices
+    /// take, no bin left out, and no word of a list another's.
+    #[test]
+    fn bins_of_one_copy_go_through_dispatches_of_limited_size() {
+        for count in [1, 5, MOST_LISTED, MOST_LISTED + 1, 3 * MOST_LISTED - 2] {
+            let shown = Shown {
+                alone: 7..7 + count,
+                lists: 40,
+                ..Shown::default()
+            };
+            let (mut bin, mut word) = (7, 40);
+            for (bins, at) in shown.listed() {
+                assert_eq!((bins.start, at), (bin, word));
+                assert!(!bins.is_empty() && bins.end - bins.start <= 65_535);
+                assert!(at % 4 == 0 && listed_tiles(&bins) >= bins.end - bins.start);
+                bin = bins.end;
+                word += list_words(listed_tiles(&bins));
+            }
+            assert_eq!((bin, word), (shown.alone.end, 40 + shown.words()));
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::entry::Entry;
 use super::frame_slot::FrameSlot;
 use super::output::Output;
 use super::pipelines::PUSHED;
-use super::plan::{Tiles, Work};
+use super::plan::{Tiles, Work, listed_tiles};
 use super::proxy_hull::{self, SIDE_VERTICES};
 use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
@@ -95,6 +95,7 @@ impl Renderer {
             return;
         };
         let most = self.device.limits.max_compute_work_group_count[1];
+        self.list_alone(cmd, slot);
         let mut first = true;
         // What is next reads the depths that were written before.
         let mut after_the_last = || {
@@ -116,9 +117,16 @@ impl Renderer {
                     let groups = [high.0 - low.0 + 1, high.1 - low.1 + 1];
                     self.dispatch(cmd, [0, low.0 | low.1 << 16, 0, 0], groups);
                 }
-                Some(Work::Bins(Shown { range, .. })) => {
-                    after_the_last();
-                    self.bind(cmd, slot, entry, entry.draw.pipeline, number);
+                Some(Work::Bins(shown)) => {
+                    if !shown.alone.is_empty() {
+                        after_the_last();
+                        self.record_alone(cmd, slot, entry, number, shown);
+                    }
+                    let range = &shown.range;
+                    if !range.is_empty() {
+                        after_the_last();
+                        self.bind(cmd, slot, entry, entry.draw.pipeline, number);
+                    }
                     for start in range.clone().step_by(most.max(1) as usize) {
                         let count = (range.end - start).min(most);
                         self.dispatch(cmd, [start, 0, 0, 0], [1, count]);
@@ -131,7 +139,11 @@ impl Renderer {
 
     /// Whether compute compares depths: there is more than one dispatch, or they are read back.
     pub(crate) fn compares_depths(&self) -> bool {
-        let several = |e: &Entry| matches!(&e.draw.work, Some(Work::Beams { copies: all, .. }) if all.len() > 1);
+        let several = |e: &Entry| match &e.draw.work {
+            Some(Work::Beams { copies, .. }) => copies.len() > 1,
+            Some(Work::Bins(shown)) => !shown.alone.is_empty(),
+            _ => false,
+        };
         self.keeps_depths || self.order.len() > 1 || self.ordered().any(several)
     }
 
@@ -150,7 +162,7 @@ impl Renderer {
         let (at, Rectangle { low, high }) = (tiles.at, tiles.rectangle);
         let groups = |a: u32, b: u32| (b - a + 1).div_ceil(GROUP_PIXELS);
         let none: [u32; 4] = [0, 1, 1, 0];
-        let mut pushed = [at, low.0 | low.1 << 16, tiles.rectangle.padded(), 0];
+        let pushed = [at, low.0 | low.1 << 16, tiles.rectangle.padded(), 0];
         let barrier = |from, to| buffer_barrier(&self.device, cmd, words, from, to);
         barrier(Usage::TileRead, Usage::TransferWrite);
         // SAFETY: `cmd` is recording, outside a render pass; the lists' words lie within the
@@ -172,21 +184,103 @@ impl Renderer {
             self.dispatch(cmd, pushed, [groups(low.0, high.0), groups(low.1, high.1)]);
             barrier(Usage::ComputeWrite, Usage::TileRead);
             if tiles.listed {
-                for ((k, head), pipeline) in
-                    (0u32..).zip((tiles.heads()..).step_by(4)).zip(draw.listed)
-                {
-                    if pipeline == vk::Pipeline::null() {
-                        continue;
-                    }
-                    pushed[3] = k;
-                    self.bind_tables(cmd, slot, entry, pipeline, number, patches);
-                    self.push(cmd, pushed);
-                    raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(head));
-                }
+                self.trace_listed(cmd, slot, entry, number, pushed);
             }
             self.bind(cmd, slot, entry, draw.pipeline, number);
             self.push(cmd, pushed);
             raw.cmd_dispatch_indirect(cmd, words.raw, 4 * u64::from(at));
+        }
+    }
+
+    /// Lists the patches of all bins of one copy.
+    fn list_alone(&self, cmd: vk::CommandBuffer, slot: &FrameSlot) {
+        let binned = || {
+            let entries = self.order.iter().zip(self.ordered());
+            entries.filter_map(|(number, entry)| match &entry.draw.work {
+                Some(Work::Bins(shown)) if !shown.alone.is_empty() => Some((*number, entry, shown)),
+                _ => None,
+            })
+        };
+        if binned().next().is_none() {
+            return;
+        }
+        let words = &slot.lists;
+        let barrier = |from, to| buffer_barrier(&self.device, cmd, words, from, to);
+        barrier(Usage::TileRead, Usage::TransferWrite);
+        for (bins, at) in binned().flat_map(|(_, _, shown)| shown.listed()) {
+            // Bins are counted along y.
+            let mut heads = [[0u32, 1, 1, 0]; 1 + TILE_LISTS as usize];
+            heads[0] = [1, 0, 1, 0];
+            let heads_at = at + 4 + 4 * listed_tiles(&bins);
+            // SAFETY: `cmd` is recording, outside a render pass; the words lie within the buffer.
+            unsafe {
+                for (at, heads) in [(at, &heads[..1]), (heads_at, &heads[1..])] {
+                    let bytes = bytemuck::cast_slice(heads);
+                    let at = 4 * u64::from(at);
+                    self.device.raw.cmd_update_buffer(cmd, words.raw, at, bytes);
+                }
+            }
+        }
+        barrier(Usage::TransferWrite, Usage::ComputeWrite);
+        for (number, entry, shown) in binned() {
+            let draw = &entry.draw;
+            self.bind_tables(cmd, slot, entry, draw.list, number, draw.patches_offset);
+            for (bins, at) in shown.listed() {
+                let pushed = [at, bins.start, listed_tiles(&bins), bins.end - bins.start];
+                let groups = (bins.end - bins.start).div_ceil(GROUP_PIXELS * GROUP_PIXELS);
+                self.dispatch(cmd, pushed, [groups, 1]);
+            }
+        }
+        barrier(Usage::ComputeWrite, Usage::TileRead);
+    }
+
+    /// Traces an entry's bins of one copy.
+    fn record_alone(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        entry: &Entry,
+        number: u32,
+        shown: &Shown,
+    ) {
+        for (bins, at) in shown.listed() {
+            let pushed = [at, 0, listed_tiles(&bins), 0];
+            self.trace_listed(cmd, slot, entry, number, pushed);
+            // Those whose lists would be too long.
+            self.bind(cmd, slot, entry, entry.draw.pipeline, number);
+            self.push(cmd, [at / 4 + 1, 0, 0, 0]);
+            // SAFETY: as for beams.
+            unsafe {
+                let raw = &self.device.raw;
+                raw.cmd_dispatch_indirect(cmd, slot.lists.raw, 4 * u64::from(at));
+            }
+        }
+    }
+
+    /// Traces tiles whose patches are listed, where `pushed` says.
+    fn trace_listed(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        entry: &Entry,
+        number: u32,
+        mut pushed: Pushed,
+    ) {
+        let heads = pushed[0] + 4 + 4 * pushed[2];
+        let draw = &entry.draw;
+        for ((k, head), pipeline) in (0u32..).zip((heads..).step_by(4)).zip(draw.listed) {
+            if pipeline == vk::Pipeline::null() {
+                continue;
+            }
+            pushed[3] = k;
+            self.bind_tables(cmd, slot, entry, pipeline, number, draw.patches_offset);
+            self.push(cmd, pushed);
+            // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as
+            // `self`.
+            unsafe {
+                let raw = &self.device.raw;
+                raw.cmd_dispatch_indirect(cmd, slot.lists.raw, 4 * u64::from(head));
+            }
         }
     }
 

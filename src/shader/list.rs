@@ -21,6 +21,8 @@ pub enum Entry {
     Beam,
     /// Lists of tiles, each with a list of patches.
     List,
+    /// The same of tiles of several instances.
+    ListCopies,
     /// Fragments of shape boxes and convex hulls.
     Box,
     /// Fragments of shells.
@@ -46,6 +48,7 @@ impl Entry {
             Self::BinsVertex => "bins.vert",
             Self::Beam => "beam.comp",
             Self::List => "list.comp",
+            Self::ListCopies => "list_copies.comp",
             Self::Box => "box.frag",
             Self::Hull => "hull.frag",
             Self::Bins => "bins.frag",
@@ -304,7 +307,7 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
-        if matches!(self.entry, Entry::Beam | Entry::List) {
+        if matches!(self.entry, Entry::Beam | Entry::List | Entry::ListCopies) {
             return name;
         }
         if self.search != Search::None {
@@ -362,7 +365,9 @@ fn has(search: Search, features: Features, output: Output, dispatch: Dispatch) -
 #[must_use]
 pub fn modules() -> Vec<Module> {
     use Output as O;
-    let mut all = vec![Module::plain(Entry::Beam), Module::plain(Entry::List)];
+    let mut all = [Entry::Beam, Entry::List, Entry::ListCopies]
+        .map(Module::plain)
+        .to_vec();
     for output in [O::Color, O::Depth] {
         let vertex = |entry, search| Module {
             search,

@@ -67,6 +67,22 @@ impl Variant {
                         }
                     }
                 }
+                if copies
+                    && solver == Solver::Hull
+                    && variant.search.takes_beams()
+                    && !on_map(&variant)
+                {
+                    // Bins of one copy have lists of patches, too.
+                    all.push((Self::BEAM, Kind::ListCopies));
+                    all.push((variant.dispatched(Dispatch::Bins, true), Kind::Compute));
+                    all.extend(
+                        variant
+                            .of_bins(true)
+                            .listed(false, true)
+                            .into_iter()
+                            .flatten(),
+                    );
+                }
                 let dispatch = if copies {
                     Dispatch::Bins
                 } else {
@@ -104,7 +120,7 @@ impl Variant {
         if self.shadow == g::SHADOW_OFF {
             let lit = all
                 .iter()
-                .filter(|(_, kind)| !matches!(kind, Kind::Beam | Kind::List));
+                .filter(|(_, kind)| !matches!(kind, Kind::Beam | Kind::List | Kind::ListCopies));
             let more_lights = 1 - self.more_lights;
             let more: Vec<_> = lit
                 .map(|&(v, kind)| (Self { more_lights, ..v }, kind))

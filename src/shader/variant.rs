@@ -34,6 +34,8 @@ pub enum Kind {
     Beam,
     /// The same, and the patches that their rays may meet.
     List,
+    /// The patches that rays of bins of one copy may meet.
+    ListCopies,
     /// Pixels of tiles whose patches are listed.
     Listed,
 }
@@ -78,6 +80,8 @@ pub struct Variant {
     pub more_lights: u32,
     /// Patches that each pixel tests, of those that are listed for its tile; else 0.
     pub list_length: u32,
+    /// 1 where tiles are bins of one copy, each of any of a batch's instances.
+    pub alone: u32,
     /// Bound of the papers' loop where it is their own, as the baseline must not lose by an option
     /// that it does not take; else 0, and the bound is data.
     pub papers_steps: u32,
@@ -105,6 +109,7 @@ impl Variant {
         depth_keep: 1,
         more_lights: 0,
         list_length: 0,
+        alone: 0,
         papers_steps: 0,
         outside: 0,
         cut: g::CUT_ANY,
@@ -179,6 +184,7 @@ impl Variant {
             // With shadows all are in one loop.
             more_lights: u32::from(lighting.lights.len() > 2 && !casts),
             list_length: 0,
+            alone: 0,
             papers_steps: {
                 let own = solver.default_steps(is_beveled(object));
                 let papers = solver == Solver::Circle && settings.max_steps.unwrap_or(own) == own;
@@ -250,6 +256,15 @@ impl Variant {
         })
     }
 
+    /// The same where tiles are bins of one copy, or are not: to be asked for its lists of tiles.
+    #[must_use]
+    pub fn of_bins(self, bins: bool) -> Self {
+        Self {
+            alone: u32::from(bins),
+            ..self
+        }
+    }
+
     /// The same where the search's tables fit into a uniform buffer, or do not; those that read none
     /// take the first.
     #[must_use]
@@ -299,7 +314,7 @@ impl Variant {
             Kind::Sides => true,
             Kind::Hull | Kind::List | Kind::Listed => self.outside == 0,
             Kind::Compute => self.cut != g::CUT_ANY,
-            Kind::Box | Kind::ConvexHull | Kind::Bins | Kind::Beam => false,
+            Kind::Box | Kind::ConvexHull | Kind::Bins | Kind::Beam | Kind::ListCopies => false,
         }
     }
 
@@ -341,7 +356,9 @@ impl Variant {
             Kind::Sides => Entry::SidesVertex,
             Kind::Bins => Entry::BinsVertex,
             Kind::ConvexHull => Entry::ConvexHullVertex,
-            Kind::Compute | Kind::Beam | Kind::List | Kind::Listed => return None,
+            Kind::Compute | Kind::Beam | Kind::List | Kind::ListCopies | Kind::Listed => {
+                return None;
+            }
         };
         Some(self.module(kind).vertices(entry))
     }
@@ -352,6 +369,7 @@ impl Variant {
         let entry = match kind {
             Kind::Beam => return Module::plain(Entry::Beam),
             Kind::List => return Module::plain(Entry::List),
+            Kind::ListCopies => return Module::plain(Entry::ListCopies),
             Kind::Box | Kind::ConvexHull | Kind::Sides => Entry::Box,
             Kind::Hull => Entry::Hull,
             Kind::Bins => Entry::Bins,
@@ -369,7 +387,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 13] {
+    pub fn constants(&self) -> [(u32, u32); 14] {
         [
             (g::CELLS_ID, self.cells),
             (g::SHADOW_ID, self.shadow),
@@ -381,6 +399,7 @@ impl Variant {
             (g::DEPTH_KEEP_ID, self.depth_keep),
             (g::MORE_LIGHTS_ID, self.more_lights),
             (g::LIST_LENGTH_ID, self.list_length),
+            (g::ALONE_ID, self.alone),
             (g::PAPERS_STEPS_ID, self.papers_steps),
             (g::OUTSIDE_ID, self.outside),
             (g::CUT_ID, self.cut),

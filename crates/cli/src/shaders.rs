@@ -123,7 +123,7 @@ fn words(shader: &CompiledShader) -> [&str; 6] {
         shader.technique,
         shader.stage.name(),
         shader.solver.name(),
-        shader.path,
+        &shader.path,
         &shader.shader,
         &shader.module,
     ]

@@ -96,6 +96,7 @@ layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' l
 #endif
 #if DISPATCH == DISPATCH_LISTS
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // of DISPATCH_LISTS: patches that a pixel tests
+layout(constant_id = 14) const uint ALONE = 0u; // 1: tiles are bins of one copy, each of any of the batch's instances
 #endif
 
 const uint CUT_ANY = 0u; // any part of any solid

@@ -16,10 +16,10 @@ struct Beam {
 };
 
 // Depth of the far side of the box.
-float farthest_of(PixelRays rays)
+float farthest_of(PixelRays rays, Instance i)
 {
     vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
-    vec3 forward = rotate(conjugate(solid.single.rotation), frame.forward.xyz) * scale_of(solid.single);
+    vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale_of(i);
     return rays.base + dot(abs(forward), half_size);
 }
 

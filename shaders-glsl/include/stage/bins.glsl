@@ -23,16 +23,21 @@ struct Bin {
     uint unused;
 };
 
+void take_single(Instance i)
+{
+    single_look = look_of(i);
+    single_rays = pixel_rays(i);
+}
+
 // The copies of the blocks: before anything else (see blocks.glsl).
 void begin()
 {
     take_frame();
     take_solid();
     take_lights();
-    if (SINGLE) {
-        single_look = look_of(solid.single);
-        single_rays = pixel_rays(solid.single);
-    }
+#if DISPATCH == DISPATCH_RECTANGLE || DISPATCH == DISPATCH_BEAMS
+    take_single(solid.single);
+#endif
 }
 
 // A single instance needs no bins: the work groups are those of its rectangle, or of the tiles that beams have listed.

@@ -7,17 +7,54 @@
 
 // Where places are constants software drivers read shared memory once for all lanes.
 shared float listed[8u * LONGEST_LIST];
-shared uint listed_tile;
+shared uint listed_corner;
+const uint INSTANCE_WORDS = 16u;
+shared float listed_instance[INSTANCE_WORDS]; // where ALONE is set
 
-// Copies the patches of this group's tile; returns the tile.
-uvec2 take_list()
+layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
+    float instance_words[];
+};
+
+// Copies where this group's tile is and, of bins of one copy, the copy: to be read after a barrier.
+void take_tile()
 {
+    uint self = gl_LocalInvocationIndex;
+    uint tile = bin_words[list_tiles(pushed.list) + 2u * gl_WorkGroupID.x];
+    if (ALONE == 0u && self == 0u) {
+        listed_corner = tile * GROUP_PIXELS; // both halves
+    }
+    if (ALONE != 0u && self < INSTANCE_WORDS) {
+        listed_corner = bin_words[tile];
+        listed_instance[self] = instance_words[INSTANCE_WORDS * bin_words[bin_words[tile + 1u]] + self];
+    }
+}
+
+uvec2 tile_corner()
+{
+    return uvec2(listed_corner & 0xffffu, listed_corner >> 16);
+}
+
+vec4 instance_vector(uint n)
+{
+    uint at = 4u * n;
+    return vec4(listed_instance[at], listed_instance[at + 1u], listed_instance[at + 2u], listed_instance[at + 3u]);
+}
+
+Instance tile_instance()
+{
+    if (ALONE != 0u) {
+        return Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u));
+    }
+    return solid.single;
+}
+
+// The same, and the patches of the tile.
+void take_list()
+{
+    take_tile();
     uint self = gl_LocalInvocationIndex;
     uint at = list_tiles(pushed.list) + 2u * gl_WorkGroupID.x;
     uint none = own_patch_tables[0].x;
-    if (self == 0u) {
-        listed_tile = bin_words[at];
-    }
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
         uint place = j + self;
         if (place < 8u * LIST_LENGTH) {
@@ -30,7 +67,6 @@ uvec2 take_list()
         }
     }
     barrier();
-    return uvec2(listed_tile & 0xffffu, listed_tile >> 16);
 }
 
 vec4 listed_vector(uint n)

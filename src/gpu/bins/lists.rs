@@ -14,11 +14,24 @@ pub(super) struct Listed {
     pub pixels: u64,
 }
 
+/// What goes through a batch's bins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Visitor {
+    /// Fragments: bins are squares.
+    Fragments,
+    /// Work groups: pixels with lists of their own leave their squares.
+    Groups,
+    /// The same, and of each square one copy may have a bin alone, for which patches are listed.
+    GroupsAndLists,
+}
+
 /// Bins and lists of one batch in one band, as `bin_words.glsl` has them. Lists count from the
 /// band's first.
 #[derive(Default)]
 pub(super) struct BandLists {
     pub bins: Vec<[u32; 4]>,
+    /// Bins of one copy each, no two of one square. What they show has to be drawn before the bins.
+    pub alone: Vec<[u32; 4]>,
     /// For fragments: of each bin the pixels that may show something, one bit each.
     pub masks: Vec<u64>,
     pub words: Vec<u32>,
@@ -31,18 +44,18 @@ pub(super) struct BandLists {
 const PIXELS: usize = (SIDE * SIDE) as usize;
 /// One list serves a square if its copies cover at least so many of its pixels on average.
 const LEAST_PIXELS: u32 = 48;
+/// A copy that covers so many of a square's pixels has a bin alone.
+const ALONE_PIXELS: u32 = 24;
 /// Most entries of the lists of a square's pixels: where many copies lie behind each other these
 /// would take too much memory.
 const MOST_ENTRIES: u32 = 512;
 
 impl BandLists {
-    /// Deals copies, nearest first, out to so many squares. `fragments`: they are drawn for bins,
-    /// which are squares then; else pixels with lists of their own leave theirs. `corner`: of a
-    /// square, in squares.
+    /// Deals copies, nearest first, out to so many squares. `corner`: of a square, in squares.
     pub fn new(
         listed: &[Listed],
         squares: u32,
-        fragments: bool,
+        visitor: Visitor,
         corner: impl Fn(u32) -> [u32; 2],
     ) -> Self {
         let mut ends = vec![0u32; squares as usize + 1];
@@ -62,13 +75,30 @@ impl BandLists {
         let mut lists = Self::default();
         for square in 0..squares {
             let [begin, end] = [square, square + 1].map(|s| ends[s as usize] as usize);
-            let here = sorted[begin..end].iter().map(|n| &listed[*n as usize]);
-            if begin < end {
-                lists.add(here, corner(square), fragments);
+            let mut here = &mut sorted[begin..end];
+            if visitor == Visitor::GroupsAndLists {
+                let is_large = |n: &u32| listed[*n as usize].pixels.count_ones() >= ALONE_PIXELS;
+                if let Some(place) = here.iter().position(is_large) {
+                    here[..=place].rotate_right(1);
+                    lists.add_alone(&listed[here[0] as usize], corner(square));
+                    here = &mut here[1..];
+                }
+            }
+            if !here.is_empty() {
+                let here = here.iter().map(|n| &listed[*n as usize]);
+                lists.add(here, corner(square), visitor == Visitor::Fragments);
             }
         }
         lists.gather();
         lists
+    }
+
+    /// The one copy of a bin.
+    fn add_alone(&mut self, one: &Listed, [x, y]: [u32; 2]) {
+        let first = self.words.len() as u32;
+        self.words.extend([one.copy, one.near]);
+        let corner = (x * SIDE) | ((y * SIDE) << 16);
+        self.alone.push([corner, first, 1, one.near]);
     }
 
     /// The copies of a square.
@@ -161,10 +191,13 @@ impl BandLists {
 mod tests {
     use super::*;
     use crate::gpu::bins::runs::runs;
-    use std::collections::BTreeMap;
+    use std::collections::{BTreeMap, BTreeSet};
 
     const ACROSS: u32 = 5;
     const SQUARES: u32 = 3 * ACROSS;
+
+    /// What is looked at in each pixel, and whether its list is its own.
+    type Found = BTreeMap<(u32, u32), (Vec<u32>, bool)>;
 
     /// Copies of many sizes, from whole squares to single pixels, nearest first.
     fn copies() -> Vec<Listed> {
@@ -212,13 +245,13 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn lists(fragments: bool) -> BandLists {
+    fn lists(visitor: Visitor) -> BandLists {
         let corner = |square| [square % ACROSS, square / ACROSS];
-        BandLists::new(&copies(), SQUARES, fragments, corner)
+        BandLists::new(&copies(), SQUARES, visitor, corner)
     }
 
     /// Lists hold what a pixel may show, in order; those of whole squares maybe more.
-    fn check(found: &BTreeMap<(u32, u32), (Vec<u32>, bool)>) {
+    fn check(found: &Found) {
         for (pixel, wanted) in shown() {
             let (list, own) = &found[&pixel];
             assert!(list.is_sorted() && (!own || *list == wanted));
@@ -228,7 +261,7 @@ mod tests {
 
     #[test]
     fn squares_list_what_their_pixels_show() {
-        let lists = lists(true);
+        let lists = lists(Visitor::Fragments);
         let mut found = BTreeMap::new();
         let mut spare = 0;
         let drawn = runs(0, &lists.bins, &lists.masks);
@@ -262,7 +295,16 @@ mod tests {
 
     #[test]
     fn gathered_pixels_list_what_they_show_and_none_is_idle() {
-        let lists = lists(false);
+        let lists = lists(Visitor::Groups);
+        let (found, idle) = visited(&lists);
+        check(&found);
+        // In the last bin alone.
+        assert!(idle < 64);
+        assert_eq!(lists.alone, [[0; 4]; 0]);
+    }
+
+    /// What work groups look at, and how many invocations are idle.
+    fn visited(lists: &BandLists) -> (Found, u32) {
         let mut found = BTreeMap::new();
         let mut idle = 0;
         for &[corner, first, count, _] in &lists.bins {
@@ -287,9 +329,37 @@ mod tests {
                 );
             }
         }
+        (found, idle)
+    }
+
+    #[test]
+    fn a_large_copy_of_each_square_has_a_bin_alone() {
+        let lists = lists(Visitor::GroupsAndLists);
+        let (mut found, _) = visited(&lists);
+        let mut squares = BTreeMap::new();
+        for &[corner, first, count, near] in &lists.alone {
+            let [copy, kept] = [0, 1].map(|n| lists.words[first as usize + n]);
+            assert_eq!((count, kept), (1, near));
+            let square = (corner & 0xffff) / SIDE + (corner >> 16) / SIDE * ACROSS;
+            assert_eq!(squares.insert(square, copy), None);
+            let here = copies().into_iter().filter(|one| one.square == square);
+            let large = here.filter(|one| one.pixels.count_ones() >= ALONE_PIXELS);
+            let nearest = large.min_by_key(|one| one.near).unwrap();
+            assert_eq!(nearest.copy, copy);
+            for k in (0..64).filter(|k| nearest.pixels >> k & 1 == 1) {
+                let pixel = ((corner & 0xffff) + k % SIDE, (corner >> 16) + k / SIDE);
+                let (list, _) = found.entry(pixel).or_insert((Vec::new(), true));
+                if let Err(place) = list.binary_search(&copy) {
+                    list.insert(place, copy);
+                }
+            }
+        }
+        let large = copies()
+            .into_iter()
+            .filter(|one| one.pixels.count_ones() >= ALONE_PIXELS);
+        let with_one: BTreeSet<u32> = large.map(|one| one.square).collect();
+        assert!(squares.keys().eq(&with_one) && with_one.len() > SQUARES as usize / 2);
         check(&found);
-        // In the last bin alone.
-        assert!(idle < 64);
     }
 
     #[test]
@@ -302,8 +372,8 @@ mod tests {
                 pixels: 0xff << (copy % 7),
             })
             .collect();
-        for fragments in [false, true] {
-            let of = |copies: &[Listed]| BandLists::new(copies, 1, fragments, |_| [0, 0]);
+        for visitor in [Visitor::Groups, Visitor::Fragments] {
+            let of = |copies: &[Listed]| BandLists::new(copies, 1, visitor, |_| [0, 0]);
             let lists = of(&deep);
             assert_eq!(lists.words.len(), 2 * deep.len());
             assert_eq!(lists.bins, [[0, 0, 100, 100]]);

@@ -9,8 +9,8 @@
 //!    which all of them lies behind it.
 //!
 //! A copy is left out only where its solid is proven not to be, or solids that it lies behind are
-//! proven to be: pictures are those of unculled copies to the last bit. Nothing is taken from an
-//! earlier frame. Bands of the screen are worked on in parallel.
+//! proven to be: pictures are those of unculled copies to the last bit, or but for roundings where
+//! patches are listed for bins of one copy. Nothing is taken from an earlier frame. Bands of the screen are worked on in parallel.
 
 mod cover;
 mod inner;
@@ -25,12 +25,13 @@ pub(crate) use outer::Outer;
 pub(crate) use rectangle::{Rectangle, rectangle};
 pub(crate) use seen::{Cylinder, Forms};
 
-use super::hulls::is_apart;
+use super::hulls::{is_apart, is_lopsided};
 use super::offset_surface::OffsetSurface;
+use super::plan::list_words;
 use super::view::View;
 use crate::scene::Placement;
 use cover::{Cover, SIDE};
-use lists::{BandLists, Listed};
+use lists::{BandLists, Listed, Visitor};
 use rayon::prelude::*;
 use runs::runs;
 use seen::Seen;
@@ -49,6 +50,8 @@ pub(crate) struct Batch<'a> {
     pub outer: Option<&'a Outer>,
     /// The surface of solids of which the box cuts nothing.
     pub whole: Option<&'a OffsetSurface>,
+    /// Half of the box's side, where patches may be listed for bins of one copy.
+    pub lists: Option<f64>,
 }
 
 /// What a batch draws.
@@ -56,6 +59,10 @@ pub(crate) struct Batch<'a> {
 pub(crate) struct Shown {
     /// Its bins, or runs of bins: numbers of four words each.
     pub range: Range<u32>,
+    /// Bins of one copy each, of which no two share pixels. They are drawn before the others.
+    pub alone: Range<u32>,
+    /// The word where the lists of their patches begin.
+    pub lists: u32,
     /// Its copies that may show, by their place in the batch.
     pub copies: Vec<u32>,
     /// Whether the eye is outside of all of them, and the box cuts none.
@@ -90,13 +97,15 @@ struct Part {
 
 impl Bins {
     /// What of these batches a view of perspective shows. `fragments`: they are drawn for bins, by
-    /// rectangles; else work groups.
-    pub fn new(view: &View, batches: &[Batch], fragments: bool) -> Self {
+    /// rectangles; else work groups. `room`: most words that lists of patches may take in all.
+    pub fn new(view: &View, batches: &[Batch], fragments: bool, room: u64) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
         let mut outside = Vec::with_capacity(batches.len());
+        let mut visitors = Vec::with_capacity(batches.len());
         for (number, batch) in (0u32..).zip(batches) {
             let apart = AtomicBool::new(batch.whole.is_some());
+            let even = AtomicBool::new(batch.lists.is_some());
             const CHUNK: usize = 1024;
             items.par_extend(
                 batch
@@ -105,12 +114,15 @@ impl Bins {
                     .enumerate()
                     .flat_map_iter(|(chunk, copies)| {
                         let first = chunk * CHUNK;
-                        let (forms, apart) = (&forms, &apart);
+                        let (forms, apart, even) = (&forms, &apart, &even);
                         copies.iter().enumerate().filter_map(move |(n, copy)| {
                             let spread = forms.spread(copy, batch.shape.axis);
                             let Seen { pixels, near } = forms.see(&spread, &batch.shape)?;
                             if batch.whole.is_some_and(|s| !is_apart(s, spread.eye)) {
                                 apart.store(false, Relaxed);
+                            }
+                            if batch.lists.is_some_and(|radius| is_lopsided(radius, copy)) {
+                                even.store(false, Relaxed);
                             }
                             Some(Item {
                                 near: near.to_bits(),
@@ -121,7 +133,13 @@ impl Bins {
                         })
                     }),
             );
-            outside.push(apart.into_inner());
+            let apart = apart.into_inner();
+            outside.push(apart);
+            visitors.push(match (fragments, apart && even.into_inner()) {
+                (true, _) => Visitor::Fragments,
+                (false, false) => Visitor::Groups,
+                (false, true) => Visitor::GroupsAndLists,
+            });
         }
         items.par_sort_unstable();
         let [_, full] = view.corners();
@@ -131,13 +149,18 @@ impl Bins {
             .div_ceil(4 * rayon::current_num_threads() as u32)
             .max(2);
         let starts: Vec<u32> = (0..down).step_by(band as usize).collect();
-        let parts: Vec<Vec<Part>> = starts
-            .into_par_iter()
-            .map(|first| {
+        let filled = |visitors: &[Visitor]| -> Vec<Vec<Part>> {
+            let of = |&first: &u32| {
                 let cover = Cover::new(across, first, (first + band).min(down));
-                fill(cover, across, &forms, batches, &items, fragments)
-            })
-            .collect();
+                fill(cover, across, &forms, batches, &items, visitors)
+            };
+            starts.par_iter().map(of).collect()
+        };
+        let mut parts = filled(&visitors);
+        let alone = parts.iter().flatten().map(|part| part.lists.alone.len());
+        if u64::from(list_words(alone.sum::<usize>() as u32)) > room {
+            parts = filled(&vec![Visitor::Groups; batches.len()]);
+        }
         Self::joined(&parts, batches, &outside, fragments)
     }
 
@@ -149,10 +172,20 @@ impl Bins {
         for (number, batch) in batches.iter().enumerate() {
             let first = bins.len() as u32;
             let mut shows = vec![false; batch.placements.len()];
-            for part in parts.iter().map(|band| &band[number]) {
-                bins.extend(part.lists.bins.iter().map(|[corner, list, count, near]| {
-                    [*corner, list + lists as u32, *count, *near]
-                }));
+            let own = || parts.iter().map(|band| &band[number]);
+            let mut put = |all: for<'b> fn(&'b BandLists) -> &'b [[u32; 4]]| {
+                let mut lists = lists;
+                for part in own() {
+                    bins.extend(all(&part.lists).iter().map(|[corner, list, count, near]| {
+                        [*corner, list + lists as u32, *count, *near]
+                    }));
+                    lists += part.lists.words.len();
+                }
+                bins.len() as u32
+            };
+            let alone = put(|lists| &lists.alone);
+            let end = put(|lists| &lists.bins);
+            for part in own() {
                 masks.extend(&part.lists.masks);
                 lists += part.lists.words.len();
                 for &copy in &part.copies {
@@ -161,7 +194,9 @@ impl Bins {
             }
             let copies = (0u32..).zip(&shows).filter(|(_, shows)| **shows);
             shown.push(Shown {
-                range: first..bins.len() as u32,
+                alone: first..alone,
+                range: alone..end,
+                lists: 0,
                 copies: copies.map(|(copy, _)| copy).collect(),
                 outside: outside[number],
             });
@@ -199,7 +234,7 @@ fn fill(
     forms: &Forms,
     batches: &[Batch],
     items: &[Item],
-    fragments: bool,
+    visitors: &[Visitor],
 ) -> Vec<Part> {
     let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
     let mut copies: Vec<Vec<u32>> = vec![Vec::new(); batches.len()];
@@ -243,9 +278,9 @@ fn fill(
     }
     let squares = across * (bottom - top) / SIDE;
     let corner = |square: u32| [square % across, square / across + top / SIDE];
-    (listed.iter().zip(copies))
-        .map(|(listed, copies)| Part {
-            lists: BandLists::new(listed, squares, fragments, corner),
+    (listed.iter().zip(copies).zip(visitors))
+        .map(|((listed, copies), visitor)| Part {
+            lists: BandLists::new(listed, squares, *visitor, corner),
             copies,
         })
         .collect()

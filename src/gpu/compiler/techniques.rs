@@ -49,7 +49,7 @@ impl Technique {
             })
             // What other values of the parameters lead to is another technique's.
             .filter(|(v, kind)| {
-                matches!(kind, Kind::Beam | Kind::List)
+                matches!(kind, Kind::Beam | Kind::List | Kind::ListCopies)
                     || (v.search, v.more_lights) == (own.search, own.more_lights)
             })
             .filter(|(v, kind)| {
@@ -60,7 +60,7 @@ impl Technique {
                     Kind::Hull | Kind::List | Kind::Listed => !cut,
                     Kind::Compute if tiled => !cut,
                     Kind::Box | Kind::Bins | Kind::Compute => *v == v.seen_from(!cut),
-                    Kind::ConvexHull | Kind::Beam | Kind::Sides => true,
+                    Kind::ConvexHull | Kind::Beam | Kind::ListCopies | Kind::Sides => true,
                 }
             });
         let large = |(v, kind): &(Variant, Kind)| {

@@ -6,9 +6,11 @@
 
 void main()
 {
-    uint corner = bin_words[list_tiles(pushed.list) + 2u * gl_WorkGroupID.x];
+    take_tile();
+    barrier();
     begin();
-    uvec2 pixel = uvec2(corner & 0xffffu, corner >> 16) * GROUP_PIXELS + gl_LocalInvocationID.xy;
+    take_single(tile_instance());
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(single_rays, pixel);
     vec3 v = ray_direction(single_rays, pixel);
     float a = dot(v.xy, v.xy);
