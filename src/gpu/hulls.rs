@@ -77,19 +77,23 @@ pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     sides.max_element() > LOPSIDED * sides.min_element()
 }
 
+/// How wide shells may be that a box's sides cut, over half the box's side. Depths of triangles that
+/// reach much farther than what shows of them are interpolated too roughly: of shells 60 times as
+/// wide as the box a pixel was lost.
+const WIDEST_CUT: f64 = 8.0;
+
 /// How many copies are looked at for what the whole batch's copies cover on the screen.
 const SAMPLES: usize = 64;
 
 /// The hull of `object`, around its boundary or the envelope of its map, if it shows from this
 /// camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
 /// object is large enough on the screen for its triangles to pay. Besides, whether the box's sides
-/// cut it; `widest_cut`: shells have at most so many times half the side of a box that does.
+/// cut it.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
     view: &View,
     least_pixels: u32,
-    widest_cut: f64,
 ) -> Option<(Vec<Range<u32>>, bool)> {
     if object.repeat != [1; 3] {
         return None;
@@ -97,7 +101,7 @@ pub(crate) fn frusta(
     let cut = !is_whole(object, surface);
     let hull = &surface.hull().hull;
     let copies = object.placements();
-    if cut && hull.extent()[1] > widest_cut * object.profile.radius {
+    if cut && hull.extent()[1] > WIDEST_CUT * object.profile.radius {
         return None;
     }
     if surface.hull().touches

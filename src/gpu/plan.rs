@@ -176,7 +176,6 @@ impl Planner<'_> {
                     surface,
                     self.view,
                     self.least_pixels(object, surface),
-                    self.widest_cut(),
                 )
             })
             .filter(|(_, cut)| self.clips || !cut)
@@ -199,15 +198,6 @@ impl Planner<'_> {
             self.least_pixels.saturating_mul(SOFTWARE_FRUSTUM)
         } else {
             self.least_pixels
-        }
-    }
-
-    /// How wide shells may be that a box's sides cut, over half the box's side.
-    fn widest_cut(&self) -> f64 {
-        if self.subgroup_size < LEAST_SUBGROUP {
-            WIDEST_MASKED
-        } else {
-            WIDEST_CLIPPED
         }
     }
 
@@ -283,14 +273,6 @@ const MOST_WRAPPED: usize = 64;
 /// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes twice as long
 /// over lists; llvmpipe has 8 and takes two thirds.
 const LEAST_SUBGROUP: u32 = 8;
-
-/// Depths of triangles that reach much farther than what shows of them are interpolated too
-/// roughly: of shells 60 times as wide as the box a pixel was lost.
-const WIDEST_CLIPPED: f64 = 8.0;
-
-/// SwiftShader masks the pixels of what is clipped, one by one: of a vase extended by 0.15, with
-/// shells 1.4 times as wide as the box, the hull takes what the box takes, by 0.25 twice as long.
-const WIDEST_MASKED: f64 = 1.4;
 
 /// What a frustum costs a software driver, over what `proxy_min_pixels` says: its triangles are set
 /// up by the processor that shades. Of five solids the box with its tree is as fast at 600 to 800

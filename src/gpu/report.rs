@@ -50,11 +50,15 @@ impl Candidate {
             && self.properties.device_type != vk::PhysicalDeviceType::CPU
     }
 
-    /// Whether triangles can be clipped by the four sides of a box: hulls are drawn of solids that
-    /// these cut.
+    /// Whether triangles can be clipped by the four sides of a box, and corners are placed as well
+    /// as the strips of these sides need it: hulls are drawn of solids that the sides cut. Of
+    /// SwiftShader, which places corners at sixteenths of a pixel, 10 pixels of 14,000 were lost
+    /// along the edges of sides.
     pub fn clips(&self) -> bool {
+        let limits = &self.properties.limits;
         self.features.shader_clip_distance == vk::TRUE
-            && self.properties.limits.max_clip_distances >= 4
+            && limits.max_clip_distances >= 4
+            && limits.sub_pixel_precision_bits >= 8
     }
 
     /// Whether it offers an extension.

@@ -34,7 +34,15 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
     let drawn = gpu::draw(device(), scene, settings).unwrap();
-    let wanted = ways[usize::from(settings.stage == DrawStage::Compute)];
-    assert_eq!(drawn.draw_paths, wanted, "{name}, {:?}", settings.stage);
+    let stage = usize::from(settings.stage == DrawStage::Compute);
+    // SwiftShader runs few invocations together: there boxes draw what the box cuts.
+    let narrow = device().report().name.contains("SwiftShader");
+    if !(narrow && drawn.draw_paths == BOXED[stage]) {
+        assert_eq!(
+            drawn.draw_paths, ways[stage],
+            "{name}, {:?}",
+            settings.stage
+        );
+    }
     drawn.frame
 }
