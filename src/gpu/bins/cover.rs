@@ -121,12 +121,11 @@ impl Cover {
     /// Adds what a copy hides, which is wholly in front of the eye.
     pub fn add(&mut self, spread: &Spread, inner: &Inner, pixels: [u16; 4]) {
         let high = pixels[3] - pixels[1];
-        let pieces = if high < 12 { &inner.few } else { &inner.pieces };
         // The section through the axis that faces the eye.
         let beside = spread.eye.truncate();
         let across = beside.perp().normalize_or(DVec2::X);
         let across = spread.along[0] * across.x + spread.along[1] * across.y;
-        for piece in pieces {
+        for piece in inner.of(u32::from(high)) {
             let [low, top] = [piece.low, piece.high].map(|z| spread.middle + spread.along[2] * z);
             let out = across * piece.radius;
             self.polygon(&[low - out, low + out, top + out, top - out]);

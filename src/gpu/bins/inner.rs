@@ -11,14 +11,31 @@ pub(crate) struct Piece {
     pub high: f64,
 }
 
-/// Cylinders within a solid, from the lowest to the highest.
+/// Cylinders about an axis, from the lowest to the highest: the more the larger a copy is seen.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Inner {
-    /// What large copies hide.
-    pub pieces: Vec<Piece>,
-    /// What small ones do.
-    pub few: Vec<Piece>,
+pub(crate) struct Pieces([Vec<Piece>; 3]);
+
+impl Pieces {
+    /// Of rows with these radii, as [`cylinders`] says.
+    pub fn new(radii: &[f64], bound: fn(f64, f64) -> f64) -> Self {
+        Self([3, 8, 16].map(|count| cylinders(radii, count, bound)))
+    }
+
+    /// Of a copy that is seen in so many rows of pixels; below `few` rows there are few.
+    pub fn of(&self, rows: u32, few: u32) -> &[Piece] {
+        &self.0[usize::from(rows >= few) + usize::from(rows >= MANY_ROWS)]
+    }
 }
+
+/// Copies of more rows of pixels are worth many cylinders.
+const MANY_ROWS: u32 = 64;
+
+/// Cylinders within a solid.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Inner(Pieces);
+
+/// What copies of fewer rows of pixels hide is told by few cylinders.
+const FEW_ROWS: u32 = 12;
 
 /// Rows of equal height that cylinders are made of.
 pub(super) const ROWS: usize = SOLID_ROWS as usize;
@@ -26,17 +43,18 @@ pub(super) const ROWS: usize = SOLID_ROWS as usize;
 impl Inner {
     /// Of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
-        let radii = solid_radii(patches);
-        Self {
-            pieces: cylinders(&radii, 8, f64::min),
-            few: cylinders(&radii, 3, f64::min),
-        }
+        Self(Pieces::new(&solid_radii(patches), f64::min))
+    }
+
+    /// Of a copy that is seen in so many rows of pixels.
+    pub fn of(&self, rows: u32) -> &[Piece] {
+        self.0.of(rows, FEW_ROWS)
     }
 }
 
 /// At most `count` runs of rows, each with its least or largest radius, as `bound` says, that
 /// together are as near to the radii as can be; those of no radius are left out.
-pub(super) fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<Piece> {
+fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<Piece> {
     let n = radii.len();
     let outer = bound(0.0, 1.0) > 0.0;
     let sense = if outer { -1.0 } else { 1.0 };

@@ -1,20 +1,15 @@
 //! Where a solid can show: cylinders about its axis that hold it, and their pixels.
 
-use super::inner::{Piece, ROWS, cylinders};
+use super::inner::{Pieces, ROWS};
 use super::seen::Spread;
 use crate::surface::{QuadricPatch, extents};
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
-/// Cylinders that hold a solid, from the lowest to the highest.
+/// Cylinders that hold a solid.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Outer {
-    /// Of large copies.
-    pieces: Vec<Piece>,
-    /// Of small ones.
-    few: Vec<Piece>,
-}
+pub(crate) struct Outer(Pieces);
 
 /// Copies of fewer rows of pixels are listed by their rectangles.
 const LEAST_ROWS: u32 = 6;
@@ -40,11 +35,7 @@ impl Outer {
     pub fn new(patches: &[QuadricPatch]) -> Self {
         let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
         let radii: Vec<f64> = extents(patches, ROWS).iter().map(most).collect();
-        let of = |count| cylinders(&radii, count, f64::max);
-        Self {
-            pieces: of(8),
-            few: of(3),
-        }
+        Self(Pieces::new(&radii, f64::max))
     }
 
     /// Of these rows of pixels, each, the ends of what may show the copy, in pixels; false where
@@ -61,18 +52,13 @@ impl Outer {
         if high < LEAST_ROWS {
             return false;
         }
-        let pieces = if high < FEW_ROWS {
-            &self.few
-        } else {
-            &self.pieces
-        };
         rows.clear();
         rows.resize(within.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         // Two sides of the octagons run along the line of sight: in width they are as discs.
         let towards = spread.eye.truncate().normalize_or(DVec2::X);
         let [a, b] =
             [towards, towards.perp()].map(|way| spread.along[0] * way.x + spread.along[1] * way.y);
-        for piece in pieces {
+        for piece in self.0.of(high, FEW_ROWS) {
             let radius = piece.radius + margin;
             let ends = [piece.low - margin, piece.high + margin];
             let rings = ends.map(|z| {
@@ -132,10 +118,7 @@ mod tests {
         let radii: Vec<f64> = (0..ROWS)
             .map(|row| radius((row + 1) as f64 / ROWS as f64).max(radius(row as f64 / ROWS as f64)))
             .collect();
-        let outer = Outer {
-            pieces: cylinders(&radii, 8, f64::max),
-            few: Vec::new(),
-        };
+        let outer = Outer(Pieces::new(&radii, f64::max));
         let camera = Camera::new(DVec3::new(3.0, 1.0, 2.0), DVec3::new(0.0, 0.0, 0.4));
         let view = View::from_camera(&camera, (640, 480), [0.1, 100.0]).unwrap();
         let forms = Forms::new(&view);
