@@ -1,14 +1,17 @@
-//! CPU time of frames, summed over all of a software driver's threads: `cargo run --release --example cpu_time -- [--close] [--stage fragment|compute] [--view NAME ...] [METHOD ...]`
+//! CPU time of frames, summed over all of a software driver's threads: `cargo run --release --example cpu_time -- [--close] [--stage fragment|compute] [--view NAME ...] [--crowd COPIES] [--distant] [METHOD ...]`
 //!
 //! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
 //! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
-//! the RBM baseline. Linux alone: it reads `/proc/self/task`.
+//! the RBM baseline. `--crowd` and `--distant` draw copies, at the default tolerance, and time what a camera that moves asks of the CPU too. Linux alone: it
+//! reads `/proc/self/task`.
 
 use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::renderer::MethodDevice;
+use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use revmap_lab::report::plan::{plain, rbm_baseline};
+use revmap_lab::report::view::View;
+use revmap_lab::report::{budget, crowds};
 use revmap_lab::report::suite::{Extent, views};
 use std::time::Instant;
 
@@ -18,12 +21,14 @@ const LEAST_MS: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut stage, mut close) = (DrawStage::Fragment, false);
-    let (mut only, mut methods) = (Vec::new(), Vec::new());
+    let (mut only, mut methods, mut crowds) = (Vec::new(), Vec::new(), Vec::new());
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         match arg.as_str() {
             "--close" => close = true,
             "--view" => only.extend(args.next()),
+            "--crowd" => crowds.push(crowds::army(args.next().unwrap_or_default().parse()?)?),
+            "--distant" => crowds.extend(budget::distant()?),
             "--stage" if args.next().as_deref() == Some("compute") => stage = DrawStage::Compute,
             "--stage" => {}
             name => methods.push(name.parse::<Method>()?),
@@ -38,7 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}, {stage:?} stage", device.report().name);
     let device = MethodDevice::new(device)?;
     let mut sums = vec![0.0; methods.len()];
-    let mut views = views(Extent::All, &[25.0])?;
+    let mut views = if crowds.is_empty() {
+        views(Extent::All, &[25.0])?
+    } else {
+        crowds
+    };
     views.retain(|view| only.is_empty() || only.contains(&view.name));
     let count = views.len() as f64;
     for mut view in views {
@@ -46,13 +55,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if close {
             view.scene.camera.fov_y *= 0.45;
         }
-        let settings = MethodSettings {
-            stage,
-            planes: Planes::Color,
-            ..MethodSettings::default()
+        let settings = if view.solids() > 1 {
+            crowds::settings(stage)
+        } else {
+            MethodSettings {
+                stage,
+                planes: Planes::Color,
+                ..MethodSettings::default()
+            }
         };
         let mut ways = vec![rbm_baseline(&view, &settings)];
-        ways.extend(methods.iter().map(|&method| plain(&settings, method)));
+        ways.extend(methods.iter().map(|&method| MethodSettings {
+            tolerance: settings.tolerance,
+            ..plain(&settings, method)
+        }));
         let mut drawn = Vec::new();
         for way in &ways {
             let mut renderer = device.renderer(&view.scene, way)?;
@@ -91,6 +107,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             sums[k] += (ms / papers).ln() / count;
         }
         println!();
+        if view.solids() > 1 {
+            println!("   a new view asks the CPU: {}", updates(&mut drawn[1].0, &view)?);
+        }
     }
     for (method, sum) in methods.iter().zip(&sums) {
         println!(
@@ -99,6 +118,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     Ok(())
+}
+
+/// Wall clock of taking over scenes that differ by the camera alone.
+fn updates(renderer: &mut MethodRenderer, view: &View) -> revmap::Result<String> {
+    let mut scene = view.scene.clone();
+    let mut all = Vec::new();
+    for n in 0..12 {
+        scene.camera.eye.z += 1e-3 * f64::from(n);
+        let start = Instant::now();
+        renderer.update(&scene)?;
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        all.push(ms + renderer.draw()?.prepare_ms);
+    }
+    Ok(format!("{:.2} ms (median)", median(&mut all)))
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -19,11 +19,20 @@ use super::row::Row;
 use super::series_style::SeriesStyles;
 use super::stats::{self, Interval};
 use super::table::Table;
+use super::view::View;
 use crate::compare::{PixelErrors, pixel_errors};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use std::path::Path;
+
+/// The scene of solids of 2 to 20 pixels.
+///
+/// # Errors
+/// Of the solids that the program carries.
+pub fn distant() -> Result<Option<View>> {
+    Ok(scenes::scenes()?.pop())
+}
 
 /// The tolerances, pixels.
 pub const TOLERANCES: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 2.0];

@@ -5,6 +5,7 @@ mod flight;
 mod scenes;
 
 pub use flight::{Flight, fly};
+pub use scenes::army;
 
 use super::chapters;
 use super::folder::write_text;

@@ -9,6 +9,7 @@ use crate::report::table::Table;
 use revmap::error::Result;
 use revmap::gpu::Times;
 use revmap::settings::{Planes, Tolerance};
+use std::time::Instant;
 
 /// Frames before the first that counts: buffers grow, and drivers compile when they first draw.
 const WARM: usize = 10;
@@ -18,7 +19,7 @@ const WARM: usize = 10;
 pub struct Flight {
     /// How it was drawn.
     pub settings: MethodSettings,
-    /// Of every frame.
+    /// Of every frame; what the new view asks of the CPU is part of `prepare_ms`.
     pub times: Vec<Times>,
     /// Frames that were held to exact pictures, and their errors in pixels.
     pub errors: Vec<(usize, PixelErrors)>,
@@ -45,8 +46,12 @@ pub fn fly(
     let mut times = Vec::with_capacity(frames);
     for frame in 0..frames {
         scene.camera = at(frame);
+        let start = Instant::now();
         renderer.update(&scene)?;
-        times.push(renderer.draw()?);
+        let update_ms = start.elapsed().as_secs_f64() * 1e3;
+        let mut drawn = renderer.draw()?;
+        drawn.prepare_ms += update_ms;
+        times.push(drawn);
     }
     drop(renderer);
     let mut errors = Vec::new();

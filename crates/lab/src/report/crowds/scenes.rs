@@ -49,7 +49,7 @@ pub(super) fn one() -> Result<View> {
 ///
 /// # Errors
 /// Of the solids that the program carries.
-pub(super) fn army(count: u32) -> Result<View> {
+pub fn army(count: u32) -> Result<View> {
     let views = suite::views(Extent::All, &[25.0])?;
     let mut scene = views[0].scene.clone();
     let mut kinds: Vec<Object> = Vec::new();
