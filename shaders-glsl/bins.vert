@@ -1,26 +1,19 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// A rectangle for each run of bins: six vertices, made from the vertex's number.
+// A square of pixels in which several copies may show.
 #define VARYING out
 #include "stage/bins_varyings.glsl"
-#include "stage/bin_words.glsl"
-#include "core/pixel_ray.glsl"
+#include "stage/square.glsl"
 
 void main()
 {
     take_frame();
     take_solid();
     take_lights();
-    uint at = 4u * (uint(gl_VertexIndex) / 6u);
-    uvec2 x = uvec2(bin_words[at], bin_words[at + 2u]) & 0xffffu;
-    uvec2 y = uvec2(bin_words[at], bin_words[at + 2u]) >> 16;
-    uint bit = 1u << (uint(gl_VertexIndex) % 6u);
-    vec2 pixel = vec2((0x32u & bit) != 0u ? x.y : x.x, (0x2cu & bit) != 0u ? y.y : y.x);
-    // No fragment's depth is less.
-    float depth = depth_of(max(uintBitsToFloat(bin_words[at + 3u]), 1e-30));
-    gl_Position = vec4(pixel * frame.pixels.xz + frame.pixels.yw, depth, 1.0);
+    Square square = this_square();
+    place_square(square);
 
-    bins_run = uvec2(bin_words[at + 1u], x.x / GROUP_PIXELS);
+    bins_square = uvec4(square.corner, square.words.xy);
     bins_dir_00 = frame.dir_00;
     bins_dir_x = frame.dir_x;
     bins_dir_y = frame.dir_y;

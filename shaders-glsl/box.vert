@@ -6,7 +6,7 @@
 
 void main()
 {
-    Instance i = begin();
+    Instance i = begin(uint(gl_InstanceIndex));
     vec3 scale = scale_of(i);
     vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
     vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale;

@@ -7,7 +7,7 @@
 
 void main()
 {
-    Instance i = begin();
+    Instance i = begin(uint(gl_InstanceIndex));
     gl_Position = clip_of(i, frustum_corner(this_frustum()));
     // Its corners stand out of the box, beyond which the far plane may be; no fragment takes its depth from here.
     float sense = frame.forward.w;

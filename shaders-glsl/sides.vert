@@ -9,7 +9,7 @@
 
 void main()
 {
-    Instance i = begin();
+    Instance i = begin(uint(gl_InstanceIndex));
     uint strip = uint(gl_VertexIndex) / 6u;
     uint bit = 1u << uint(gl_VertexIndex) % 6u;
     uint beside = CUT == CUT_SOLID ? 0u : strip & 1u;

@@ -124,6 +124,6 @@ fn full() -> Error {
 /// With a window's length behind the last unit: the window on the last tables is as long as on all
 /// others.
 fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
-    let vectors = u64::from(unit) * u64::from(units) + u64::from(device.own_vectors);
+    let vectors = u64::from(unit) * u64::from(units) + u64::from(device.constants.own_vectors);
     storage(device, "tables", 16 * vectors)
 }

@@ -10,9 +10,9 @@ use super::call::Call;
 use super::device::create;
 use super::instance::{Instance, into_device};
 use super::output::{DepthOrder, Output, PassFormats, PassKind};
+use super::pipelines::DeviceConstants;
 use super::pipelines::Pipelines;
 use super::report::{DeviceReport, candidates, choose, text, variable};
-use super::tables::own_vectors;
 use crate::error::{Error, Result, Stage};
 use crate::settings::{DrawStage, Planes, Solver};
 use crate::shader::generated::{CUT_ANY, CUT_SOLID};
@@ -106,8 +106,8 @@ impl Compiler {
         let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
-        let own = own_vectors(&chosen.properties.limits);
-        let pipelines = Pipelines::new(raw.clone(), None, own).map_err(into_device)?;
+        let constants = DeviceConstants::of(&chosen);
+        let pipelines = Pipelines::new(raw.clone(), None, constants).map_err(into_device)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
             clips: chosen.clips(),
@@ -191,6 +191,7 @@ fn path(variant: Variant, kind: Kind) -> String {
         (Kind::Sides, _) if variant.cut == CUT_SOLID => "solid sides",
         (Kind::Sides, _) => "sides",
         (Kind::ConvexHull, _) => "convex hull",
+        (Kind::Spots, _) => "bins of one copy",
         (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",
         (Kind::List, _) => "lists of patches",

@@ -4,9 +4,8 @@ use super::call::Call;
 use super::instance::{Instance, into_device};
 use super::memory::Buffer;
 use super::memory_budget::MemoryBudget;
-use super::pipelines::Pipelines;
+use super::pipelines::{DeviceConstants, Pipelines};
 use super::report::{Candidate, DeviceReport, candidates, choose, inspect, refuse, variable};
-use super::tables;
 use crate::error::{Error, Result, Stage};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -50,8 +49,7 @@ pub(crate) struct Shared {
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
     pub family: u32,
     pub limits: vk::PhysicalDeviceLimits,
-    /// Most vectors of tables that a uniform buffer holds.
-    pub own_vectors: u32,
+    pub constants: DeviceConstants,
     /// Invocations that run together.
     pub subgroup_size: u32,
     pub timestamp_bits: u32,
@@ -154,7 +152,7 @@ impl Device {
     #[cfg(feature = "other-shaders")]
     pub unsafe fn with_shaders(&self, shaders: super::ShaderSource) -> Result<Self> {
         let shared = &self.shared;
-        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.own_vectors)?;
+        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.constants)?;
         pipelines.source = Some(shaders);
         let own = Shared {
             allocator: shared.allocator.clone(),
@@ -163,7 +161,7 @@ impl Device {
             queue: shared.queue.clone(),
             family: shared.family,
             limits: shared.limits,
-            own_vectors: shared.own_vectors,
+            constants: shared.constants,
             subgroup_size: shared.subgroup_size,
             timestamp_bits: shared.timestamp_bits,
             anisotropy: shared.anisotropy,
@@ -384,15 +382,15 @@ impl Shared {
     ) -> Result<Self> {
         let limits = chosen.properties.limits;
         let allocator = memory.allocator(&raw)?;
-        let own_vectors = tables::own_vectors(&limits);
-        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, own_vectors)?;
+        let constants = DeviceConstants::of(chosen);
+        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, constants)?;
         Ok(Self {
             allocator: Some(allocator),
             pipelines: Some(pipelines),
             queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
             family: chosen.family,
             limits,
-            own_vectors,
+            constants,
             subgroup_size: chosen.subgroup_size,
             timestamp_bits: chosen.timestamp_bits,
             anisotropy: chosen

@@ -88,6 +88,8 @@ pub(super) struct Draw {
     pub pipeline: vk::Pipeline,
     /// The pipelines of the box's sides, where they cut a hull: of what is solid there, and of what may be.
     pub sides: [vk::Pipeline; 2],
+    /// The pipeline of squares of several copies, in a pass.
+    pub bins: vk::Pipeline,
     /// The pipeline that lists tiles, where the work is of beams.
     pub list: vk::Pipeline,
     /// The pipelines of tiles whose patches are listed; the last is of those whose rays enter box

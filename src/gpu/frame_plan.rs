@@ -208,7 +208,7 @@ impl Renderer {
         };
         let variant = prepared.variant;
         let (mut frusta, mut tables) = (None, prepared.surface.as_ref());
-        let most = self.device.own_vectors as usize;
+        let most = self.device.constants.own_vectors as usize;
         let fit = tables.is_none_or(|s| s.tables().own <= most);
         let searched = variant.seen_from(outside).with_tables(fit);
         let (kind, variant) = match &work {
@@ -229,7 +229,7 @@ impl Renderer {
                 let several = several || copies.len() > 1;
                 (Kind::Compute, searched.tiled(*cut, several))
             }
-            Work::Bins(_) if in_pass => (Kind::Bins, searched),
+            Work::Bins(_) if in_pass => (Kind::Spots, searched),
             Work::Bins(shown) if entry.drawn().placements().len() > 1 => {
                 let several = several || !shown.alone.is_empty();
                 (Kind::Compute, searched.dispatched(Dispatch::Bins, several))
@@ -266,6 +266,10 @@ impl Renderer {
             {
                 *to = pipelines.get(variant, Kind::Sides, &self.output, self.owner)?;
             }
+        }
+        if kind == Kind::Spots {
+            let pipelines = self.device.pipelines()?;
+            entry.draw.bins = pipelines.get(variant, Kind::Bins, &self.output, self.owner)?;
         }
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;

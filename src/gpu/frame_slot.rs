@@ -165,7 +165,7 @@ impl FrameSlot {
         }
         use vk::DescriptorType as T;
         let block = size_of::<SolidBlock>() as u64;
-        let window = 16 * u64::from(self.device.own_vectors);
+        let window = 16 * u64::from(self.device.constants.own_vectors);
         for (binding, (kind, buffer, range)) in (0u32..).zip([
             (T::UNIFORM_BUFFER, self.frame.raw, vk::WHOLE_SIZE),
             (T::UNIFORM_BUFFER_DYNAMIC, self.blocks.raw, block),

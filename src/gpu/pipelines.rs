@@ -6,9 +6,11 @@ mod compile;
 use super::call::Call;
 use super::output::{Output, PassFormats, PassKind};
 use super::render_pass::render_pass;
+use super::report::Candidate;
+use super::tables::own_vectors;
 use crate::error::{Error, Result, Stage};
 use crate::settings::Planes;
-use crate::shader::generated::MAX_SHADOW_MAPS;
+use crate::shader::generated::{LARGE_POINTS_ID, MAX_SHADOW_MAPS, OWN_VECTORS_ID};
 use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::collections::HashMap;
@@ -17,6 +19,32 @@ use std::sync::{Mutex, MutexGuard};
 
 /// Words that are pushed: `Pushed` of `beams.glsl`.
 pub(crate) const PUSHED: u32 = 4;
+
+/// Specialisation constants that are the same for all pipelines of a device.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DeviceConstants {
+    /// Vectors of one solid's tables that its uniform buffers hold.
+    pub own_vectors: u32,
+    /// Whether squares of pixels are drawn as points.
+    pub large_points: bool,
+}
+
+impl DeviceConstants {
+    pub fn of(device: &Candidate) -> Self {
+        Self {
+            own_vectors: own_vectors(&device.properties.limits),
+            large_points: device.large_points(),
+        }
+    }
+
+    /// `(constant_id, value)`.
+    fn values(self) -> [(u32, u32); 2] {
+        [
+            (OWN_VECTORS_ID, self.own_vectors),
+            (LARGE_POINTS_ID, u32::from(self.large_points)),
+        ]
+    }
+}
 
 /// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
@@ -32,8 +60,8 @@ pub(crate) struct Pipelines {
     /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
     passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
-    /// As that of [`Shared`](super::device::Shared).
-    own_vectors: u32,
+    /// Those of the device, of every pipeline.
+    constants: DeviceConstants,
     /// Where modules come from that are not those embedded.
     #[cfg(feature = "other-shaders")]
     pub source: Option<ShaderSource>,
@@ -60,7 +88,7 @@ impl Pipelines {
     pub fn new(
         raw: ash::Device,
         cache: Option<vk::PipelineCache>,
-        own_vectors: u32,
+        constants: DeviceConstants,
     ) -> Result<Self> {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
@@ -72,7 +100,7 @@ impl Pipelines {
             owners: AtomicU64::new(0),
             passes: Mutex::default(),
             flags: vk::PipelineCreateFlags::empty(),
-            own_vectors,
+            constants,
             #[cfg(feature = "other-shaders")]
             source: None,
             raw,

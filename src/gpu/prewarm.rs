@@ -124,7 +124,7 @@ impl Renderer {
         let compute = (!self.draws_hulls()).then_some(several);
         // An offset may move the size of tables across the limit.
         let own = surface.map_or(0, |s| s.tables().own);
-        let limit = self.device.own_vectors as usize;
+        let limit = self.device.constants.own_vectors as usize;
         let fits = [own <= limit + limit / 2, own > limit - limit / 4];
         let clips = self.device.clips || !self.draws_hulls();
         let may_be_cut = clips && hulls::may_be_cut(object);

@@ -11,6 +11,7 @@ use super::renderer::Renderer;
 use super::usage::{Usage, buffer_barrier};
 use crate::shader::generated::{GROUP_PIXELS, TILE_LISTS};
 use ash::vk;
+use std::ops::Range;
 
 /// What is pushed for a dispatch: `Pushed` of `beams.glsl`.
 type Pushed = [u32; PUSHED as usize];
@@ -67,9 +68,23 @@ impl Renderer {
                         }
                     }
                     Work::Box => raw.cmd_draw(cmd, 14, count, 0, first),
-                    Work::Bins(shown) if !shown.range.is_empty() => {
-                        let runs = &shown.range;
-                        raw.cmd_draw(cmd, 6 * (runs.end - runs.start), 1, 6 * runs.start, 0);
+                    Work::Bins(shown) => {
+                        // Vertices of a square.
+                        let n = if self.device.constants.large_points {
+                            1
+                        } else {
+                            6
+                        };
+                        let draw = |squares: &Range<u32>| {
+                            let count = squares.end - squares.start;
+                            raw.cmd_draw(cmd, n * count, 1, n * squares.start, 0);
+                        };
+                        draw(&shown.spots);
+                        if !shown.range.is_empty() {
+                            let point = vk::PipelineBindPoint::GRAPHICS;
+                            raw.cmd_bind_pipeline(cmd, point, entry.draw.bins);
+                            draw(&shown.range);
+                        }
                     }
                     _ => {}
                 }

@@ -3,6 +3,7 @@
 use super::call::Call;
 use super::instance::{API_VERSION, Instance, into_device};
 use crate::error::{Error, Result, Stage};
+use crate::shader::generated::GROUP_PIXELS;
 use ash::vk;
 use std::ffi::CStr;
 
@@ -61,6 +62,18 @@ impl Candidate {
             && limits.sub_pixel_precision_bits >= 8
     }
 
+    /// Whether squares of up to eight pixels a side are drawn as points: one vertex for six, and
+    /// no diagonal, along which blocks of pixels are searched twice.
+    pub fn large_points(&self) -> bool {
+        let limits = &self.properties.limits;
+        let [least, most] = limits.point_size_range;
+        let step = limits.point_size_granularity;
+        self.features.large_points == vk::TRUE
+            && least <= 1.0
+            && most >= f32::from(GROUP_PIXELS as u8)
+            && (step == 0.0 || (1.0 / step).fract() == 0.0)
+    }
+
     /// Whether it offers an extension.
     pub fn offers(&self, extension: &CStr) -> bool {
         let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
@@ -73,6 +86,7 @@ impl Candidate {
             fragment_stores_and_atomics: vk::TRUE,
             sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
             shader_clip_distance: vk::Bool32::from(self.clips()),
+            large_points: vk::Bool32::from(self.large_points()),
             ..Default::default()
         }
     }

@@ -15,7 +15,9 @@ pub enum Entry {
     CutHullVertex,
     /// Strips of a box's sides where they cut a proxy hull.
     SidesVertex,
-    /// Rectangles of runs of bins.
+    /// Squares of pixels of one copy.
+    SpotsVertex,
+    /// Squares of pixels of several copies.
     BinsVertex,
     /// Lists of tiles.
     Beam,
@@ -45,6 +47,7 @@ impl Entry {
             Self::HullVertex => "hull.vert",
             Self::CutHullVertex => "cut_hull.vert",
             Self::SidesVertex => "sides.vert",
+            Self::SpotsVertex => "spots.vert",
             Self::BinsVertex => "bins.vert",
             Self::Beam => "beam.comp",
             Self::List => "list.comp",
@@ -382,10 +385,10 @@ pub fn modules() -> Vec<Module> {
         all.push(vertex(Entry::SidesVertex, Search::Quadric));
     }
     for search in [Search::Live, Search::Quadric] {
-        all.push(Module {
+        all.extend([Entry::SpotsVertex, Entry::BinsVertex].map(|entry| Module {
             search,
-            ..Module::plain(Entry::BinsVertex)
-        });
+            ..Module::plain(entry)
+        }));
     }
     all.push(Module {
         search: Search::Relaxed,
@@ -405,8 +408,10 @@ pub fn modules() -> Vec<Module> {
                 if has(search, features, output, Dispatch::Rectangle) {
                     all.push(fragment(Entry::Box, search));
                 }
+                // Few squares show many copies: those of textured ones are drawn by the full module.
                 if shaded
                     && search.takes_beams()
+                    && features != Features::Textured
                     && has(search, features, output, Dispatch::Rectangle)
                 {
                     all.push(fragment(Entry::Bins, search));

@@ -103,7 +103,7 @@ impl Variant {
                     all.push((variant, Kind::ConvexHull));
                 }
                 if copies && variant.takes_bins() {
-                    all.push((variant, Kind::Bins));
+                    all.extend([(variant, Kind::Spots), (variant, Kind::Bins)]);
                 }
                 all.push((variant, Kind::Box));
             }
@@ -111,7 +111,7 @@ impl Variant {
         let mut all: Vec<_> = all
             .into_iter()
             .flat_map(|(v, kind)| match kind {
-                Kind::Box | Kind::Bins | Kind::Compute if v.seen_from(true) != v => {
+                Kind::Box | Kind::Spots | Kind::Bins | Kind::Compute if v.seen_from(true) != v => {
                     vec![(v.seen_from(true), kind), (v, kind)]
                 }
                 _ => vec![(v, kind)],

@@ -15,7 +15,7 @@ use std::mem::{offset_of, size_of};
 use std::sync::Arc;
 
 /// How many modules there are.
-const MODULES: usize = 218;
+const MODULES: usize = 220;
 
 /// Opcodes and decorations of the SPIR-V specification that matter here.
 mod op {
@@ -187,8 +187,8 @@ fn a_variant_sets_every_specialisation_constant() {
         .constants()
         .iter()
         .map(|(id, _)| *id)
-        // That of the device.
-        .chain([g::OWN_VECTORS_ID])
+        // Those of the device.
+        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID])
         .collect();
     let mut all = BTreeSet::new();
     for module in modules() {
@@ -260,6 +260,7 @@ fn vertices_hand_over_what_fragments_take() {
                 Entry::BoxVertex,
                 Entry::ConvexHullVertex,
                 Entry::SidesVertex,
+                Entry::SpotsVertex,
             ],
             Entry::Box => &[Entry::BoxVertex],
             Entry::Hull => &[Entry::HullVertex, Entry::CutHullVertex],
@@ -268,7 +269,9 @@ fn vertices_hand_over_what_fragments_take() {
         };
         let taken = locations(&words(&module).unwrap(), 1);
         for &entry in entries {
+            let is_depth = matches!(module.output, Output::Depth | Output::DepthOrtho);
             if (entry == Entry::ConvexHullVertex && !module.search.is_live())
+                || (entry == Entry::SpotsVertex && is_depth)
                 || (entry == Entry::SidesVertex && module.search.is_live())
             {
                 continue;

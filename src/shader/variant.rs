@@ -28,7 +28,9 @@ pub enum Kind {
     ConvexHull,
     /// Pixels of the compute stage.
     Compute,
-    /// Bins, rasterised: several copies, of which fragments search those listed.
+    /// Squares of pixels of one copy each, rasterised; fragments search as in boxes.
+    Spots,
+    /// Squares of pixels of several copies, rasterised; fragments search those listed.
     Bins,
     /// The list of tiles that beams choose.
     Beam,
@@ -314,7 +316,12 @@ impl Variant {
             Kind::Sides => true,
             Kind::Hull | Kind::List | Kind::Listed => self.outside == 0,
             Kind::Compute => self.cut != g::CUT_ANY,
-            Kind::Box | Kind::ConvexHull | Kind::Bins | Kind::Beam | Kind::ListCopies => false,
+            Kind::Box
+            | Kind::ConvexHull
+            | Kind::Spots
+            | Kind::Bins
+            | Kind::Beam
+            | Kind::ListCopies => false,
         }
     }
 
@@ -354,6 +361,7 @@ impl Variant {
             Kind::Hull if self.outside == 0 => Entry::CutHullVertex,
             Kind::Hull => Entry::HullVertex,
             Kind::Sides => Entry::SidesVertex,
+            Kind::Spots => Entry::SpotsVertex,
             Kind::Bins => Entry::BinsVertex,
             Kind::ConvexHull => Entry::ConvexHullVertex,
             Kind::Compute | Kind::Beam | Kind::List | Kind::ListCopies | Kind::Listed => {
@@ -370,7 +378,7 @@ impl Variant {
             Kind::Beam => return Module::plain(Entry::Beam),
             Kind::List => return Module::plain(Entry::List),
             Kind::ListCopies => return Module::plain(Entry::ListCopies),
-            Kind::Box | Kind::ConvexHull | Kind::Sides => Entry::Box,
+            Kind::Box | Kind::ConvexHull | Kind::Sides | Kind::Spots => Entry::Box,
             Kind::Hull => Entry::Hull,
             Kind::Bins => Entry::Bins,
             Kind::Compute => Entry::Trace,

@@ -155,10 +155,10 @@ fn culled_copies_are_not_missed() {
             let listed = draw(&scene, &settings(DrawStage::Compute, cull));
             assert_near(&frames[0], &listed, &format!("{name}: lists, {cull}"));
         }
-        // The nearest hits stop later copies from being searched, and those proven hidden are not
-        // even listed.
+        // In compute the nearest hits stop later copies from being searched, and those proven hidden
+        // are not even listed. Fragments of squares of one copy know nothing of other squares.
         let steps = |frame: &Frame| frame.steps.iter().map(|s| f64::from(*s)).sum::<f64>();
-        assert!(steps(&frames[0]) <= steps(&frames[1]), "{name}");
+        assert!(steps(&frames[2]) <= steps(&frames[3]), "{name}");
     }
     device().check().unwrap();
 }

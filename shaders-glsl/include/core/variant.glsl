@@ -91,6 +91,7 @@ const uint CUT = 0u;
 #endif
 // Of one solid's tables: most that the device's uniform buffers hold.
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u;
+layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 #if SEARCH == SEARCH_CIRCLE
 layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
 #endif
@@ -144,6 +145,7 @@ const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a bin
+const uint SQUARE_BITS = 15u; // of either coordinate of a square's corner
 const uint BIN_SPLIT = 2147483648u; // in place of a bin's count: each of its pixels has a list of its own
 
 #endif

@@ -34,15 +34,15 @@ void begin()
 
 bool nearest_hit(uvec2 pixel, out Nearest nearest)
 {
-    uint at = 4u * (bins_run.x + pixel.x / GROUP_PIXELS - bins_run.y);
     nearest.depth = frame.forward.w > 0.0 ? 1.0 : 0.0;
     nearest.instance = 0u;
     nearest.steps = 0u;
     nearest.exhausted = false;
-    uint first = bin_words[at + 1u];
-    uint count = bin_words[at + 2u];
-    if (count == BIN_SPLIT) {
-        at = first + 2u * (GROUP_PIXELS * (pixel.y % GROUP_PIXELS) + pixel.x % GROUP_PIXELS);
+    uint first = bins_square.z;
+    uint count = bins_square.w;
+    if ((count & BIN_SPLIT) != 0u) {
+        uvec2 away = pixel - bins_square.xy;
+        uint at = first + 2u * ((count ^ BIN_SPLIT) * away.y + away.x);
         first += bin_words[at];
         count = bin_words[at + 1u];
     }

@@ -1,4 +1,4 @@
-// What the vertices of a run of bins hand their fragments: all that is the same for a batch.
+// What the vertices of squares of several copies hand their fragments: their list, and all that is the same for a batch.
 #ifndef BINS_VARYINGS_GLSL
 #define BINS_VARYINGS_GLSL
 #include "core/look.glsl"
@@ -7,7 +7,7 @@
 #define VARYING in
 #endif
 
-layout(location = 0) flat VARYING uvec2 bins_run; // number of the first bin, its x in bins
+layout(location = 0) flat VARYING uvec4 bins_square; // corner in pixels, second and third word of its record
 layout(location = 1) flat VARYING vec4 bins_dir_00; // this and the next three as in the frame's block
 layout(location = 2) flat VARYING vec4 bins_dir_x;
 layout(location = 3) flat VARYING vec4 bins_dir_y;

@@ -10,7 +10,7 @@
 // The vertex's place in object space.
 vec3 place_hull_vertex()
 {
-    Instance i = begin();
+    Instance i = begin(uint(gl_InstanceIndex));
     uint at = this_frustum();
     vec3 corner = frustum_corner(at);
     gl_Position = clip_of(i, corner);

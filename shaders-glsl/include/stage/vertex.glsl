@@ -4,13 +4,17 @@
 #define VARYING out
 #include "stage/varyings.glsl"
 
-// To be called first; the instance of this vertex.
-Instance begin()
+// The instance of this vertex, by its number among all.
+uint instance_number;
+
+// To be called first; the instance of this number.
+Instance begin(uint number)
 {
     take_frame();
     take_solid();
     take_lights();
-    return instances[gl_InstanceIndex];
+    instance_number = number;
+    return instances[number];
 }
 
 // A twentieth of a pixel, no matter where in the box, along the axes of object space.
@@ -35,7 +39,7 @@ void hand_over(Instance i, float scale)
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
-    look_ambient = vec4(look.ambient, float(gl_InstanceIndex));
+    look_ambient = vec4(look.ambient, float(instance_number));
     look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
     look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);

@@ -25,14 +25,14 @@ struct Square {
 }
 
 /// Bits from column `low` to `high` in every row from `top` to `bottom`, all included.
-fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
+pub(super) fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
     let row = (0xffu64 >> (7 - (high - low))) << low;
     let rows = (u64::MAX >> (8 * (7 - (bottom - top)))) << (8 * top);
     (row * 0x0101_0101_0101_0101) & rows
 }
 
 /// The bits of a square, `x` and `y` in squares, that a rectangle of pixels holds.
-fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
+pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
     let inside = |pixel: u32, square: u32| pixel.clamp(square * SIDE, square * SIDE + 7) % SIDE;
     block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
 }

@@ -17,7 +17,7 @@ pub(super) struct Listed {
 /// What goes through a batch's bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Visitor {
-    /// Fragments: bins are squares.
+    /// Fragments, drawn for squares of a few pixels.
     Fragments,
     /// Work groups: pixels with lists of their own leave their squares.
     Groups,
@@ -32,8 +32,8 @@ pub(super) struct BandLists {
     pub bins: Vec<[u32; 4]>,
     /// Bins of one copy each, no two of one square. What they show has to be drawn before the bins.
     pub alone: Vec<[u32; 4]>,
-    /// For fragments: of each bin the pixels that may show something, one bit each.
-    pub masks: Vec<u64>,
+    /// For fragments: squares of one copy each, which hold its number in place of a list.
+    pub spots: Vec<[u32; 4]>,
     pub words: Vec<u32>,
     /// Pixels that wait for others to fill a bin: where they are, where their list begins, how many
     /// copies it holds.
@@ -42,21 +42,23 @@ pub(super) struct BandLists {
 
 /// Pixels of a bin.
 const PIXELS: usize = (SIDE * SIDE) as usize;
-/// One list serves a square if its copies cover at least so many of its pixels on average.
-const LEAST_PIXELS: u32 = 48;
+/// One list serves a square if its copies cover at least three quarters of it on average.
+const LEAST_PART: [u32; 2] = [3, 4];
 /// A copy that covers so many of a square's pixels has a bin alone.
 const ALONE_PIXELS: u32 = 24;
-/// Most entries of the lists of a square's pixels: where many copies lie behind each other these
-/// would take too much memory.
-const MOST_ENTRIES: u32 = 512;
+/// Most copies a pixel, on average, of the lists of a square's pixels: where many copies lie behind
+/// each other these would take too much memory.
+const MOST_COPIES: u32 = 8;
 
 impl BandLists {
-    /// Deals copies, nearest first, out to so many squares. `corner`: of a square, in squares.
+    /// Deals copies, nearest first, out to so many squares. Of a square, `corner`: where it is, in
+    /// squares; `inside`: those of its pixels that the picture has.
     pub fn new(
         listed: &[Listed],
         squares: u32,
         visitor: Visitor,
         corner: impl Fn(u32) -> [u32; 2],
+        inside: impl Fn([u32; 2]) -> u64,
     ) -> Self {
         let mut ends = vec![0u32; squares as usize + 1];
         for one in listed {
@@ -86,7 +88,12 @@ impl BandLists {
             }
             if !here.is_empty() {
                 let here = here.iter().map(|n| &listed[*n as usize]);
-                lists.add(here, corner(square), visitor == Visitor::Fragments);
+                let place = corner(square);
+                if visitor == Visitor::Fragments {
+                    lists.add_squares(here, place.map(|k| k * SIDE), inside(place));
+                } else {
+                    lists.add(here, place);
+                }
             }
         }
         lists.gather();
@@ -106,15 +113,13 @@ impl BandLists {
         &mut self,
         here: impl ExactSizeIterator<Item = &'a Listed> + Clone,
         [x, y]: [u32; 2],
-        fragments: bool,
     ) {
         let at = |x: u32, y: u32| x | (y << 16);
         let corner = at(x * SIDE, y * SIDE);
         let count = here.len() as u32;
         let pixels: u32 = here.clone().map(|one| one.pixels.count_ones()).sum();
-        let split = pixels < (LEAST_PIXELS * count).min(MOST_ENTRIES);
-        if split && !fragments {
-            let lists = self.split(here);
+        if Self::splits(count, pixels, PIXELS as u32) {
+            let lists = self.split(here.copied());
             let place = |k: u32| corner + at(k % SIDE, k / SIDE);
             for (k, [begin, count]) in (0..).zip(lists).filter(|(_, [_, count])| *count > 0) {
                 self.waiting.push([place(k), begin, count]);
@@ -125,27 +130,25 @@ impl BandLists {
             return;
         }
         let near = here.clone().next().map_or(0, |one| one.near);
-        if fragments {
-            let mask = here.clone().fold(0, |mask, one| mask | one.pixels);
-            self.masks.push(mask);
-        }
-        if split {
-            let lists = self.split(here);
-            let first = self.words.len() as u32;
-            let away = |[begin, count]: [u32; 2]| [begin.wrapping_sub(first), count];
-            self.words.extend(lists.into_iter().flat_map(away));
-            self.bins.push([corner, first, BIN_SPLIT, near]);
-        } else {
-            let first = self.words.len() as u32;
-            self.words.extend(here.flat_map(|one| [one.copy, one.near]));
-            self.bins.push([corner, first, count, near]);
-        }
+        let first = self.words.len() as u32;
+        self.words.extend(here.flat_map(|one| [one.copy, one.near]));
+        self.bins.push([corner, first, count, near]);
+    }
+
+    /// Whether each pixel of a square has a list of its own: of so many copies that have so many of
+    /// its `area` pixels together.
+    pub(super) fn splits(count: u32, pixels: u32, area: u32) -> bool {
+        let [part, whole] = LEAST_PART;
+        pixels * whole < area * count * part && pixels < area * MOST_COPIES
     }
 
     /// Lists of each of a square's pixels: where it begins, and how many copies it holds.
-    fn split<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone) -> [[u32; 2]; PIXELS] {
+    pub(super) fn split(
+        &mut self,
+        here: impl Iterator<Item = Listed> + Clone,
+    ) -> [[u32; 2]; PIXELS] {
         let mut lists = [[0u32; 2]; PIXELS];
-        let each = |one: &Listed, visit: &mut dyn FnMut(usize)| {
+        let each = |one: Listed, visit: &mut dyn FnMut(usize)| {
             let mut pixels = one.pixels;
             while pixels != 0 {
                 visit(pixels.trailing_zeros() as usize);
@@ -188,19 +191,18 @@ impl BandLists {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::gpu::bins::runs::runs;
     use std::collections::{BTreeMap, BTreeSet};
 
-    const ACROSS: u32 = 5;
-    const SQUARES: u32 = 3 * ACROSS;
+    pub const ACROSS: u32 = 5;
+    pub const SQUARES: u32 = 3 * ACROSS;
 
     /// What is looked at in each pixel, and whether its list is its own.
     type Found = BTreeMap<(u32, u32), (Vec<u32>, bool)>;
 
     /// Copies of many sizes, from whole squares to single pixels, nearest first.
-    fn copies() -> Vec<Listed> {
+    pub fn copies() -> Vec<Listed> {
         let mut state = 7u64;
         let mut next = move || {
             state = state
@@ -226,7 +228,7 @@ mod tests {
     }
 
     /// What each pixel may show.
-    fn shown() -> BTreeMap<(u32, u32), Vec<u32>> {
+    pub fn shown() -> BTreeMap<(u32, u32), Vec<u32>> {
         let mut all = BTreeMap::<_, Vec<u32>>::new();
         for one in copies() {
             for k in (0..64).filter(|k| one.pixels >> k & 1 == 1) {
@@ -238,7 +240,7 @@ mod tests {
         all
     }
 
-    fn list(words: &[u32], begin: u32, count: u32) -> Vec<u32> {
+    pub fn list(words: &[u32], begin: u32, count: u32) -> Vec<u32> {
         let words = &words[begin as usize..][..2 * count as usize];
         let copies = words.chunks_exact(2);
         assert!(copies.clone().all(|w| w[1] == 100 + w[0]));
@@ -247,7 +249,7 @@ mod tests {
 
     fn lists(visitor: Visitor) -> BandLists {
         let corner = |square| [square % ACROSS, square / ACROSS];
-        BandLists::new(&copies(), SQUARES, visitor, corner)
+        BandLists::new(&copies(), SQUARES, visitor, corner, |_| u64::MAX)
     }
 
     /// Lists hold what a pixel may show, in order; those of whole squares maybe more.
@@ -257,40 +259,6 @@ mod tests {
             assert!(list.is_sorted() && (!own || *list == wanted));
             assert!(wanted.iter().all(|copy| list.contains(copy)));
         }
-    }
-
-    #[test]
-    fn squares_list_what_their_pixels_show() {
-        let lists = lists(Visitor::Fragments);
-        let mut found = BTreeMap::new();
-        let mut spare = 0;
-        let drawn = runs(0, &lists.bins, &lists.masks);
-        assert!(drawn.len() < lists.bins.len());
-        for [from, number, to, near] in drawn {
-            for (x, y) in (from & 0xffff..to & 0xffff)
-                .flat_map(|x| (from >> 16..to >> 16).map(move |y| (x, y)))
-            {
-                let bin = number + x / SIDE - (from & 0xffff) / SIDE;
-                let [corner, first, count, nearest] = lists.bins[bin as usize];
-                assert!(near <= nearest);
-                assert_eq!(
-                    (corner & 0xffff, corner >> 16),
-                    (x / SIDE * SIDE, y / SIDE * SIDE)
-                );
-                let split = count == BIN_SPLIT;
-                let at = (first + 2 * (SIDE * (y % SIDE) + x % SIDE)) as usize;
-                let (begin, count) = if split {
-                    (first.wrapping_add(lists.words[at]), lists.words[at + 1])
-                } else {
-                    (first, count)
-                };
-                spare += u32::from(count == 0);
-                let list = list(&lists.words, begin, count);
-                assert!(found.insert((x, y), (list, split)).is_none());
-            }
-        }
-        check(&found);
-        assert!(spare > 0);
     }
 
     #[test]
@@ -372,12 +340,12 @@ mod tests {
                 pixels: 0xff << (copy % 7),
             })
             .collect();
-        for visitor in [Visitor::Groups, Visitor::Fragments] {
-            let of = |copies: &[Listed]| BandLists::new(copies, 1, visitor, |_| [0, 0]);
-            let lists = of(&deep);
-            assert_eq!(lists.words.len(), 2 * deep.len());
-            assert_eq!(lists.bins, [[0, 0, 100, 100]]);
-            assert_eq!(of(&deep[..10]).bins[0][2], BIN_SPLIT);
-        }
+        let of = |copies: &[Listed]| {
+            BandLists::new(copies, 1, Visitor::Groups, |_| [0, 0], |_| u64::MAX)
+        };
+        let lists = of(&deep);
+        assert_eq!(lists.words.len(), 2 * deep.len());
+        assert_eq!(lists.bins, [[0, 0, 100, 100]]);
+        assert_eq!(of(&deep[..10]).bins[0][2], BIN_SPLIT);
     }
 }

@@ -17,8 +17,8 @@ mod inner;
 mod lists;
 mod outer;
 mod rectangle;
-mod runs;
 mod seen;
+mod squares;
 
 pub(crate) use inner::Inner;
 pub(crate) use outer::Outer;
@@ -30,10 +30,9 @@ use super::offset_surface::OffsetSurface;
 use super::plan::list_words;
 use super::view::View;
 use crate::scene::Placement;
-use cover::{Cover, SIDE};
+use cover::{Cover, SIDE, within};
 use lists::{BandLists, Listed, Visitor};
 use rayon::prelude::*;
-use runs::runs;
 use seen::Seen;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -57,9 +56,12 @@ pub(crate) struct Batch<'a> {
 /// What a batch draws.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
-    /// Its bins, or runs of bins: numbers of four words each.
+    /// Its bins: numbers of four words each.
     pub range: Range<u32>,
-    /// Bins of one copy each, of which no two share pixels. They are drawn before the others.
+    /// In a pass: its squares of one copy each.
+    pub spots: Range<u32>,
+    /// In compute: bins of one copy each, of which no two share pixels. They are drawn before the
+    /// others.
     pub alone: Range<u32>,
     /// The word where the lists of their patches begin.
     pub lists: u32,
@@ -97,7 +99,7 @@ struct Part {
 
 impl Bins {
     /// What of these batches a view of perspective shows. `fragments`: they are drawn for bins, by
-    /// rectangles; else work groups. `room`: most words that lists of patches may take in all.
+    /// squares; else work groups. `room`: most words that lists of patches may take in all.
     pub fn new(view: &View, batches: &[Batch], fragments: bool, room: u64) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
@@ -161,12 +163,12 @@ impl Bins {
         if u64::from(list_words(alone.sum::<usize>() as u32)) > room {
             parts = filled(&vec![Visitor::Groups; batches.len()]);
         }
-        Self::joined(&parts, batches, &outside, fragments)
+        Self::joined(&parts, batches, &outside)
     }
 
-    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool], fragments: bool) -> Self {
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool]) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
-        let mut masks: Vec<u64> = Vec::new();
+        let mut spots: Vec<[u32; 4]> = Vec::new();
         let mut lists = 0;
         let mut shown = Vec::with_capacity(batches.len());
         for (number, batch) in batches.iter().enumerate() {
@@ -185,8 +187,9 @@ impl Bins {
             };
             let alone = put(|lists| &lists.alone);
             let end = put(|lists| &lists.bins);
+            let first_spot = spots.len() as u32;
             for part in own() {
-                masks.extend(&part.lists.masks);
+                spots.extend(&part.lists.spots);
                 lists += part.lists.words.len();
                 for &copy in &part.copies {
                     shows[copy as usize] = true;
@@ -196,28 +199,24 @@ impl Bins {
             shown.push(Shown {
                 alone: first..alone,
                 range: alone..end,
+                spots: first_spot..spots.len() as u32,
                 lists: 0,
                 copies: copies.map(|(copy, _)| copy).collect(),
                 outside: outside[number],
             });
         }
-        let mut rectangles: Vec<[u32; 4]> = Vec::new();
-        if fragments {
-            let begin = bins.len() as u32;
-            for one in &mut shown {
-                let own = one.range.start as usize..one.range.end as usize;
-                let first = begin + rectangles.len() as u32;
-                rectangles.extend(runs(one.range.start, &bins[own.clone()], &masks[own]));
-                one.range = first..begin + rectangles.len() as u32;
-            }
+        // Behind all bins.
+        let begin = bins.len() as u32;
+        for one in &mut shown {
+            one.spots = begin + one.spots.start..begin + one.spots.end;
         }
-        let behind = 4 * (bins.len() + rectangles.len()) as u32;
+        let behind = 4 * (bins.len() + spots.len()) as u32;
         for bin in &mut bins {
             bin[1] += behind;
         }
         let mut words = Vec::with_capacity(behind as usize + lists);
         words.extend(bins.as_flattened());
-        words.extend(rectangles.as_flattened());
+        words.extend(spots.as_flattened());
         for number in 0..batches.len() {
             for band in parts {
                 words.extend(&band[number].lists.words);
@@ -277,10 +276,12 @@ fn fill(
         }
     }
     let squares = across * (bottom - top) / SIDE;
+    let picture = forms.picture();
+    let inside = |square: [u32; 2]| within(square, picture);
     let corner = |square: u32| [square % across, square / across + top / SIDE];
     (listed.iter().zip(copies).zip(visitors))
         .map(|((listed, copies), visitor)| Part {
-            lists: BandLists::new(listed, squares, *visitor, corner),
+            lists: BandLists::new(listed, squares, *visitor, corner, inside),
             copies,
         })
         .collect()

@@ -69,6 +69,13 @@ impl Forms {
         }
     }
 
+    /// First and last pixel of both axes: left, top, right, bottom.
+    pub fn picture(&self) -> [u32; 4] {
+        let first = (self.low - 0.5).ceil();
+        let last = (self.high - 0.5).floor();
+        [first.x, first.y, last.x, last.y].map(|pixel| pixel.max(0.0) as u32)
+    }
+
     pub fn spread(&self, copy: &Placement, axis: DVec2) -> Spread {
         let turn = DMat3::from_quat(copy.rotation);
         let from_eye = copy.position - self.eye;

@@ -59,7 +59,7 @@ impl Technique {
                     _ if v.is_cut(*kind) => cut,
                     Kind::Hull | Kind::List | Kind::Listed => !cut,
                     Kind::Compute if tiled => !cut,
-                    Kind::Box | Kind::Bins | Kind::Compute => *v == v.seen_from(!cut),
+                    Kind::Box | Kind::Spots | Kind::Bins | Kind::Compute => *v == v.seen_from(!cut),
                     Kind::ConvexHull | Kind::Beam | Kind::ListCopies | Kind::Sides => true,
                 }
             });

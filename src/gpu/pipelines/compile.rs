@@ -5,7 +5,6 @@ use crate::error::{Error, Result, Stage};
 use crate::gpu::call::Call;
 use crate::gpu::output::{DepthOrder, Output, PassFormats, PassKind};
 use crate::gpu::render_pass::color_formats;
-use crate::shader::generated::OWN_VECTORS_ID;
 use crate::shader::{Kind, Module, Variant, depth_less, words};
 use ash::vk;
 
@@ -17,7 +16,7 @@ impl Pipelines {
         output: &Output,
     ) -> Result<vk::Pipeline> {
         let own = variant.constants();
-        let constants = || own.into_iter().chain([(OWN_VECTORS_ID, self.own_vectors)]);
+        let constants = || own.into_iter().chain(self.constants.values());
         let entries: Vec<_> = constants()
             .zip(0u32..)
             .map(|((id, _), n)| {
@@ -102,18 +101,19 @@ impl Pipelines {
         ];
         // Boxes and hulls have no vertices: their corners are made from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly =
-            vk::PipelineInputAssemblyStateCreateInfo::default().topology(if kind != Kind::Box {
-                vk::PrimitiveTopology::TRIANGLE_LIST
-            } else {
-                vk::PrimitiveTopology::TRIANGLE_STRIP
-            });
+        let is_squares = matches!(kind, Kind::Spots | Kind::Bins);
+        let topology = match kind {
+            Kind::Box => vk::PrimitiveTopology::TRIANGLE_STRIP,
+            _ if is_squares && self.constants.large_points => vk::PrimitiveTopology::POINT_LIST,
+            _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(if kind == Kind::Bins {
+            .cull_mode(if is_squares {
                 vk::CullModeFlags::NONE
             } else {
                 vk::CullModeFlags::BACK

@@ -8,7 +8,7 @@ layout(location = 11) flat out vec4 first_quadric;
 
 void main()
 {
-    Instance i = begin();
+    Instance i = begin(uint(gl_InstanceIndex));
     uint at = this_frustum();
     gl_Position = clip_of(i, frustum_corner(at));
 
