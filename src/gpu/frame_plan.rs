@@ -229,7 +229,10 @@ impl Renderer {
                 let several = several || copies.len() > 1;
                 (Kind::Compute, searched.tiled(*cut, several))
             }
-            Work::Bins(_) if in_pass => (Kind::Spots, searched),
+            Work::Bins(shown) if in_pass => {
+                let spans = searched.in_spans().filter(|_| shown.beams);
+                (Kind::Spots, spans.unwrap_or(searched))
+            }
             Work::Bins(shown) if entry.drawn().placements().len() > 1 => {
                 let several = several || !shown.alone.is_empty();
                 (Kind::Compute, searched.dispatched(Dispatch::Bins, several))
@@ -269,7 +272,7 @@ impl Renderer {
         }
         if kind == Kind::Spots {
             let pipelines = self.device.pipelines()?;
-            entry.draw.bins = pipelines.get(variant, Kind::Bins, &self.output, self.owner)?;
+            entry.draw.bins = pipelines.get(searched, Kind::Bins, &self.output, self.owner)?;
         }
         if entry.draw.key != Some((variant, kind)) {
             let pipelines = self.device.pipelines()?;
@@ -356,7 +359,8 @@ impl Entry {
             .is_some_and(|s| takes_lists(subgroup_size, s));
         Some(Batch {
             whole,
-            lists: lists.then_some(object.profile.radius),
+            half_side: object.profile.radius,
+            lists,
             placements: object.placements(),
             first: self.instances.start,
             shape,

@@ -189,7 +189,7 @@ pub struct Module {
     pub features: Features,
     /// What it stores.
     pub output: Output,
-    /// Of the compute stage.
+    /// Of the compute stage; of squares of one copy whether they are held to a span.
     pub dispatch: Dispatch,
 }
 
@@ -237,6 +237,11 @@ impl Module {
         Self {
             search,
             output: if shaded { Output::Color } else { Output::Depth },
+            dispatch: if entry == Entry::SpotsVertex {
+                self.dispatch
+            } else {
+                Dispatch::Rectangle
+            },
             ..Self::plain(entry)
         }
     }
@@ -318,7 +323,8 @@ impl Module {
         }
         add(&self.features);
         add(&self.output);
-        if self.entry == Entry::Trace {
+        let is_told = matches!(self.entry, Entry::Box | Entry::SpotsVertex);
+        if self.entry == Entry::Trace || (is_told && self.dispatch != Dispatch::Rectangle) {
             add(&self.dispatch);
         }
         name
@@ -391,6 +397,11 @@ pub fn modules() -> Vec<Module> {
         }));
     }
     all.push(Module {
+        search: Search::Quadric,
+        dispatch: Dispatch::Beams,
+        ..Module::plain(Entry::SpotsVertex)
+    });
+    all.push(Module {
         search: Search::Relaxed,
         ..Module::plain(Entry::BoxVertex)
     });
@@ -407,6 +418,13 @@ pub fn modules() -> Vec<Module> {
             for search in SEARCHES {
                 if has(search, features, output, Dispatch::Rectangle) {
                     all.push(fragment(Entry::Box, search));
+                }
+                let is_planes = output == O::Planes && features != Features::Full;
+                if shaded && search == Search::Quadric && !is_planes {
+                    all.push(Module {
+                        dispatch: Dispatch::Beams,
+                        ..fragment(Entry::Box, search)
+                    });
                 }
                 // Few squares show many copies: those of textured ones are drawn by the full module.
                 if shaded

@@ -104,6 +104,7 @@ impl Variant {
                 }
                 if copies && variant.takes_bins() {
                     all.extend([(variant, Kind::Spots), (variant, Kind::Bins)]);
+                    all.extend(variant.in_spans().map(|v| (v, Kind::Spots)));
                 }
                 all.push((variant, Kind::Box));
             }

@@ -15,7 +15,7 @@ use std::mem::{offset_of, size_of};
 use std::sync::Arc;
 
 /// How many modules there are.
-const MODULES: usize = 220;
+const MODULES: usize = 222;
 
 /// Opcodes and decorations of the SPIR-V specification that matter here.
 mod op {

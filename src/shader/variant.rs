@@ -237,6 +237,14 @@ impl Variant {
         }
     }
 
+    /// The same of squares of one copy whose rays are held to a span before they are searched; none
+    /// of other searches.
+    #[must_use]
+    pub fn in_spans(self) -> Option<Self> {
+        let spans = self.search == Search::Quadric && self.cells == 0;
+        spans.then(|| self.tiled(false, true))
+    }
+
     /// The same of lists of tiles: of those whose patches are listed, by the length of lists, and,
     /// where there is a cut, of those whose rays enter box and solid at once.
     #[must_use]

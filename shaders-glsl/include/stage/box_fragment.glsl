@@ -20,8 +20,12 @@ bool trace_box(uvec2 pixel, out Hit hit)
     take_over();
     take_over_box();
     PixelRays rays = varying_rays();
+#if DISPATCH == DISPATCH_BEAMS
+    return trace_between(ray_origin(rays, pixel), ray_direction(rays, pixel), box_axis.xy, hit);
+#else
     vec2 span = vec2(ray_dir_00.w < 0.0 ? entered() - rays.base : EVERYWHERE.x, EVERYWHERE.y);
     return trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
+#endif
 }
 
 #endif

@@ -4,7 +4,7 @@
 #include "stage/varyings.glsl"
 
 layout(location = 11) flat VARYING vec4 box_bounds;
-layout(location = 12) flat VARYING vec4 box_axis;
+layout(location = 12) flat VARYING vec4 box_axis; // of DISPATCH_BEAMS x and y are the first and the last t
 #if READS_MAP
 layout(location = 13) flat VARYING vec4 box_map;
 #endif
@@ -34,7 +34,11 @@ void hand_over_box()
 void take_over_box()
 {
     solid.bounds = box_bounds;
+#if DISPATCH == DISPATCH_BEAMS
+    solid.axis.zw = box_axis.zw;
+#else
     solid.axis = box_axis;
+#endif
 #if READS_MAP
     solid.map = box_map;
 #endif

@@ -49,8 +49,10 @@ pub(crate) struct Batch<'a> {
     pub outer: Option<&'a Outer>,
     /// The surface of solids of which the box cuts nothing.
     pub whole: Option<&'a OffsetSurface>,
-    /// Half of the box's side, where patches may be listed for bins of one copy.
-    pub lists: Option<f64>,
+    /// Half of the box's side.
+    pub half_side: f64,
+    /// Whether patches may be listed for bins of one copy.
+    pub lists: bool,
 }
 
 /// What a batch draws.
@@ -69,6 +71,8 @@ pub(crate) struct Shown {
     pub copies: Vec<u32>,
     /// Whether the eye is outside of all of them, and the box cuts none.
     pub outside: bool,
+    /// Whether what a square's rays may meet can besides be told from the middle ray.
+    pub beams: bool,
 }
 
 /// Bins of all batches and their lists, as the shader's one buffer of words holds them
@@ -103,11 +107,11 @@ impl Bins {
     pub fn new(view: &View, batches: &[Batch], fragments: bool, room: u64) -> Self {
         let forms = Forms::new(view);
         let mut items: Vec<Item> = Vec::new();
-        let mut outside = Vec::with_capacity(batches.len());
+        let mut told = Vec::with_capacity(batches.len());
         let mut visitors = Vec::with_capacity(batches.len());
         for (number, batch) in (0u32..).zip(batches) {
             let apart = AtomicBool::new(batch.whole.is_some());
-            let even = AtomicBool::new(batch.lists.is_some());
+            let even = AtomicBool::new(batch.whole.is_some());
             const CHUNK: usize = 1024;
             items.par_extend(
                 batch
@@ -123,7 +127,7 @@ impl Bins {
                             if batch.whole.is_some_and(|s| !is_apart(s, spread.eye)) {
                                 apart.store(false, Relaxed);
                             }
-                            if batch.lists.is_some_and(|radius| is_lopsided(radius, copy)) {
+                            if is_lopsided(batch.half_side, copy) {
                                 even.store(false, Relaxed);
                             }
                             Some(Item {
@@ -136,8 +140,9 @@ impl Bins {
                     }),
             );
             let apart = apart.into_inner();
-            outside.push(apart);
-            visitors.push(match (fragments, apart && even.into_inner()) {
+            let beams = apart && even.into_inner();
+            told.push((apart, beams));
+            visitors.push(match (fragments, beams && batch.lists) {
                 (true, _) => Visitor::Fragments,
                 (false, false) => Visitor::Groups,
                 (false, true) => Visitor::GroupsAndLists,
@@ -163,10 +168,10 @@ impl Bins {
         if u64::from(list_words(alone.sum::<usize>() as u32)) > room {
             parts = filled(&vec![Visitor::Groups; batches.len()]);
         }
-        Self::joined(&parts, batches, &outside)
+        Self::joined(&parts, batches, &told)
     }
 
-    fn joined(parts: &[Vec<Part>], batches: &[Batch], outside: &[bool]) -> Self {
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], told: &[(bool, bool)]) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
         let mut spots: Vec<[u32; 4]> = Vec::new();
         let mut lists = 0;
@@ -202,7 +207,8 @@ impl Bins {
                 spots: first_spot..spots.len() as u32,
                 lists: 0,
                 copies: copies.map(|(copy, _)| copy).collect(),
-                outside: outside[number],
+                outside: told[number].0,
+                beams: told[number].1,
             });
         }
         // Behind all bins.
