@@ -10,9 +10,9 @@ use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use revmap_lab::report::plan::{plain, rbm_baseline};
+use revmap_lab::report::suite::{Extent, views};
 use revmap_lab::report::view::View;
 use revmap_lab::report::{budget, crowds};
-use revmap_lab::report::suite::{Extent, views};
 use std::time::Instant;
 
 const ROUNDS: usize = 8;
@@ -108,7 +108,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         println!();
         if view.solids() > 1 {
-            println!("   a new view asks the CPU: {}", updates(&mut drawn[1].0, &view)?);
+            println!(
+                "   a new view asks the CPU: {}",
+                updates(&mut drawn[1].0, &view)?
+            );
         }
     }
     for (method, sum) in methods.iter().zip(&sums) {
