@@ -353,7 +353,7 @@ impl Entry {
         Some(Batch {
             whole,
             lists: lists.then_some(object.profile.radius),
-            placements: object.placements(),
+            placements: &object.instances,
             first: self.instances.start,
             shape,
             inner: held.and_then(|s| s.inner()),
