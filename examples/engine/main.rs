@@ -102,7 +102,7 @@ fn main() -> Fallible<()> {
     )?;
     let mut row = Object::new("spindles", Arc::new(spindle));
     row.color = [0.25, 0.5, 0.35];
-    row.instances = standing(0.0);
+    row.instances = standing(0.0).into();
     let row = renderer.add(row)?;
 
     for frame in 0..COUNT {

@@ -230,7 +230,8 @@ impl Renderer {
                 (Kind::Compute, searched.tiled(*cut, several))
             }
             Work::Bins(shown) if in_pass => {
-                let spans = searched.in_spans().filter(|_| shown.beams);
+                let held = shown.beams && prepared.proxy.is_some();
+                let spans = searched.in_spans().filter(|_| held);
                 (Kind::Spots, spans.unwrap_or(searched))
             }
             Work::Bins(shown) if entry.drawn().placements().len() > 1 => {
@@ -361,7 +362,7 @@ impl Entry {
             whole,
             half_side: object.profile.radius,
             lists,
-            placements: object.placements(),
+            placements: &object.instances,
             first: self.instances.start,
             shape,
             inner: held.and_then(|s| s.inner()),

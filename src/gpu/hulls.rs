@@ -3,7 +3,7 @@
 use super::bins::{Rectangle, rectangle};
 use super::offset_surface::OffsetSurface;
 use super::view::View;
-use crate::scene::{Clip, Object, Placement};
+use crate::scene::{Clip, Cluster, Object, Placement};
 use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -57,6 +57,21 @@ pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
     place.x > r_max + CLEARANCE || place.y < z_min - CLEARANCE || place.y > z_max + CLEARANCE
 }
 
+/// Whether [`is_apart`] may be false of one of a cluster's copies, whose axis is so far from the
+/// middle of their box; `forward`: the view's.
+pub(crate) fn may_hold_eye(
+    surface: &OffsetSurface,
+    axis: f64,
+    cluster: &Cluster,
+    eye: DVec3,
+    forward: DVec3,
+) -> bool {
+    let [r_max, z_min, z_max] = surface.extent();
+    let beside = axis + r_max + CLEARANCE;
+    let along = z_min.abs().max(z_max.abs()) + CLEARANCE;
+    cluster.around(eye, [beside, along]).along(forward)[0] <= 0.0
+}
+
 /// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,
 /// `(p - eye) . forward` is its depth.
 fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
@@ -75,6 +90,13 @@ const LOPSIDED: f64 = 32.0;
 pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()
+}
+
+/// Whether a cluster may hold a copy of which [`is_lopsided`] is true.
+pub(crate) fn may_be_lopsided(radius: f64, cluster: &Cluster) -> bool {
+    let sides = DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
+    let most = (cluster.most_scale * sides).max_element();
+    most > LOPSIDED * (cluster.least_scale * sides).min_element()
 }
 
 /// How wide shells may be that a box's sides cut, over half the box's side. Depths of triangles that

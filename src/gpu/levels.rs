@@ -4,13 +4,11 @@
 
 use super::bins::{Cylinder, Forms};
 use super::view::View;
-use crate::scene::{Object, Placement};
+use crate::scene::{Cluster, Object, Placement};
 use crate::settings::Tolerance;
 use crate::surface::FitOptions;
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use std::f64::consts::SQRT_2;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The coarsest level: patches within a 36th of the height.
 pub(crate) const COARSEST: u8 = 12;
@@ -57,9 +55,7 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
         .fold(1.0, f64::max)
     };
     let pixel = view.dir_x.length().min(view.dir_y.length());
-    let of = |copy: &Placement| {
-        let [nearest, farthest] = depths(object.profile.radius, copy, view);
-        let scale = copy.scale.max_element();
+    let of = |scale: f64, [nearest, farthest]: [f64; 2]| {
         if farthest <= 0.0 {
             0.0
         } else if view.parallel {
@@ -70,16 +66,23 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
         }
     };
     let shows = may_show(object, view, all);
-    // Of numbers that are not negative the largest has the largest bits.
-    let most = AtomicU64::new(0);
-    let copies = object.placements().par_iter().with_min_len(4096);
-    copies.for_each(|copy| {
-        let bits = of(copy).to_bits();
-        if bits > most.load(Ordering::Relaxed) && shows(copy) {
-            most.fetch_max(bits, Ordering::Relaxed);
-        }
-    });
-    f64::from_bits(most.into_inner()) / height
+    let radius = object.profile.radius;
+    let at_most = |cluster: &Cluster| {
+        let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
+        of(cluster.most_scale.max_element(), around.along(view.forward)) * (1.0 + 1e-9)
+    };
+    let least = object.least_of_copies(
+        |cluster| -at_most(cluster),
+        |copy| {
+            let pixels = of(copy.scale.max_element(), depths(radius, copy, view));
+            if pixels > 0.0 && shows(copy) {
+                -pixels
+            } else {
+                0.0
+            }
+        },
+    );
+    -least / height
 }
 
 /// Whether a copy may be in the picture; `all`: taken for granted.

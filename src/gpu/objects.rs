@@ -6,7 +6,7 @@ use super::renderer::Renderer;
 use crate::error::Result;
 #[cfg(doc)]
 use crate::error::Stage;
-use crate::scene::{Lighting, Object, Offset, Placement};
+use crate::scene::{Copies, Lighting, Object, Offset, Placement};
 
 impl Renderer {
     /// Adds an object; it is drawn from the next prepared frame on, after those that were there
@@ -128,10 +128,9 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::set`].
-    pub fn set_instances(&mut self, id: ObjectId, instances: Vec<Placement>) -> Result<()> {
-        for placement in &instances {
-            placement.check()?;
-        }
+    pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
+        let instances = instances.into();
+        instances.check(|all| all.iter().try_for_each(Placement::check))?;
         let count = instances.len().max(1);
         if self.entry(id)?.placements_len() != count {
             self.resize_instances(id, count)?;

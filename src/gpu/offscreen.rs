@@ -14,11 +14,11 @@ use super::view::View;
 use crate::antialias::Solids;
 use crate::error::{Error, Result, Stage};
 use crate::frame::Frame;
-use crate::scene::{CameraFrame, Growth, Object, Placement, Scene};
+use crate::scene::{CameraFrame, Cluster, Growth, Object, Placement, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
 use glam::DVec3;
-use rayon::prelude::*;
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -421,11 +421,10 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
                 .dot(half);
             [depth - reach, depth + reach]
         };
-        let all = object.placements().par_iter().with_min_len(4096).map(range);
-        let none = || [f64::INFINITY, 0.0];
-        let [nearest, farthest] = all.reduce(none, |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        low = low.min(nearest);
-        high = high.max(farthest);
+        let farthest = [radius * SQRT_2, middle_z.abs() + half.z];
+        let of = |cluster: &Cluster| cluster.around(camera.eye, farthest).along(camera.forward);
+        low = low.min(object.least_of_copies(|c| of(c)[0], |p| range(p)[0]));
+        high = high.max(-object.least_of_copies(|c| -of(c)[1], |p| -range(p)[1]));
     }
     if high <= 0.0 {
         return [1.0, 2.0];

@@ -198,10 +198,10 @@ fn object(object: &Object) -> Result<()> {
         }
     }
     placement(&object.placement)?;
-    for (i, copy) in object.instances.iter().enumerate() {
-        placement(copy).map_err(|e| under("instances", i, e))?;
-    }
-    Ok(())
+    object.instances.check(|copies| {
+        let mut all = copies.iter().enumerate();
+        all.try_for_each(|(i, copy)| placement(copy).map_err(|e| under("instances", i, e)))
+    })
 }
 
 fn offset(offset: Offset) -> Result<()> {
@@ -391,7 +391,7 @@ mod tests {
             s.objects[0].placement.rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, f64::NAN)
         });
         refused("object.1.instances.1.scale", |s| {
-            s.objects[1].instances = vec![Placement::default(); 2];
+            s.objects[1].instances = vec![Placement::default(); 2].into();
             s.objects[1].instances[1].scale.x = 0.0;
         });
     }

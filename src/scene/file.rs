@@ -308,7 +308,7 @@ impl Reader {
         object.mirror = keys.flags("mirror")?.unwrap_or(object.mirror);
         object.placement = placement(&keys)?;
         if let Some(file) = keys.file("instances", &self.folder)? {
-            object.instances = instances::load(&file)?;
+            object.instances = instances::load(&file)?.into();
             if !self.instances.contains(&file) {
                 self.instances.push(file);
             }

@@ -26,6 +26,8 @@
 
 mod camera;
 mod check;
+mod clusters;
+mod copies;
 #[cfg(feature = "scene-file")]
 pub mod file;
 mod growth;
@@ -41,6 +43,8 @@ mod values;
 mod warnings;
 
 pub use camera::CameraFrame;
+pub(crate) use clusters::Cluster;
+pub use copies::Copies;
 pub use growth::{Clip, GrownObject, GrownProfiles, Growth};
 pub use object::{BumpForm, Object, Offset, Placement, Specular, Texturing};
 

@@ -1,7 +1,7 @@
 //! One solid of revolution: what is turned, what covers it, how far its surface stands off, where
 //! it stands.
 
-use super::Clip;
+use super::{Clip, Cluster, Copies};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
 use crate::profile::Profile;
 use glam::{DQuat, DVec3};
@@ -40,7 +40,7 @@ pub struct Object {
     pub placement: Placement,
     /// Where its copies stand; empty: once, at `placement`. With copies, each row's placement is
     /// used instead.
-    pub instances: Vec<Placement>,
+    pub instances: Copies,
 }
 
 impl Object {
@@ -67,7 +67,7 @@ impl Object {
             repeat: [1; 3],
             mirror: [false; 3],
             placement: Placement::default(),
-            instances: Vec::new(),
+            instances: Copies::default(),
         }
     }
 
@@ -99,6 +99,19 @@ impl Object {
         self.placement == other.placement
             && self.same_look(other)
             && self.instances == other.instances
+    }
+
+    /// The least that `value` says of any of its copies, where `bound` is not more than what it
+    /// says of a cluster's copies.
+    pub(crate) fn least_of_copies(
+        &self,
+        bound: impl Fn(&Cluster) -> f64,
+        value: impl Fn(&Placement) -> f64,
+    ) -> f64 {
+        if self.instances.is_empty() {
+            return value(&self.placement);
+        }
+        self.instances.clusters().least(bound, value)
     }
 
     /// Where its axis stands, object units from the middle of the box.

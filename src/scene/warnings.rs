@@ -126,7 +126,7 @@ mod tests {
     fn shadows_of_a_crowd_are_slow() {
         let crowd = |s: &mut Scene| {
             let object = &mut s.objects[0];
-            object.instances = vec![object.placement; CROWD + 1];
+            object.instances = vec![object.placement; CROWD + 1].into();
         };
         warns("shadow: 1001 solids", |s| {
             crowd(s);

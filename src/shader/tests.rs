@@ -231,7 +231,7 @@ fn modules_are_few_and_small() {
             .unwrap()
             .len();
     }
-    assert!(packed < 2_500_000, "{packed} bytes in all");
+    assert!(packed < 2_520_000, "{packed} bytes in all");
 }
 
 /// Locations of a module's inputs or outputs, by the SPIR-V number of the storage class.

@@ -62,7 +62,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
                 [turn, 0.0, 0.4],
                 [0.5, 0.5, 0.9],
             ),
-        ];
+        ]
+        .into();
         crowd.objects.push(object);
     }
     all.push(("crowd", crowd));

@@ -200,7 +200,7 @@ fn growing_follows_every_change() {
         &|o| o.offset.extend = 0.02,
         &|o| o.offset.extend = 0.12,
         &|o| o.placement.position.x += 0.2,
-        &|o| o.instances = vec![o.placement, copy],
+        &|o| o.instances = vec![o.placement, copy].into(),
         &|o| o.instances[0].position.y += 0.1,
         &|o| o.clip = Clip::Box,
         &|o| {

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
 use revmap::gpu::{DrawPath, Offscreen};
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Placement, Scene, Shadow};
+use revmap::scene::{Camera, Copies, Light, Object, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -174,7 +174,7 @@ fn a_crowd_is_as_many_single_objects() {
         .flat_map(|object| {
             object.instances.iter().map(|placement| Object {
                 placement: *placement,
-                instances: Vec::new(),
+                instances: Copies::default(),
                 ..object.clone()
             })
         })

@@ -14,7 +14,8 @@ fn crowd() -> Scene {
     let mut copies = Object::new("copies", Arc::new(shapes::jewel()));
     copies.instances = [-0.5, 0.1, 0.7]
         .map(|y| placement([0.4, y, 0.0], [0.0; 3], [0.5; 3]))
-        .to_vec();
+        .to_vec()
+        .into();
     scene.objects.extend([several, copies]);
     scene
 }

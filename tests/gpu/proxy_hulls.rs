@@ -28,7 +28,8 @@ fn a_crowd_in_one_depth_buffer() {
             object.instances = vec![
                 object.placement,
                 placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]),
-            ];
+            ]
+            .into();
         }
         // Copies too small for lists of tiles of their own.
         if n == 4 {

@@ -48,7 +48,7 @@ fn what_is_refused_changes_nothing() {
         }),
         // Two more instances, and no cones for any of them.
         ("single-valued", Solver::Cone, |s| {
-            s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3];
+            s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3].into();
             s.objects[0].profile = shapes::glass().into();
             s.objects.push(s.objects[0].clone());
         }),

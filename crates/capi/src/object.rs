@@ -93,7 +93,7 @@ impl RevmapObjectInfo {
         object.clip = enums::clip(self.clip)?;
         object.mirror = self.mirror.map(|flag| flag != 0);
         object.placement = self.placement.into();
-        object.instances = placements(instances);
+        object.instances = placements(instances).into();
         Ok(object)
     }
 }

@@ -6,6 +6,9 @@
 // The first t is behind the last where the beam meets nothing. The `count` rows are nodes of the tree, from this vector on.
 vec2 beam_span(Beam beam, uint first, uint count)
 {
+    // Divided anew: of a plate a thousand times as wide as high a rounding of the inverse loses pixels.
+    float nearest = -beam.b / beam.a;
+    float least = max(dot(beam.o.xy, beam.o.xy) - beam.a * nearest * nearest, 0.0);
     vec2 span = vec2(1e30, -1e30);
     for (uint k = 0u; k < count; ++k) {
         // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes
@@ -14,10 +17,10 @@ vec2 beam_span(Beam beam, uint first, uint count)
         float radius = sqrt(max(most, 0.0)) + beam.width;
         float low = (float(k) / float(count) - beam.width - beam.o.z) * beam.per_z;
         float high = (float(k + 1u) / float(count) + beam.width - beam.o.z) * beam.per_z;
-        float reach = sqrt(max(radius * radius - beam.least, 0.0) * beam.inverse_a);
-        float enter = max(min(low, high), beam.nearest - reach);
-        float leave = min(max(low, high), beam.nearest + reach);
-        bool meets = most > 0.0 && radius * radius > beam.least && enter <= leave;
+        float reach = sqrt(max(radius * radius - least, 0.0) / beam.a);
+        float enter = max(min(low, high), nearest - reach);
+        float leave = min(max(low, high), nearest + reach);
+        bool meets = most > 0.0 && radius * radius > least && enter <= leave;
         span = meets ? vec2(min(span.x, enter), max(span.y, leave)) : span;
     }
     return vec2(max(span.x, -beam.base), span.y);

@@ -1,27 +1,38 @@
 //! Pixels that solids are proven to cover, and how deep: squares of 8 x 8 pixels, a bit for each,
-//! with one depth.
+//! with one depth for each row, as on a field rows are as deep as what stands there.
 
 use super::inner::{Inner, Piece};
 use super::seen::{MARGIN, SLACK, Spread};
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 
 /// Pixels along a square's side.
 pub(super) const SIDE: u32 = 8;
 
-/// Some rows of squares.
+/// Some columns of squares.
 pub(super) struct Cover {
     squares: Vec<Square>,
-    across: u32,
-    /// In pixels.
-    pub top: u32,
-    pub bottom: u32,
+    /// In squares.
+    columns: Range<u32>,
+    down: u32,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Square {
     covered: u64,
-    /// Of all that covers.
-    depth: f32,
+    /// Of all that covers, in each row.
+    depths: [f32; SIDE as usize],
+}
+
+impl Square {
+    /// The pixels that are covered by what is nearer than `near`.
+    fn hidden(&self, near: f32) -> u64 {
+        if self.covered == 0 {
+            return 0;
+        }
+        let behind = self.depths.map(|depth| if near > depth { 0xff } else { 0 });
+        self.covered & u64::from_le_bytes(behind)
+    }
 }
 
 /// Bits from column `low` to `high` in every row from `top` to `bottom`, all included.
@@ -38,44 +49,67 @@ pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
 }
 
 impl Cover {
-    /// Of squares across the picture, in rows of squares from `first` to below `end`.
-    pub fn new(across: u32, first: u32, end: u32) -> Self {
-        let none = Square {
-            covered: 0,
-            depth: 0.0,
-        };
+    /// Of these columns of squares in so many rows.
+    pub fn new(columns: Range<u32>, down: u32) -> Self {
         Self {
-            squares: vec![none; (across * (end - first)) as usize],
-            across,
-            top: first * SIDE,
-            bottom: end * SIDE,
+            squares: vec![Square::default(); columns.len() * down as usize],
+            columns,
+            down,
         }
+    }
+
+    /// Whether some of these pixels are here.
+    pub fn meets(&self, [x0, _, x1, _]: [u16; 4]) -> bool {
+        u32::from(x0) < SIDE * self.columns.end && u32::from(x1) >= SIDE * self.columns.start
+    }
+
+    /// Whether nothing that is not nearer than `near` will ever show in these pixels, whatever else
+    /// comes to cover others of the rows that they are in.
+    pub fn hides(&self, pixels: [u16; 4], near: f32) -> bool {
+        let [x0, y0, x1, y1] = self.squares_of(pixels);
+        let [_, top, _, bottom] = pixels.map(u32::from);
+        (y0..=y1).all(|y| {
+            let rows = within([0, y], [0, top, SIDE - 1, bottom]);
+            let row = &self.squares[self.at(x0, y)..=self.at(x1, y)];
+            row.iter().all(|square| !square.hidden(near) & rows == 0)
+        })
+    }
+
+    /// The squares here that hold some of these pixels: left, top, right, bottom, all included.
+    fn squares_of(&self, pixels: [u16; 4]) -> [u32; 4] {
+        let [x0, y0, x1, y1] = pixels.map(|pixel| u32::from(pixel) / SIDE);
+        let Range { start, end } = self.columns;
+        [x0.max(start), y0, x1.min(end - 1), y1.min(self.down - 1)]
+    }
+
+    /// The place of the square in this column and row.
+    fn at(&self, x: u32, y: u32) -> usize {
+        (y * (self.columns.end - self.columns.start) + x - self.columns.start) as usize
     }
 
     /// Whether some of these pixels may show what is not nearer than `near`.
     pub fn is_open(&self, pixels: [u16; 4], near: f32) -> bool {
-        let [x0, y0, x1, y1] = pixels.map(u32::from);
-        let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));
+        let [x0, y0, x1, y1] = self.squares_of(pixels);
+        let pixels = pixels.map(u32::from);
         let open = |x: u32, y: u32| {
-            let square = self.squares[((y - self.top / SIDE) * self.across + x) as usize];
-            near <= square.depth || within([x, y], [x0, y0, x1, y1]) & !square.covered != 0
+            within([x, y], pixels) & !self.squares[self.at(x, y)].hidden(near) != 0
         };
-        (y0 / SIDE..=y1 / SIDE).any(|y| (x0 / SIDE..=x1 / SIDE).any(|x| open(x, y)))
+        (y0..=y1).any(|y| (x0..=x1).any(|x| open(x, y)))
     }
 
     /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
-    /// the square's number and the pixels. `rows`: of each row of pixels that is here the ends of
-    /// what may show, where they are known.
+    /// the square's place in the picture and the pixels. `rows`: of each row of these pixels the
+    /// ends of what may show, where they are known.
     pub fn open(
         &self,
         pixels: [u16; 4],
         rows: Option<&[[f64; 2]]>,
         near: f32,
-        mut visit: impl FnMut(u32, u64),
+        mut visit: impl FnMut([u32; 2], u64),
     ) {
+        let [left, first, right, last] = self.squares_of(pixels);
         let [x0, y0, x1, y1] = pixels.map(u32::from);
-        let (y0, y1) = (y0.max(self.top), y1.min(self.bottom - 1));
-        for y in y0 / SIDE..=y1 / SIDE {
+        for y in first..=last {
             let (top, bottom) = (y0.max(y * SIDE) - y * SIDE, y1.min(y * SIDE + 7) - y * SIDE);
             let (mut from, mut to) = (x0, x1);
             let mut spans = [[1u32, 0]; SIDE as usize];
@@ -83,8 +117,8 @@ impl Cover {
                 (from, to) = (u32::MAX, 0);
                 for k in top..=bottom {
                     let [low, high] = rows[(y * SIDE + k - y0) as usize];
-                    let low = (low - 0.5).ceil().max(f64::from(x0));
-                    let high = (high - 0.5).floor().min(f64::from(x1));
+                    let low = first_pixel(low).max(x0 as i32);
+                    let high = last_pixel(high).min(x1 as i32);
                     if low <= high {
                         spans[k as usize] = [low as u32, high as u32];
                         (from, to) = (from.min(low as u32), to.max(high as u32));
@@ -94,25 +128,19 @@ impl Cover {
                     continue;
                 }
             }
-            for x in from / SIDE..=to / SIDE {
-                let number = (y - self.top / SIDE) * self.across + x;
-                let square = self.squares[number as usize];
-                let mut bits = if rows.is_some() {
-                    (0u32..).zip(&spans).fold(0, |all, (k, &[low, high])| {
-                        let (left, right) = (low.max(x * SIDE), high.min(x * SIDE + 7));
-                        if left > right {
-                            return all;
-                        }
-                        all | block([left - x * SIDE, k, right - x * SIDE, k])
-                    })
+            for x in left.max(from / SIDE)..=right.min(to / SIDE) {
+                let held = if rows.is_some() {
+                    u64::from_le_bytes(spans.map(|[low, high]| {
+                        let [low, end] =
+                            [low, high + 1].map(|at| at.clamp(x * SIDE, x * SIDE + SIDE));
+                        (0xffu32 << (low - x * SIDE) & !(0xff << (end - x * SIDE))) as u8
+                    }))
                 } else {
                     within([x, y], [x0, y0, x1, y1])
                 };
-                if near > square.depth {
-                    bits &= !square.covered;
-                }
+                let bits = held & !self.squares[self.at(x, y)].hidden(near);
                 if bits != 0 {
-                    visit(number, bits);
+                    visit([x, y], bits);
                 }
             }
         }
@@ -159,64 +187,87 @@ impl Cover {
 
     /// Marks the pixels whose centres a flat convex polygon in the solid covers.
     fn polygon<const N: usize>(&mut self, corners: &[DVec3; N]) {
-        let flat = corners.map(|c| c.truncate() / c.z);
-        let depth = corners.iter().fold(0.0f64, |m, c| m.max(c.z)) * (1.0 + SLACK);
-        let (mut top, mut bottom, mut area) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        for (k, p) in flat.iter().enumerate() {
-            (top, bottom) = (top.min(p.y), bottom.max(p.y));
-            area += p.perp_dot(flat[(k + 1) % N]);
+        let mut flat = [DVec2::ZERO; N];
+        let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0f64);
+        for (at, corner) in flat.iter_mut().zip(corners) {
+            *at = corner.truncate() / corner.z;
+            (low, high, depth) = (low.min(*at), high.max(*at), depth.max(corner.z));
         }
-        let first = (top - 0.5 + MARGIN).ceil().max(f64::from(self.top));
-        let last = (bottom - 0.5 - MARGIN)
-            .floor()
-            .min(f64::from(self.bottom) - 1.0);
-        if first > last || area == 0.0 || !area.is_finite() {
+        let depth = (depth * (1.0 + SLACK)) as f32;
+        // Much of what is far away holds the middle of no pixel.
+        let ends = [self.columns.start, self.columns.end].map(|x| (x * SIDE) as i32);
+        let left = first_pixel(low.x + MARGIN).max(ends[0]);
+        let right = last_pixel(high.x - MARGIN).min(ends[1] - 1);
+        let mut first = first_pixel(low.y + MARGIN).max(0);
+        let mut last = last_pixel(high.y - MARGIN).min((self.down * SIDE) as i32 - 1);
+        if first > last || left > right {
             return;
         }
-        let sense = area.signum();
-        // Of each edge x >= at + step y, or x <= that, or a bound on y alone.
-        let width = f64::from(self.across * SIDE);
-        let edges: [(DVec2, f64, f64); N] = std::array::from_fn(|k| {
+        let area: f64 = (0..N).map(|k| flat[k].perp_dot(flat[(k + 1) % N])).sum();
+        if area == 0.0 || !area.is_finite() {
+            return;
+        }
+        // Bounds on x that edges are: at the top of the picture, and from row to row.
+        let mut lows = [[f64::from(ends[0]), 0.0]; N];
+        let mut highs = [[f64::from(ends[1]), 0.0]; N];
+        for k in 0..N {
             let (p, q) = (flat[k], flat[(k + 1) % N]);
-            let n = (q - p).perp() * sense;
-            (n, n.dot(p) + MARGIN * (n.x.abs() + n.y.abs()), 1.0 / n.x)
-        });
-        for y in first as u32..=last as u32 {
+            let n = (q - p).perp() * area.signum();
+            let least = n.dot(p) + MARGIN * (n.x.abs() + n.y.abs());
+            if n.x.abs() > 1e-9 * n.y.abs() {
+                let bounds = if n.x > 0.0 { &mut lows } else { &mut highs };
+                bounds[k] = [least / n.x, -n.y / n.x];
+            } else if n.y > 0.0 {
+                first = first.max(first_pixel(least / n.y));
+            } else if n.y < 0.0 {
+                last = last.min(last_pixel(least / n.y));
+            }
+        }
+        for y in first..=last {
             let row = f64::from(y) + 0.5;
-            let (mut low, mut high) = (0.5f64, width - 0.5);
-            for (n, least, inverse) in &edges {
-                let rest = least - n.y * row;
-                if n.x.abs() > 1e-9 * n.y.abs() {
-                    let x = rest * inverse;
-                    if n.x > 0.0 {
-                        low = low.max(x);
-                    } else {
-                        high = high.min(x);
-                    }
-                } else if rest > 0.0 {
-                    high = -1.0;
-                }
-            }
-            let (low, high) = ((low - 0.5).ceil(), (high - 0.5).floor());
-            if low <= high {
-                self.span(y, low as u32, high as u32, depth as f32);
-            }
+            let at = |[begin, step]: &[f64; 2]| begin + step * row;
+            let low = lows.iter().map(at).fold(f64::NEG_INFINITY, f64::max);
+            let high = highs.iter().map(at).fold(f64::INFINITY, f64::min);
+            let (low, high) = (first_pixel(low).max(left), last_pixel(high).min(right));
+            self.span(y as u32, low, high, depth);
         }
     }
 
-    fn span(&mut self, y: u32, low: u32, high: u32, depth: f32) {
-        let line = (y - self.top) / SIDE * self.across;
+    /// Marks pixels of a row, none if the last comes before the first.
+    fn span(&mut self, y: u32, low: i32, high: i32, depth: f32) {
+        if low > high {
+            return;
+        }
+        let (low, high) = (low as u32, high as u32);
         for x in low / SIDE..=high / SIDE {
             let left = low.max(x * SIDE) - x * SIDE;
             let right = high.min(x * SIDE + 7) - x * SIDE;
             let bits = block([left, y % SIDE, right, y % SIDE]);
-            let square = &mut self.squares[(line + x) as usize];
+            let at = self.at(x, y / SIDE);
+            let square = &mut self.squares[at];
             if bits & !square.covered != 0 {
                 square.covered |= bits;
-                square.depth = square.depth.max(depth);
+                let row = &mut square.depths[(y % SIDE) as usize];
+                *row = row.max(depth);
             }
         }
     }
+}
+
+/// The first pixel whose middle does not come before a place.
+///
+/// Casts are faster than the library's rounding, which is called.
+pub(super) fn first_pixel(place: f64) -> i32 {
+    let place = place - 0.5;
+    let whole = place as i32;
+    whole.saturating_add(i32::from(f64::from(whole) < place))
+}
+
+/// The last pixel whose middle does not come after a place.
+pub(super) fn last_pixel(place: f64) -> i32 {
+    let place = place - 0.5;
+    let whole = place as i32;
+    whole.saturating_sub(i32::from(f64::from(whole) > place))
 }
 
 #[cfg(test)]
@@ -234,7 +285,7 @@ mod tests {
 
     #[test]
     fn a_polygon_covers_the_pixels_within_and_hides_what_is_behind() {
-        let mut cover = Cover::new(4, 0, 4);
+        let mut cover = Cover::new(0..4, 4);
         let at = |x: f64, y: f64| DVec3::new(2.0 * x, 2.0 * y, 2.0);
         cover.polygon(&[at(3.0, 4.0), at(21.0, 4.0), at(21.0, 20.0), at(3.0, 20.0)]);
         let open = |cover: &Cover, near| {
@@ -256,9 +307,9 @@ mod tests {
             at(31.0, 20.0),
             at(31.0, 30.0),
         ]);
-        cover.open([0, 0, 31, 31], None, 2.1, |number, bits| {
+        cover.open([0, 0, 31, 31], None, 2.1, |[left, top], bits| {
             for bit in (0..64).filter(|bit| bits & (1 << bit) == 0) {
-                let (x, y) = (number % 4 * 8 + bit % 8, number / 4 * 8 + bit / 8);
+                let (x, y) = (left * 8 + bit % 8, top * 8 + bit / 8);
                 let first = (3..21).contains(&x) && (4..20).contains(&y);
                 assert!(first || x + y >= 50, "{x} {y}");
             }

@@ -1,45 +1,52 @@
 //! Which copies each square of the screen shows, nearest first: what objects of several copies are
 //! drawn from, in both stages.
 //!
-//! 1. Every copy's rectangle of pixels and nearest depth are found ([`seen`]); copies that no
-//!    pixel's ray can meet are left out.
-//! 2. Copies of all objects are sorted, the nearest first.
+//! 1. Clusters of copies that stand near each other are found in the picture ([`seen_cluster`]) and
+//!    sorted, the nearest first ([`candidates`]).
+//! 2. From the nearest to the farthest they are opened, but for those that are hidden as a whole
+//!    ([`strip`]): of each copy a rectangle of pixels and the nearest depth are found ([`seen`]);
+//!    copies that no pixel's ray can meet are left out, and the others sorted, the nearest first.
 //! 3. In this order they are listed in the squares in which they may show ([`outer`]). What a copy
 //!    is sure to hide is marked there ([`cover`]), and later copies are not listed for pixels in
 //!    which all of them lies behind it.
+//! 4. What is listed is dealt out to bins ([`lists`]).
 //!
 //! A copy is left out only where its solid is proven not to be, or solids that it lies behind are
 //! proven to be: pictures are those of unculled copies to the last bit, or but for roundings where
-//! patches are listed for bins of one copy. Nothing is taken from an earlier frame. Bands of the screen are worked on in parallel.
+//! patches are listed for bins of one copy. Nothing is taken from an earlier frame. Strips of the
+//! picture are filled in parallel, columns of squares from top to bottom: on a field they are all
+//! alike, where rows near the horizon hold most copies. Bins are made in parallel in bands of rows.
 
+mod candidates;
 mod cover;
 mod inner;
 mod lists;
 mod outer;
 mod rectangle;
 mod seen;
+mod seen_cluster;
 mod squares;
+mod strip;
 
 pub(crate) use inner::Inner;
 pub(crate) use outer::Outer;
 pub(crate) use rectangle::{Rectangle, rectangle};
 pub(crate) use seen::{Cylinder, Forms};
 
-use super::hulls::{is_apart, is_lopsided};
 use super::offset_surface::OffsetSurface;
 use super::plan::list_words;
 use super::view::View;
-use crate::scene::Placement;
-use cover::{Cover, SIDE, within};
-use lists::{BandLists, Listed, Visitor};
+use crate::scene::Copies;
+use candidates::{Candidates, Told};
+use cover::{SIDE, within};
+use lists::{BandLists, Visitor};
 use rayon::prelude::*;
-use seen::Seen;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use strip::Strip;
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
-    pub placements: &'a [Placement],
+    pub placements: &'a Copies,
     /// The number of the first among all instances.
     pub first: u32,
     pub shape: Cylinder,
@@ -92,12 +99,14 @@ struct Item {
     batch: u32,
     copy: u32,
     pixels: [u16; 4],
+    /// Among the batch's clusters.
+    place: u32,
 }
 
 /// What one batch has in one band.
 struct Part {
     lists: BandLists,
-    /// Copies that may show.
+    /// Copies that may show: all of the batch's are in the first band's.
     copies: Vec<u32>,
 }
 
@@ -106,72 +115,70 @@ impl Bins {
     /// squares; else work groups. `room`: most words that lists of patches may take in all.
     pub fn new(view: &View, batches: &[Batch], fragments: bool, room: u64) -> Self {
         let forms = Forms::new(view);
-        let mut items: Vec<Item> = Vec::new();
-        let mut told = Vec::with_capacity(batches.len());
-        let mut visitors = Vec::with_capacity(batches.len());
-        for (number, batch) in (0u32..).zip(batches) {
-            let apart = AtomicBool::new(batch.whole.is_some());
-            let even = AtomicBool::new(batch.whole.is_some());
-            const CHUNK: usize = 1024;
-            items.par_extend(
-                batch
-                    .placements
-                    .par_chunks(CHUNK)
-                    .enumerate()
-                    .flat_map_iter(|(chunk, copies)| {
-                        let first = chunk * CHUNK;
-                        let (forms, apart, even) = (&forms, &apart, &even);
-                        copies.iter().enumerate().filter_map(move |(n, copy)| {
-                            let spread = forms.spread(copy, batch.shape.axis);
-                            let Seen { pixels, near } = forms.see(&spread, &batch.shape)?;
-                            if batch.whole.is_some_and(|s| !is_apart(s, spread.eye)) {
-                                apart.store(false, Relaxed);
-                            }
-                            if is_lopsided(batch.half_side, copy) {
-                                even.store(false, Relaxed);
-                            }
-                            Some(Item {
-                                near: near.to_bits(),
-                                batch: number,
-                                copy: (first + n) as u32,
-                                pixels,
-                            })
-                        })
-                    }),
-            );
-            let apart = apart.into_inner();
-            let beams = apart && even.into_inner();
-            told.push((apart, beams));
-            visitors.push(match (fragments, beams && batch.lists) {
-                (true, _) => Visitor::Fragments,
-                (false, false) => Visitor::Groups,
-                (false, true) => Visitor::GroupsAndLists,
-            });
-        }
-        items.par_sort_unstable();
-        let [_, full] = view.corners();
-        let squares = |pixels: f64| (pixels / f64::from(SIDE)).ceil() as u32;
-        let (across, down) = (squares(full.x), squares(full.y));
-        let band = down
-            .div_ceil(4 * rayon::current_num_threads() as u32)
-            .max(2);
-        let starts: Vec<u32> = (0..down).step_by(band as usize).collect();
-        let filled = |visitors: &[Visitor]| -> Vec<Vec<Part>> {
-            let of = |&first: &u32| {
-                let cover = Cover::new(across, first, (first + band).min(down));
-                fill(cover, across, &forms, batches, &items, visitors)
-            };
-            starts.par_iter().map(of).collect()
-        };
-        let mut parts = filled(&visitors);
-        let alone = parts.iter().flatten().map(|part| part.lists.alone.len());
-        if u64::from(list_words(alone.sum::<usize>() as u32)) > room {
-            parts = filled(&vec![Visitor::Groups; batches.len()]);
-        }
-        Self::joined(&parts, batches, &told)
+        let candidates = Candidates::new(&forms, batches);
+        Self::of(candidates, fragments, room, |strip, candidates| {
+            strip.fill(candidates);
+        })
     }
 
-    fn joined(parts: &[Vec<Part>], batches: &[Batch], told: &[(bool, bool)]) -> Self {
+    /// What `fill` lists in the strips of the picture.
+    fn of(
+        candidates: Candidates,
+        fragments: bool,
+        room: u64,
+        fill: impl Fn(&mut Strip, &Candidates) + Sync,
+    ) -> Self {
+        let (forms, batches) = (candidates.forms, candidates.batches);
+        let squares = |pixels: f64| ((pixels + 0.5) / f64::from(SIDE)).ceil() as u32;
+        let (across, down) = (squares(forms.high.x), squares(forms.high.y));
+        // Several for each thread, as some take longer.
+        let of_all = |all: u32| all.div_ceil(4 * rayon::current_num_threads() as u32);
+        let (strip, band) = (of_all(across).max(8), of_all(down).max(2));
+        let starts: Vec<u32> = (0..across).step_by(strip as usize).collect();
+        let filled = |&left: &u32| {
+            let columns = left..(left + strip).min(across);
+            let mut strip = Strip::new(forms, batches, columns, [across, down], band);
+            fill(&mut strip, &candidates);
+            strip
+        };
+        let strips: Vec<Strip> = starts.par_iter().map(filled).collect();
+        let found: Vec<Told> = candidates.found().collect();
+        let visitor = |(batch, told): (&Batch, &Told)| match (fragments, told.beams && batch.lists)
+        {
+            (true, _) => Visitor::Fragments,
+            (false, false) => Visitor::Groups,
+            (false, true) => Visitor::GroupsAndLists,
+        };
+        let visitors: Vec<Visitor> = batches.iter().zip(&found).map(visitor).collect();
+        let picture = forms.picture();
+        let inside = |square: [u32; 2]| within(square, picture);
+        let dealt = |visitors: &[Visitor]| -> Vec<Vec<Part>> {
+            let of = |number: u32| {
+                let top = number * band;
+                let squares = across * band.min(down - top);
+                let corner = |square: u32| [square % across, square / across + top];
+                let part = |batch: usize| {
+                    let listed = strips.iter().map(|s| &s.listed[number as usize][batch][..]);
+                    let listed = listed.collect::<Vec<_>>().concat();
+                    let copies = strips.iter().filter(|_| number == 0);
+                    Part {
+                        lists: BandLists::new(&listed, squares, visitors[batch], corner, inside),
+                        copies: copies.flat_map(|s| &s.copies[batch]).copied().collect(),
+                    }
+                };
+                (0..batches.len()).into_par_iter().map(part).collect()
+            };
+            (0..down.div_ceil(band)).into_par_iter().map(of).collect()
+        };
+        let mut parts = dealt(&visitors);
+        let alone = parts.iter().flatten().map(|part| part.lists.alone.len());
+        if u64::from(list_words(alone.sum::<usize>() as u32)) > room {
+            parts = dealt(&vec![Visitor::Groups; batches.len()]);
+        }
+        Self::joined(&parts, batches, &found)
+    }
+
+    fn joined(parts: &[Vec<Part>], batches: &[Batch], told: &[Told]) -> Self {
         let mut bins: Vec<[u32; 4]> = Vec::new();
         let mut spots: Vec<[u32; 4]> = Vec::new();
         let mut lists = 0;
@@ -207,8 +214,8 @@ impl Bins {
                 spots: first_spot..spots.len() as u32,
                 lists: 0,
                 copies: copies.map(|(copy, _)| copy).collect(),
-                outside: told[number].0,
-                beams: told[number].1,
+                outside: told[number].outside,
+                beams: told[number].beams,
             });
         }
         // Behind all bins.
@@ -230,65 +237,4 @@ impl Bins {
         }
         Self { words, shown }
     }
-}
-
-/// The bins of every batch in a band.
-fn fill(
-    mut cover: Cover,
-    across: u32,
-    forms: &Forms,
-    batches: &[Batch],
-    items: &[Item],
-    visitors: &[Visitor],
-) -> Vec<Part> {
-    let mut listed: Vec<Vec<Listed>> = vec![Vec::new(); batches.len()];
-    let mut copies: Vec<Vec<u32>> = vec![Vec::new(); batches.len()];
-    let (top, bottom) = (cover.top, cover.bottom);
-    let mut rows = Vec::new();
-    for item in items {
-        if u32::from(item.pixels[1]) >= bottom || u32::from(item.pixels[3]) < top {
-            continue;
-        }
-        let number = item.batch as usize;
-        let (batch, list) = (&batches[number], &mut listed[number]);
-        let near = f32::from_bits(item.near);
-        if !cover.is_open(item.pixels, near) {
-            continue;
-        }
-        let before = list.len();
-        let spread = || forms.spread(&batch.placements[item.copy as usize], batch.shape.axis);
-        let known = batch.outer.filter(|_| item.near > 0).is_some_and(|outer| {
-            let spread = spread();
-            let margin = forms.margin(&spread, &batch.shape);
-            let [_, first, _, last] = item.pixels.map(u32::from);
-            let within = first.max(top)..(last + 1).min(bottom);
-            outer.rows(&spread, margin, within, last - first, &mut rows)
-        });
-        let rows = known.then_some(&rows[..]);
-        cover.open(item.pixels, rows, near, |square, pixels| {
-            list.push(Listed {
-                square,
-                copy: batch.first + item.copy,
-                near: item.near,
-                pixels,
-            });
-        });
-        if list.len() == before {
-            continue;
-        }
-        copies[number].push(item.copy);
-        if let Some(inner) = batch.inner.filter(|_| item.near > 0) {
-            cover.add(&spread(), inner, item.pixels);
-        }
-    }
-    let squares = across * (bottom - top) / SIDE;
-    let picture = forms.picture();
-    let inside = |square: [u32; 2]| within(square, picture);
-    let corner = |square: u32| [square % across, square / across + top / SIDE];
-    (listed.iter().zip(copies).zip(visitors))
-        .map(|((listed, copies), visitor)| Part {
-            lists: BandLists::new(listed, squares, *visitor, corner, inside),
-            copies,
-        })
-        .collect()
 }

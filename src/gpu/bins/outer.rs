@@ -1,9 +1,10 @@
 //! Where a solid can show: cylinders about its axis that hold it, and their pixels.
 
+use super::cover::{first_pixel, last_pixel};
 use super::inner::{Pieces, ROWS};
 use super::seen::Spread;
 use crate::surface::{QuadricPatch, extents};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
@@ -58,46 +59,72 @@ impl Outer {
         let towards = spread.eye.truncate().normalize_or(DVec2::X);
         let [a, b] =
             [towards, towards.perp()].map(|way| spread.along[0] * way.x + spread.along[1] * way.y);
+        let ways = CORNERS.map(|(x, y)| a * x + b * y);
         for piece in self.0.of(high, FEW_ROWS) {
             let radius = piece.radius + margin;
-            let ends = [piece.low - margin, piece.high + margin];
-            let rings = ends.map(|z| {
+            let mut rings = [[DVec2::ZERO; 8]; 2];
+            let mut near = f64::INFINITY;
+            for (ring, z) in (rings.iter_mut()).zip([piece.low - margin, piece.high + margin]) {
                 let middle = spread.middle + spread.along[2] * z;
-                CORNERS.map(|(x, y)| middle + (a * x + b * y) * radius)
-            });
-            if rings.iter().flatten().any(|p| p.z <= 0.0) {
-                return false;
-            }
-            let [low, up] = rings.map(|ring| ring.map(flat));
-            for k in 0..8 {
-                let next = (k + 1) % 8;
-                for (p, q) in [(low[k], low[next]), (up[k], up[next]), (low[k], up[k])] {
-                    mark(p, q, within.start, rows);
+                for (corner, way) in ring.iter_mut().zip(&ways) {
+                    let p = middle + way * radius;
+                    near = near.min(p.z);
+                    *corner = p.truncate() / p.z;
                 }
             }
+            if near <= 0.0 {
+                return false;
+            }
+            outline(&rings, within.start, rows);
         }
         true
     }
 }
 
-fn flat(p: DVec3) -> DVec2 {
-    p.truncate() / p.z
+/// Widens rows to the convex hull of the two ends of a cylinder. Of the edges between their corners
+/// most lie within.
+fn outline(rings: &[[DVec2; 8]; 2], top: u32, rows: &mut [[f64; 2]]) {
+    // Of the line through an edge, whether two points lie on different sides.
+    let parts = |p: DVec2, q: DVec2, [a, b]: [DVec2; 2]| {
+        let side = |point: DVec2| (q - p).perp_dot(point - p);
+        side(a) * side(b) < 0.0
+    };
+    for (ring, other) in [(&rings[0], &rings[1]), (&rings[1], &rings[0])] {
+        // Rings are flat, seen from the side, and many lie between middles of pixels.
+        let ends = |m: [f64; 2], p: &DVec2| [m[0].min(p.y), m[1].max(p.y)];
+        let [low, high] = ring.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+        if first_pixel(low) > last_pixel(high) {
+            continue;
+        }
+        for (k, &p) in ring.iter().enumerate() {
+            let q = ring[(k + 1) % 8];
+            if !parts(p, q, [ring[(k + 4) % 8], other[k]]) {
+                mark(p, q, top, rows);
+            }
+        }
+    }
+    let [low, up] = rings;
+    for k in 0..8 {
+        if !parts(low[k], up[k], [low[(k + 1) % 8], low[(k + 7) % 8]]) {
+            mark(low[k], up[k], top, rows);
+        }
+    }
 }
 
 /// Widens rows to where an edge crosses the middles of their pixels.
 fn mark(p: DVec2, q: DVec2, top: u32, rows: &mut [[f64; 2]]) {
     let (p, q) = if p.y < q.y { (p, q) } else { (q, p) };
-    let from = f64::from(top) + 0.5;
-    let first = (p.y - from).ceil().max(0.0);
-    let last = (q.y - from).floor().min(rows.len() as f64 - 1.0);
+    let top = top as i32;
+    let first = first_pixel(p.y).max(top);
+    let last = last_pixel(q.y).min(top + rows.len() as i32 - 1);
     if first > last {
         return;
     }
     let slope = (q.x - p.x) / (q.y - p.y);
-    let begin = p.x + (first + from - p.y) * slope;
-    for (n, row) in rows[first as usize..=last as usize].iter_mut().enumerate() {
-        let x = begin + n as f64 * slope;
+    let mut x = p.x + (f64::from(first) + 0.5 - p.y) * slope;
+    for row in &mut rows[(first - top) as usize..=(last - top) as usize] {
         *row = [row[0].min(x), row[1].max(x)];
+        x += slope;
     }
 }
 
@@ -108,7 +135,7 @@ mod tests {
     use crate::gpu::bins::{Cylinder, Forms};
     use crate::gpu::view::View;
     use crate::scene::{Camera, Placement};
-    use glam::DQuat;
+    use glam::{DQuat, DVec3};
 
     /// Of a spindle on a plate: points on and in it are seen within the rows, and what is left out
     /// is much.

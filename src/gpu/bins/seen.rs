@@ -1,5 +1,6 @@
 //! A copy as the view sees it: its rectangle of pixels and its nearest depth.
 
+use super::cover::{first_pixel, last_pixel};
 use crate::gpu::view::View;
 use crate::scene::Placement;
 use glam::{DMat3, DVec2, DVec3};
@@ -16,11 +17,11 @@ pub(crate) struct Cylinder {
 
 /// The view as three linear forms: a point's pixel is the first two over the third, its depth.
 pub(crate) struct Forms {
-    eye: DVec3,
-    rows: DMat3,
+    pub(super) eye: DVec3,
+    pub(super) rows: DMat3,
     /// First and last pixel centre, both axes.
-    low: DVec2,
-    high: DVec2,
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
     /// A pixel's longer side at unit depth.
     pixel: f64,
 }
@@ -121,8 +122,9 @@ impl Forms {
                     let a = c.z * c.z - square(2, 2);
                     let b = c[i] * c.z - square(i, 2);
                     let root = (b * b - a * (c[i] * c[i] - square(i, i))).max(0.0).sqrt();
-                    low = low.min((b - root) / a);
-                    high = high.max((b + root) / a);
+                    let inverse = 1.0 / a;
+                    low = low.min((b - root) * inverse);
+                    high = high.max((b + root) * inverse);
                 }
             } else {
                 // Around or beside the eye: everything, unless it lies beyond an edge of the
@@ -138,13 +140,10 @@ impl Forms {
                     return None;
                 }
             }
-            let first = (low.max(self.low[i]) - 0.5 - MARGIN)
-                .ceil()
-                .max(self.low[i] - 0.5);
-            let last = (high.min(self.high[i]) - 0.5 + MARGIN)
-                .floor()
-                .min(self.high[i] - 0.5);
-            if first > last || first.is_nan() || last.is_nan() {
+            let ends = [self.low[i], self.high[i]].map(|middle| (middle - 0.5) as i32);
+            let first = first_pixel(low.max(self.low[i]) - MARGIN).max(ends[0]);
+            let last = last_pixel(high.min(self.high[i]) + MARGIN).min(ends[1]);
+            if first > last {
                 return None;
             }
             (pixels[i], pixels[i + 2]) = (first as u16, last as u16);

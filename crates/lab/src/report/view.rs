@@ -236,7 +236,8 @@ pub(crate) mod tests {
                 ..Placement::default()
             },
             Placement::default(),
-        ];
+        ]
+        .into();
         assert_eq!((view.texel(), view.solids()), (0.5 / 512.0, 2));
     }
 }

@@ -26,7 +26,7 @@ fn a_copy_is_drawn_by_the_mesh_of_its_height() {
     // Some 25, 85 and 190 of 180 pixels high.
     for distance in [10.0, 3.2, 1.8] {
         let mut scene = scene_of(shapes::vase(), eye(10.0, distance));
-        scene.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3])];
+        scene.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3])].into();
         let frame = draw(&scene, &levels());
         assert!(frame.pixels() > 0 && (0..frame.pixels()).any(|k| frame.hits(k)));
         let same = Method::MESH_LEVELS.map(|(segments, rings, _)| {

@@ -3,6 +3,7 @@
 
 use super::*;
 use revmap::profile::Raster;
+use revmap::scene::Copies;
 use std::f64::consts::PI;
 
 /// Rays at and through the unit box, `n` of them, by the golden ratio.
@@ -168,7 +169,7 @@ fn copies_are_as_many_objects_whatever_the_tree() {
         .collect();
     let alone = crowd.instances.iter().map(|&placement| {
         let mut o = crowd.clone();
-        (o.placement, o.instances) = (placement, Vec::new());
+        (o.placement, o.instances) = (placement, Copies::default());
         o
     });
     let alone: Vec<Reference> = alone

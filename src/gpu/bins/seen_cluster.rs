@@ -1,0 +1,43 @@
+//! A cluster of copies as the view sees it.
+
+use super::seen::{Cylinder, Forms, MARGIN, SLACK, Seen};
+use crate::scene::Cluster;
+
+impl Forms {
+    /// A rectangle that holds those of all copies, and a depth of which no copy's is less; none
+    /// where no copy can be met.
+    pub fn see_cluster(&self, cluster: &Cluster, of: &Cylinder) -> Option<Seen> {
+        let beside = of.axis.length() + of.radius;
+        let around = cluster.around(self.eye, [beside, of.low.abs().max(of.high.abs())]);
+        let [x, y, depth] = [0, 1, 2].map(|k| self.rows.row(k));
+        let [near, far] = around.along(depth);
+        if far <= 0.0 {
+            return None;
+        }
+        let mut pixels = [0u16; 4];
+        for (i, row) in [x, y].into_iter().enumerate() {
+            let [first, last] = [self.low[i] - MARGIN, self.high[i] + MARGIN];
+            let (mut low, mut high) = (first, last);
+            if near > 1e-3 * far {
+                // As the middle is seen, and by how much all others are off.
+                let at = around.middle.dot(row) / around.middle.dot(depth);
+                let off = around.along(row - depth * at)[1] / near + 2.0 * MARGIN;
+                (low, high) = (low.max(at - off), high.min(at + off));
+            } else if around.along(row - depth * first)[1] < 0.0
+                || around.along(row - depth * last)[0] > 0.0
+            {
+                return None;
+            }
+            if low > high || low.is_nan() || high.is_nan() {
+                return None;
+            }
+            let inside = |pixel: f64| pixel.max(self.low[i] - 0.5).min(self.high[i] - 0.5);
+            pixels[i] = inside((low - 0.5).ceil()) as u16;
+            pixels[i + 2] = inside((high - 0.5).floor()) as u16;
+        }
+        Some(Seen {
+            pixels,
+            near: (near * (1.0 - 2.0 * SLACK)).max(0.0) as f32,
+        })
+    }
+}
