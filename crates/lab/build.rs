@@ -49,6 +49,7 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     let entries = [
         ("hull.frag", None),
         ("box.frag", None),
+        ("box.frag", Some("DISPATCH_BEAMS")),
         ("bins.frag", None),
         ("listed.comp", Some("DISPATCH_LISTS")),
         ("trace.comp", None),

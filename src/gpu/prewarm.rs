@@ -133,15 +133,9 @@ impl Renderer {
         for (variant, kind) in reachable.into_iter().filter(drawn) {
             for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
                 let keeps = self.keeps_depths && matches!(kind, Kind::Compute | Kind::Listed);
-                let variant = variant.keeping(keeps);
-                let variant = match kind {
-                    // These read none of the tree.
-                    Kind::Hull | Kind::Listed => variant.with_tables(true),
-                    _ => variant.with_tables(fit),
-                };
-                if !all.contains(&(variant, kind)) {
-                    all.push((variant, kind));
-                }
+                let variant = variant.keeping(keeps).with_tables_of(kind, fit);
+                let new = variant.filter(|v| !all.contains(&(*v, kind)));
+                all.extend(new.map(|v| (v, kind)));
             }
         }
     }

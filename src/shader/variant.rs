@@ -285,6 +285,18 @@ impl Variant {
         }
     }
 
+    /// The same as a use of it draws tables that fit into a uniform buffer, or do not; none where it
+    /// draws no such tables.
+    #[must_use]
+    pub fn with_tables_of(self, kind: Kind, fit: bool) -> Option<Self> {
+        match kind {
+            // These read none of the tree.
+            Kind::Hull | Kind::Listed => Some(self.with_tables(true)),
+            Kind::Spots if self.dispatch == Dispatch::Beams && !fit => None,
+            _ => Some(self.with_tables(fit)),
+        }
+    }
+
     /// The same where the eye is outside of the solid, of which the box cuts nothing, or not; one
     /// where that makes no difference.
     #[must_use]

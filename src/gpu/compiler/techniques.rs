@@ -64,8 +64,9 @@ impl Technique {
                 }
             });
         let large = |(v, kind): &(Variant, Kind)| {
-            (self.name == BARE && !matches!(kind, Kind::Hull | Kind::Listed))
-                .then(|| (v.with_tables(false), *kind))
+            let variant = v.with_tables_of(*kind, false);
+            let variant = variant.filter(|large| self.name == BARE && large != v);
+            variant.map(|large| (large, *kind))
         };
         all.flat_map(|one| std::iter::once(one).chain(large(&one)))
             .collect()

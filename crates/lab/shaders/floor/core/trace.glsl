@@ -20,7 +20,9 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
 
 bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
 {
-    return hit_at(eye, v, span.x, hit);
+    // Vertices of squares hand over what follows, and fragments must take it.
+    bool takes_all = solid.patches.z != 0u && solid.bounds.z <= solid.bounds.w;
+    return hit_at(eye, v, span.x, hit) && span.x <= span.y && takes_all;
 }
 
 bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
