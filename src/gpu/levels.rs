@@ -65,17 +65,23 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
             scale * stretch / (nearest.max(view.near) * pixel)
         }
     };
-    let shows = may_show(object, view, all);
+    let visible = Visible::new(object, view, all);
     let radius = object.profile.radius;
     let at_most = |cluster: &Cluster| {
         let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
         of(cluster.most_scale.max_element(), around.along(view.forward)) * (1.0 + 1e-9)
     };
     let least = object.least_of_copies(
-        |cluster| -at_most(cluster),
+        |cluster| {
+            if visible.may_show_any(cluster) {
+                -at_most(cluster)
+            } else {
+                0.0
+            }
+        },
         |copy| {
             let pixels = of(copy.scale.max_element(), depths(radius, copy, view));
-            if pixels > 0.0 && shows(copy) {
+            if pixels > 0.0 && visible.may_show(copy) {
                 -pixels
             } else {
                 0.0
@@ -85,18 +91,35 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
     -least / height
 }
 
-/// Whether a copy may be in the picture; `all`: taken for granted.
-fn may_show(object: &Object, view: &View, all: bool) -> impl Fn(&Placement) -> bool {
-    let forms = (!all && !view.parallel).then(|| Forms::new(view));
-    let shape = Cylinder {
-        axis: DVec2::ZERO,
-        radius: object.profile.radius * SQRT_2,
-        low: 0.0,
-        high: 1.0,
-    };
-    move |copy| {
-        let seen = |forms: &Forms| forms.see(&forms.spread(copy, shape.axis), &shape);
-        forms.as_ref().is_none_or(|forms| seen(forms).is_some())
+/// Which copies may be in the picture.
+struct Visible {
+    /// None where all are taken to be.
+    forms: Option<Forms>,
+    shape: Cylinder,
+}
+
+impl Visible {
+    fn new(object: &Object, view: &View, all: bool) -> Self {
+        Self {
+            forms: (!all && !view.parallel).then(|| Forms::new(view)),
+            shape: Cylinder {
+                axis: DVec2::ZERO,
+                radius: object.profile.radius * SQRT_2,
+                low: 0.0,
+                high: 1.0,
+            },
+        }
+    }
+
+    fn may_show(&self, copy: &Placement) -> bool {
+        let seen = |forms: &Forms| forms.see(&forms.spread(copy, self.shape.axis), &self.shape);
+        self.forms.as_ref().is_none_or(|f| seen(f).is_some())
+    }
+
+    /// Whether some of a cluster's copies may.
+    fn may_show_any(&self, cluster: &Cluster) -> bool {
+        let seen = |forms: &Forms| forms.see_cluster(cluster, &self.shape);
+        self.forms.as_ref().is_none_or(|f| seen(f).is_some())
     }
 }
 

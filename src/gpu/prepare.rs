@@ -11,10 +11,6 @@ use crate::error::{Error, Result, Stage};
 use crate::scene::Shadow;
 use crate::settings::Planes;
 use ash::vk;
-use rayon::prelude::*;
-
-/// So many copies are worth another core.
-const MANY: usize = 2048;
 
 impl Renderer {
     /// Prepares the frame of slot `slot`, seen by `view`: takes over what was set, writes what
@@ -106,19 +102,18 @@ impl Renderer {
                 block.single = instance_block(entry.drawn(), copy, view);
             }
             to.write_block(number, &block)?;
-            let all: Vec<u32>;
-            let written = match &entry.draw.work {
-                // Nothing reads the others, unless they may throw a shadow.
-                Some(Work::Bins(shown)) if !casts => &shown.copies,
-                _ => {
-                    all = (0..entry.instances.end - entry.instances.start).collect();
-                    &all
-                }
+            let mut write = |copy: u32| {
+                let of =
+                    |copy: u32| instance_block(entry.drawn(), &placements[copy as usize], view);
+                let block = if copy == 0 { block.single } else { of(copy) };
+                to.write_instance(entry.instances.start + copy, &block)
             };
-            let of = |&copy: &u32| instance_block(entry.drawn(), &placements[copy as usize], view);
-            let blocks: Vec<_> = written.par_iter().with_min_len(MANY).map(of).collect();
-            for (copy, block) in written.iter().zip(&blocks) {
-                to.write_instance(entry.instances.start + copy, block)?;
+            match &entry.draw.work {
+                // Nothing reads the others, unless they may throw a shadow.
+                Some(Work::Bins(shown)) if !casts => {
+                    shown.copies.iter().try_for_each(|&copy| write(copy))?
+                }
+                _ => (0..entry.instances.end - entry.instances.start).try_for_each(write)?,
             }
         }
         if self.listed[slot] != self.version {

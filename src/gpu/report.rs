@@ -65,13 +65,7 @@ impl Candidate {
     /// Whether squares of up to eight pixels a side are drawn as points: one vertex for six, and
     /// no diagonal, along which blocks of pixels are searched twice.
     pub fn large_points(&self) -> bool {
-        let limits = &self.properties.limits;
-        let [least, most] = limits.point_size_range;
-        let step = limits.point_size_granularity;
-        self.features.large_points == vk::TRUE
-            && least <= 1.0
-            && most >= f32::from(GROUP_PIXELS as u8)
-            && (step == 0.0 || (1.0 / step).fract() == 0.0)
+        large_points(&self.features, &self.properties.limits)
     }
 
     /// Whether it offers an extension.
@@ -90,6 +84,15 @@ impl Candidate {
             ..Default::default()
         }
     }
+}
+
+fn large_points(features: &vk::PhysicalDeviceFeatures, limits: &vk::PhysicalDeviceLimits) -> bool {
+    let [least, most] = limits.point_size_range;
+    let step = limits.point_size_granularity;
+    features.large_points == vk::TRUE
+        && least <= 1.0
+        && most >= GROUP_PIXELS as f32
+        && (step == 0.0 || (1.0 / step).fract() == 0.0)
 }
 
 /// All devices that the Vulkan loader offers.
@@ -295,6 +298,10 @@ pub(crate) fn inspect(
         (
             "hulls of solids that their box cuts".to_owned(),
             yes_no(features.shader_clip_distance == vk::TRUE && limits.max_clip_distances >= 4),
+        ),
+        (
+            "squares of crowds as points".to_owned(),
+            yes_no(large_points(&features, limits)),
         ),
         (
             "largest map".to_owned(),

@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Placements of copies: a [`Vec`] to whoever reads or changes it. Clones share the placements
 /// until one of them is changed, so that scenes of many copies are cheap to clone and to compare.
+/// Once drawn they are kept a second time in the order of their neighbourhood: 84 bytes a copy.
 ///
 /// ```
 /// use revmap::scene::{Copies, Placement};
@@ -33,7 +34,12 @@ struct Known {
 impl Copies {
     /// Their clusters, made when they are first asked for after a change.
     pub(crate) fn clusters(&self) -> &Clusters {
-        self.0.clusters.get_or_init(|| Clusters::new(self))
+        let known = &self.0.clusters;
+        if known.get().is_none() {
+            // Not while others wait: a thread of rayon that waits may take up what asks again.
+            let _ = known.set(Clusters::new(self));
+        }
+        known.get_or_init(|| Clusters::new(self))
     }
 
     /// Looks at all placements, unless they were found right before.

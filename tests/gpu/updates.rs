@@ -2,13 +2,12 @@
 //! that has not changed.
 
 use crate::common::{device, draw, eye, placement, scene_of, shapes};
-use glam::DVec3;
 use revmap::error::Stage;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Object, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
@@ -329,10 +328,8 @@ fn pipelines_of_large_tables_are_compiled() {
         // Many copies are drawn by other pipelines, which differ by the size of tables, too.
         let mut crowd = scene.clone();
         crowd.objects[0].instances = (0..70)
-            .map(|n| Placement {
-                position: DVec3::new(-f64::from(n), 0.3 * f64::from(n % 7), 0.0),
-                ..Placement::default()
-            })
+            .map(f64::from)
+            .map(|n| placement([-n, 0.3 * (n % 7.0), 0.0], [0.0; 3], [1.0; 3]))
             .collect();
         let mut renderer = Offscreen::new(&device, &crowd, &settings).unwrap();
         renderer.prewarm().unwrap();

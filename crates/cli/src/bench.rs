@@ -206,19 +206,22 @@ impl Bench {
 
     fn crowds(&self) -> Result<()> {
         let stages = self.axes(&[], &[]).stages;
-        let (numbers, frames) = if self.quick {
-            (crowds::QUICK, 30)
+        let (numbers, flown) = if self.quick {
+            (crowds::QUICK, &crowds::FLOWN_QUICK[..])
         } else {
-            (crowds::COPIES.len(), 300)
+            (crowds::COPIES.len(), &crowds::FLOWN[..])
         };
         let plan = crowds::plan(&stages, numbers)?;
         let (session, measured, _) =
             self.measured(&plan, &self.limits(), |_| false, &mut |_| {})?;
         let device = MethodDevice::new(session.device.clone())?;
-        let fly = |&stage: &DrawStage| {
-            crowds::fly(&device, &crowds::settings(stage), crowds::FLOWN, frames, 10)
+        let fly = |stage: DrawStage, (solids, frames)| {
+            crowds::fly(&device, &crowds::settings(stage), solids, frames, 10)
         };
-        let flights: Vec<_> = stages.iter().map(fly).collect::<Result<_>>()?;
+        let all = flown
+            .iter()
+            .flat_map(|f| stages.iter().map(|s| fly(*s, *f)));
+        let flights: Vec<_> = all.collect::<Result<_>>()?;
         crowds::write(&session.out, &plan, &measured, &flights, &session.machine)?;
         print(&crowds::as_text(&measured.rows, &flights));
         session.finish(&plan, &measured)

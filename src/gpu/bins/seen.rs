@@ -22,6 +22,8 @@ pub(crate) struct Forms {
     /// First and last pixel centre, both axes.
     pub(super) low: DVec2,
     pub(super) high: DVec2,
+    /// First and last pixel of both axes whose middles the viewport holds: left, top, right, bottom.
+    pub(super) ends: [i32; 4],
     /// A pixel's longer side at unit depth.
     pixel: f64,
 }
@@ -62,6 +64,12 @@ impl Forms {
         let rows = [row(view.dir_x), row(view.dir_y), view.forward];
         let [low, high] = view.corners();
         Self {
+            ends: [
+                first_pixel(low.x).max(0),
+                first_pixel(low.y).max(0),
+                last_pixel(high.x),
+                last_pixel(high.y),
+            ],
             eye: view.eye,
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
             low: low + 0.5,
@@ -70,11 +78,9 @@ impl Forms {
         }
     }
 
-    /// First and last pixel of both axes: left, top, right, bottom.
+    /// The pixels of the picture: left, top, right, bottom.
     pub fn picture(&self) -> [u32; 4] {
-        let first = (self.low - 0.5).ceil();
-        let last = (self.high - 0.5).floor();
-        [first.x, first.y, last.x, last.y].map(|pixel| pixel.max(0.0) as u32)
+        self.ends.map(|pixel| pixel.max(0) as u32)
     }
 
     pub fn spread(&self, copy: &Placement, axis: DVec2) -> Spread {
@@ -129,7 +135,7 @@ impl Forms {
             } else {
                 // Around or beside the eye: everything, unless it lies beyond an edge of the
                 // picture.
-                (low, high) = (self.low[i], self.high[i]);
+                (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
                 let beyond = |edge: f64, sense: f64| {
                     let side = |c: &DVec3| sense * (c[i] - edge * c.z);
                     let wide =
@@ -140,9 +146,8 @@ impl Forms {
                     return None;
                 }
             }
-            let ends = [self.low[i], self.high[i]].map(|middle| (middle - 0.5) as i32);
-            let first = first_pixel(low.max(self.low[i]) - MARGIN).max(ends[0]);
-            let last = last_pixel(high.min(self.high[i]) + MARGIN).min(ends[1]);
+            let first = first_pixel(low - MARGIN).max(self.ends[i]);
+            let last = last_pixel(high + MARGIN).min(self.ends[i + 2]);
             if first > last {
                 return None;
             }
@@ -152,5 +157,124 @@ impl Forms {
             pixels,
             near: (near * (1.0 - SLACK)).max(0.0) as f32,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::gpu::output::DepthOrder;
+    use crate::gpu::view::Viewport;
+    use crate::scene::Copies;
+    use glam::{DMat4, DVec4};
+
+    /// Wherever a host's viewport begins and ends: copies that are larger than it are seen in the
+    /// pixels whose middles it holds, and so is a cluster of them, before the eye and around it.
+    #[test]
+    fn viewports_need_not_begin_at_the_first_pixel() {
+        let shape = Cylinder {
+            axis: DVec2::ZERO,
+            radius: 50.0,
+            low: -50.0,
+            high: 50.0,
+        };
+        let eye = DVec3::new(0.0, 0.0, 0.5);
+        for [x, y] in [
+            [0.0, 0.0],
+            [-4.0, -3.0],
+            [5.0, 3.0],
+            [0.03, 7.6],
+            [-0.5, 2.5],
+        ] {
+            for [width, height] in [[64.0, 48.0], [40.6, 33.3]] {
+                let viewport = Viewport {
+                    x,
+                    y,
+                    width,
+                    height,
+                };
+                let look = DMat4::from_translation(-eye);
+                // Along x, z upwards; from 0.1 to 1000.
+                let deep = 1000.0 / 999.9;
+                let lens = DMat4::from_rows(
+                    DVec4::new(0.0, -1.0, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, -width / height, 0.0),
+                    DVec4::new(deep, 0.0, 0.0, -0.1 * deep),
+                    DVec4::X,
+                );
+                let view = View::from_matrices(look, lens, viewport, DepthOrder::Normal).unwrap();
+                let forms = Forms::new(&view);
+                let ends = |from: f64, size: f64| {
+                    let inside = |k: &i32| (from..=from + size).contains(&(f64::from(*k) + 0.5));
+                    let all: Vec<u32> = (0..200).filter(inside).map(|k| k as u32).collect();
+                    [all[0], all[all.len() - 1]]
+                };
+                let ([left, right], [top, bottom]) = (ends(x, width), ends(y, height));
+                let wanted = [left, top, right, bottom];
+                assert_eq!(forms.picture(), wanted, "{viewport:?}");
+                for away in [0.0, 52.0] {
+                    let position = DVec3::new(away, 0.0, 0.0);
+                    let copies: Copies = vec![
+                        Placement {
+                            position,
+                            ..Placement::default()
+                        };
+                        2
+                    ]
+                    .into();
+                    let one = forms
+                        .see(&forms.spread(&copies[0], shape.axis), &shape)
+                        .unwrap();
+                    let cluster = &copies.clusters().all()[0];
+                    let all = forms.see_cluster(cluster, &shape).unwrap();
+                    assert_eq!(one.pixels.map(u32::from), wanted, "{viewport:?}, {away}");
+                    assert_eq!(all.pixels, one.pixels, "{viewport:?}, {away}");
+                }
+            }
+        }
+    }
+
+    /// Far clusters between the middles of two pixels are none.
+    #[test]
+    fn clusters_below_a_pixel_have_sound_rectangles() {
+        let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);
+        let view = View::from_camera(&camera, (64, 48), [1.0, 1e4]).unwrap();
+        let forms = Forms::new(&view);
+        let shape = Cylinder {
+            axis: DVec2::ZERO,
+            radius: 0.4,
+            low: 0.0,
+            high: 1.0,
+        };
+        let mut seen = [0; 2];
+        for n in 0..500 {
+            let position = DVec3::new(0.0, 0.11 * f64::from(n) - 27.0, 0.07 * f64::from(n % 90));
+            let copies: Copies = vec![
+                Placement {
+                    position,
+                    ..Placement::default()
+                };
+                2
+            ]
+            .into();
+            let all = forms.see_cluster(&copies.clusters().all()[0], &shape);
+            let one = forms.see(&forms.spread(&copies[0], shape.axis), &shape);
+            seen[usize::from(all.is_some())] += 1;
+            let Some(Seen {
+                pixels: [x0, y0, x1, y1],
+                near,
+            }) = all
+            else {
+                assert!(one.is_none(), "{n}");
+                continue;
+            };
+            assert!(x0 <= x1 && y0 <= y1, "{n}");
+            assert!(one.is_none_or(|one| {
+                let [a, b, c, d] = one.pixels;
+                x0 <= a && y0 <= b && c <= x1 && d <= y1 && near <= one.near
+            }));
+        }
+        assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! A cluster of copies as the view sees it.
 
+use super::cover::{first_pixel, last_pixel};
 use super::seen::{Cylinder, Forms, MARGIN, SLACK, Seen};
 use crate::scene::Cluster;
 
@@ -17,12 +18,12 @@ impl Forms {
         let mut pixels = [0u16; 4];
         for (i, row) in [x, y].into_iter().enumerate() {
             let [first, last] = [self.low[i] - MARGIN, self.high[i] + MARGIN];
-            let (mut low, mut high) = (first, last);
+            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             if near > 1e-3 * far {
                 // As the middle is seen, and by how much all others are off.
                 let at = around.middle.dot(row) / around.middle.dot(depth);
                 let off = around.along(row - depth * at)[1] / near + 2.0 * MARGIN;
-                (low, high) = (low.max(at - off), high.min(at + off));
+                (low, high) = (at - off, at + off);
             } else if around.along(row - depth * first)[1] < 0.0
                 || around.along(row - depth * last)[0] > 0.0
             {
@@ -31,9 +32,15 @@ impl Forms {
             if low > high || low.is_nan() || high.is_nan() {
                 return None;
             }
-            let inside = |pixel: f64| pixel.max(self.low[i] - 0.5).min(self.high[i] - 0.5);
-            pixels[i] = inside((low - 0.5).ceil()) as u16;
-            pixels[i + 2] = inside((high - 0.5).floor()) as u16;
+            let (low, high) = (
+                first_pixel(low).max(self.ends[i]),
+                last_pixel(high).min(self.ends[i + 2]),
+            );
+            // Between the middles of two pixels, as no copy's rectangle then holds one.
+            if low > high {
+                return None;
+            }
+            (pixels[i], pixels[i + 2]) = (low as u16, high as u16);
         }
         Some(Seen {
             pixels,

@@ -80,8 +80,8 @@ impl BandLists {
         let several: u64 = QUARTERS.into_iter().filter(crowded).sum();
         let mut all = 0;
         for one in here.clone() {
-            all |= one.pixels;
-            Square::WHOLE.cut(one.pixels & !several, inside, &mut |square| {
+            all |= one.pixels & inside;
+            Square::WHOLE.cut(one.pixels & inside & !several, inside, &mut |square| {
                 self.spots
                     .push([square.place(corner), one.copy, 0, one.near]);
             });

@@ -106,11 +106,17 @@ fn shaders_grow_by_a_tenth_at_most() {
     let mut compared = 0;
     for row in now {
         // A shader without a row would grow unseen.
-        let before = kept.iter().find(|kept| name(kept) == name(row));
-        let before = before.unwrap_or_else(|| panic!("{} is not in the file: {RENEW}", name(row)));
+        // Vertices of small and of large tables share a module, and differ by a constant.
+        let before: Vec<&Row> = kept.iter().filter(|k| name(k) == name(row)).collect();
+        assert!(
+            !before.is_empty(),
+            "{} is not in the file: {RENEW}",
+            name(row)
+        );
         compared += 1;
         for column in columns {
-            let (before, now) = (number(before, column), number(row, column));
+            let before = before.iter().map(|row| number(row, column));
+            let (before, now) = (before.fold(0.0, f64::max), number(row, column));
             assert!(
                 now <= most * before,
                 "{}: {column} was {before}, is {now}; {RENEW}",

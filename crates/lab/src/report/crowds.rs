@@ -29,8 +29,10 @@ use std::path::Path;
 pub const COPIES: [u32; 3] = [100, 10_000, 1_000_000];
 /// How many of them a quick look takes.
 pub const QUICK: usize = 2;
-/// Copies that are flown through.
-pub const FLOWN: u32 = 10_000;
+/// Copies that are flown through, and in how many frames.
+pub const FLOWN: [(u32, usize); 2] = [(10_000, 300), (1_000_000, 30)];
+/// The flights of a quick look.
+pub const FLOWN_QUICK: [(u32, usize); 1] = [(10_000, 30)];
 /// Size of the pictures, pixels.
 const SIZE: (u32, u32) = (1366, 706);
 /// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
@@ -159,9 +161,11 @@ fn table(rows: &[Row]) -> Table {
 
 fn flown(flights: &[Flight]) -> Table {
     let header = [
+        "solids",
         "stage",
         "frames",
         "median (ms)",
+        "of it CPU (ms)",
         "slowest (ms)",
         "slowest / median",
         "pictures compared",
@@ -171,9 +175,11 @@ fn flown(flights: &[Flight]) -> Table {
     let record = |flight: &Flight| {
         let ([median, slowest], [p999, contour]) = (flight.frame_ms(), flight.worst());
         vec![
+            flight.solids.to_string(),
             flight.settings.stage.name().to_owned(),
             flight.times.len().to_string(),
             number(median, 3),
+            number(flight.prepare_ms(), 3),
             number(slowest, 3),
             number(slowest / median, 3),
             flight.errors.len().to_string(),
@@ -187,11 +193,10 @@ fn flown(flights: &[Flight]) -> Table {
 /// All tables as text.
 #[must_use]
 pub fn as_text(rows: &[Row], flights: &[Flight]) -> String {
-    let flight = format!("\nA flight through {FLOWN} solids:\n");
-    table(rows).aligned() + &flight + &flown(flights).aligned()
+    table(rows).aligned() + "\nFlights:\n" + &flown(flights).aligned()
 }
 
-/// Writes `crowds.csv`, a `flight-STAGE.csv` for each flight, and the page.
+/// Writes `crowds.csv`, a `flight-SOLIDS-STAGE.csv` for each flight, and the page.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -204,7 +209,8 @@ pub fn write(
 ) -> Result<()> {
     write_text(&folder.join("crowds.csv"), &table(&measured.rows).csv())?;
     for flight in flights {
-        let name = format!("flight-{}.csv", flight.settings.stage.name());
+        let stage = flight.settings.stage.name();
+        let name = format!("flight-{}-{stage}.csv", flight.solids);
         write_text(&folder.join(name), &flight.table().csv())?;
     }
     let mut page = Page::new("revmap: crowds");
@@ -214,16 +220,16 @@ pub fn write(
         "Copies of ten solids stand on a field and are seen from within. One solid is seen close, \
          drawn in the same way; the floor is put beside the solid that is searched. By equal \
          pixels: the ratio of times over the ratio of the pixels hit. The camera stands still: what \
-         a moving one costs the CPU is in the flight.",
+         a moving one costs the CPU is in the flights.",
     );
     page.table(&table(&measured.rows), &[0, 2, 3]);
-    page.chapter("A flight");
+    page.chapter("Flights");
     page.text(&format!(
-        "Through {FLOWN} solids, with the tolerance of {} pixels. A frame is what the CPU takes to prepare it and the time until it is drawn. Errors are of some \
+        "With the tolerance of {} pixels. A frame is what the CPU takes to cull, list and prepare its copies and the time until it is drawn. Errors are of some \
          of the pictures, against exact ones: as the tolerance's, in pixels.",
         Tolerance::DEFAULT
     ));
-    page.table(&flown(flights), &[0]);
+    page.table(&flown(flights), &[0, 1]);
     page.chapter("All rows");
     chapters::row_table(&mut page, &measured.rows, &SeriesStyles::of(&measured.rows));
     chapters::end(&mut page, plan, measured);

@@ -19,6 +19,8 @@ const WARM: usize = 10;
 pub struct Flight {
     /// How it was drawn.
     pub settings: MethodSettings,
+    /// How many solids it went through.
+    pub solids: u32,
     /// Of every frame; what the new view asks of the CPU is part of `prepare_ms`.
     pub times: Vec<Times>,
     /// Frames that were held to exact pictures, and their errors in pixels.
@@ -73,6 +75,7 @@ pub fn fly(
     }
     Ok(Flight {
         settings: *settings,
+        solids: count,
         times,
         errors,
     })
@@ -90,6 +93,13 @@ impl Flight {
         let all: Vec<f64> = self.times.iter().map(Self::whole).collect();
         let median = stats::median(&all).unwrap_or(f64::NAN);
         [median, all.into_iter().fold(0.0, f64::max)]
+    }
+
+    /// What the CPU takes of a median frame, milliseconds.
+    #[must_use]
+    pub fn prepare_ms(&self) -> f64 {
+        let all: Vec<f64> = self.times.iter().map(|t| t.prepare_ms).collect();
+        stats::median(&all).unwrap_or(f64::NAN)
     }
 
     /// The largest error over the pictures that were compared, pixels: of 99.9 % of the pixels,
