@@ -191,7 +191,7 @@ fn path(variant: Variant, kind: Kind) -> String {
         (Kind::Sides, _) if variant.cut == CUT_SOLID => "solid sides",
         (Kind::Sides, _) => "sides",
         (Kind::ConvexHull, _) => "convex hull",
-        (Kind::Spots, Dispatch::Beams) => "squares of one copy, between two t",
+        (Kind::Spots, Dispatch::Beams) => "squares of one copy in spans",
         (Kind::Spots, _) => "squares of one copy",
         (Kind::Bins, _) => "bins",
         (Kind::Beam, _) => "list of tiles",
