@@ -29,7 +29,7 @@ impl Forms {
             {
                 return None;
             }
-            if low > high || low.is_nan() || high.is_nan() {
+            if low.is_nan() || high.is_nan() {
                 return None;
             }
             let (low, high) = (
