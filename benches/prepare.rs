@@ -108,7 +108,7 @@ impl Crowd {
     fn prepare(&mut self) {
         let view = View::from_camera(&self.camera, (1280, 720), [0.1, 200.0]).unwrap();
         // SAFETY: `cmd` is recording; no frame was ever submitted.
-        unsafe { self.renderer.prepare(self.cmd, self.frame % 2, &view) }.unwrap();
+        let _ = unsafe { self.renderer.prepare(self.cmd, self.frame % 2, &view) }.unwrap();
     }
 }
 

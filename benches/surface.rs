@@ -5,6 +5,9 @@
 #[path = "../tests/common/shapes.rs"]
 #[allow(dead_code)]
 mod shapes;
+#[path = "../tests/common/walk.rs"]
+#[allow(dead_code)]
+mod walk;
 
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
@@ -12,8 +15,8 @@ use revmap::profile::{Outline, Profile, ProfileAxis};
 use revmap::scene::Offset;
 use revmap::surface::{
     ContourSource, FitOptions, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
-    trace_patches,
 };
+use walk::trace_patches;
 
 fn main() {
     divan::main();

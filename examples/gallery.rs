@@ -7,7 +7,7 @@
 #![allow(clippy::expect_used)]
 
 use image::{GrayImage, Luma, RgbaImage, imageops};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::{Frame, write_png};
 use revmap::gpu::{self, Device};
 use revmap::scene::file;
@@ -48,7 +48,7 @@ fn main() -> Result<()> {
 }
 
 fn fault(message: impl Into<String>) -> Error {
-    Error::new(Stage::Usage, message)
+    Error::new(ErrorKind::Usage, message)
 }
 
 fn scenes(folder: &Path) -> Result<Vec<PathBuf>> {

@@ -1,5 +1,9 @@
-//! What can go wrong, and where: every failure names its stage, and the file and the key it came
-//! from.
+//! What can go wrong: every failure has a kind, which says what a program can do about it, and
+//! names the file and the key that it came from.
+//!
+//! Every function that calls Vulkan can fail with [`ErrorKind::DeviceLost`],
+//! [`ErrorKind::OutOfDeviceMemory`], [`ErrorKind::OutOfHostMemory`] and, for a driver's fault,
+//! [`ErrorKind::Other`]. Docs of such functions say "of Vulkan".
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -7,59 +11,61 @@ use std::path::{Path, PathBuf};
 /// The result of everything in this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The stage in which a failure arose. It decides the program's exit code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Options or arguments that make no sense (exit code 2).
+/// What a program can do about a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ErrorKind {
+    /// Mend the call: its arguments, or the order of calls, make no sense.
     Usage,
-    /// Reading a scene file or checking its values.
-    Scene,
-    /// Reading a profile: image, drawing or polygon.
-    Profile,
-    /// Baking, saving or loading a map.
-    Map,
-    /// Finding a Vulkan device, or one that has what is needed (exit code 3).
-    Device,
-    /// A Vulkan call, or work on the GPU.
-    Draw,
-    /// Writing or reading a frame.
-    Frame,
-    /// Measuring, or writing and reading what was measured.
-    Report,
+    /// Mend the values of a scene, a profile or a map; [`Error::key`] names the value.
+    Content,
+    /// Look at the file, which cannot be read or written; [`Error::file`] names it.
+    File,
+    /// Take another device: there is none, or it lacks a feature, a format or an extension.
+    Unsupported,
+    /// Ask for less: pixels, texels, copies or tables are more than the device or this crate takes.
+    TooLarge,
+    /// Ask for less, or free memory of the host.
+    OutOfHostMemory,
+    /// Ask for less, or free memory of the device. Its budget, where one was set, may be larger.
+    OutOfDeviceMemory,
+    /// Drop all that was made on the device, and open it again.
+    DeviceLost,
+    /// Report it: a driver or this crate is at fault.
+    Other,
 }
 
 /// A failure in one sentence: where, what, and what to do about it.
 ///
 /// ```
-/// use revmap::error::{Error, Stage};
-/// let e = Error::new(Stage::Scene, "the scale has a zero; give positive numbers")
+/// use revmap::error::{Error, ErrorKind};
+/// let e = Error::new(ErrorKind::Content, "the scale has a zero; give positive numbers")
 ///     .at_key("object.0.scale")
 ///     .in_file("board.toml");
 /// assert_eq!(e.to_string(), "board.toml: object.0.scale: the scale has a zero; give positive numbers");
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
-    /// Where in the flow of data it happened.
-    pub stage: Stage,
+    /// What can be done about it.
+    pub kind: ErrorKind,
     /// The file concerned.
     pub file: Option<PathBuf>,
-    /// The key of the scene file, or the option, concerned.
+    /// The value concerned: a key of the scene file, or a setting.
     pub key: Option<String>,
     /// What is wrong, and the remedy.
     pub message: String,
 }
 
 impl Error {
-    /// A failure of `stage`; `message` says what is wrong and what would be right. What other
-    /// libraries say in several lines is told in one.
-    pub fn new(stage: Stage, message: impl Into<String>) -> Self {
+    /// A failure of a kind; `message` says what is wrong and what would be right. Line breaks, as
+    /// other libraries write them, become spaces.
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let mut message: String = message.into();
         if message.contains('\n') {
             let lines: Vec<_> = message.lines().map(str::trim).collect();
             message = lines.join(" ");
         }
         Self {
-            stage,
+            kind,
             file: None,
             key: None,
             message,
@@ -78,16 +84,6 @@ impl Error {
     pub fn at_key(mut self, key: impl Into<String>) -> Self {
         self.key.get_or_insert_with(|| key.into());
         self
-    }
-
-    /// The program's exit code: 2 wrong usage, 3 no usable device, 1 all else.
-    #[must_use]
-    pub fn exit_code(&self) -> u8 {
-        match self.stage {
-            Stage::Usage => 2,
-            Stage::Device => 3,
-            _ => 1,
-        }
     }
 }
 

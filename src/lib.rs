@@ -34,7 +34,7 @@
 //!   revolved object*. Journal of Graphic Engineering and Design, 2025.
 //!
 //! The last two are "the papers" of this documentation. Their search is
-//! [`Solver::Circle`](settings::Solver::Circle); with 20 steps over the distances of a binary image
+//! `circle` of the crate `revmap-searches`; with 20 steps over the distances of a binary image
 //! in 8 bits it is the **RBM baseline** (revolution-bump mapping) of reports.
 //!
 //! # What holds
@@ -96,9 +96,9 @@
 //! renderer.set_offset(pawn, moved)?;
 //! let view = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
 //! // SAFETY: `cmd` is recording, and the frame before in this slot is done.
-//! unsafe { renderer.prepare(cmd, slot, &view)? };
+//! let frame = unsafe { renderer.prepare(cmd, slot, &view)? };
 //! // ... begin the pass, draw what is yours ...
-//! unsafe { renderer.record(cmd, slot) };
+//! unsafe { renderer.record(cmd, &frame)? };
 //! # Ok(())
 //! # }
 //! ```
@@ -115,6 +115,7 @@
 //! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of height maps; colours; lengths along the profile |
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
+//! | [`search`] | searches that other crates bring, for comparison |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
@@ -129,7 +130,7 @@
 //! | `scene-file` | | scenes from TOML files |
 //! | `exr` | | frames and maps as EXR files |
 //! | `shaderc` | | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
-//! | `other-shaders` | | pipelines of SPIR-V that the host gives, for work on the shaders |
+//! | `other-shaders` | | for work on the shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
 //!
 //! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in
 //! `revmap-lab`; the program is `revmap-cli`.
@@ -140,8 +141,10 @@ pub mod frame;
 pub mod gpu;
 pub mod maps;
 mod pictures;
+mod plan;
 pub mod profile;
 pub mod scene;
+pub mod search;
 pub mod settings;
 mod shader;
 pub mod surface;

@@ -1,6 +1,6 @@
 //! Pictures from files: PNG, and JPEG with the feature `jpeg`.
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::io::Cursor;
 
 /// Largest width and height of a picture.
@@ -82,8 +82,8 @@ fn rgba<T: Copy, U>(values: &[T], channels: usize, opaque: T, to: impl Fn(T) -> 
 /// for.
 ///
 /// The size is read and checked before anything is decoded.
-pub(crate) fn decode(bytes: &[u8], stage: Stage, kinds: &str) -> Result<Pixels> {
-    let fault = |message: String| Error::new(stage, message);
+pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
+    let fault = |message: String| Error::new(ErrorKind::File, message);
     let broken = |e: String| fault(format!("the image is damaged ({e}); save or copy it again"));
     let checked = |(width, height): (u32, u32)| {
         if width > MAX_SIDE || height > MAX_SIDE {
@@ -255,7 +255,7 @@ mod tests {
         for (number, kind) in kinds.into_iter().enumerate() {
             let mut file = Cursor::new(Vec::new());
             kind.write_to(&mut file, ImageFormat::Png).unwrap();
-            let ours = decode(file.get_ref(), Stage::Map, "PNG").unwrap();
+            let ours = decode(file.get_ref(), "PNG").unwrap();
             assert_eq!(
                 (ours.width, ours.height, ours.channels),
                 (7, 5, number % 4 + 1)
@@ -275,10 +275,10 @@ mod tests {
             let mut file = Cursor::new(Vec::new());
             kind.write_to(&mut file, ImageFormat::Jpeg).unwrap();
             let theirs = image::load_from_memory(file.get_ref()).unwrap();
-            let ours = decode(file.get_ref(), Stage::Map, "JPEG").unwrap();
+            let ours = decode(file.get_ref(), "JPEG").unwrap();
             assert_eq!(ours.rgba8().as_flattened(), theirs.to_rgba8().as_raw());
             let half = &file.get_ref()[..file.get_ref().len() / 4];
-            assert!(decode(half, Stage::Map, "JPEG").is_err());
+            assert!(decode(half, "JPEG").is_err());
         }
     }
 }

@@ -4,8 +4,9 @@ mod tolerance;
 
 pub use tolerance::Tolerance;
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::maps::{MapFormat, MapSource};
+use crate::search::{Reads, Search, Steps};
 use std::fmt;
 use std::str::FromStr;
 
@@ -40,45 +41,23 @@ pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static
 /// How the first hit along a ray is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {
-    /// Equal steps along the ray.
-    Linear,
-    /// Equal steps, then halvings: relief mapping.
-    Relief,
-    /// Equal steps, then secants: interval mapping.
-    Secant,
-    /// The papers' circle tracing: steps of the distance read from the map.
-    Circle,
-    /// Ours for parameters that change from frame to frame: steps that are safe to a texel under
-    /// every offset, a last secant, no fixed count of steps; on the map alone.
+    /// For parameters that change from frame to frame: steps that are safe to a texel under every
+    /// offset, a last secant, no fixed count of steps; on the map alone.
     Live,
-    /// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z
-    /// (`r <= f(z)`); others are an error.
-    Cone,
-    /// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings
-    /// back: as the papers list it. It passes surfaces.
-    Relaxed,
-    /// Ours for speed: the boundary as patches of quadrics under a tree of rows, solved exactly;
-    /// rebuilt when parameters change.
+    /// The boundary as patches of quadrics under a tree of rows, solved exactly; rebuilt when
+    /// parameters change.
     Quadric,
     /// The same patches, found by what the stage does best: in the fragment stage the rasteriser
     /// finds them with proxy hulls, in compute tiles of pixels are first asked as a whole. Objects
     /// for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
     Hull,
+    /// One of another crate.
+    Other(&'static Search),
 }
 
 impl Solver {
-    /// Every search, in the order in which reports list them.
-    pub const ALL: [Self; 9] = [
-        Self::Linear,
-        Self::Relief,
-        Self::Secant,
-        Self::Circle,
-        Self::Cone,
-        Self::Relaxed,
-        Self::Live,
-        Self::Quadric,
-        Self::Hull,
-    ];
+    /// The library's own, in the order in which reports list them.
+    pub const ALL: [Self; 3] = [Self::Live, Self::Quadric, Self::Hull];
 
     /// What is taken where none is named.
     pub const DEFAULT: Self = Self::Hull;
@@ -87,31 +66,41 @@ impl Solver {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Linear => "linear",
-            Self::Relief => "relief",
-            Self::Secant => "secant",
-            Self::Circle => "circle",
-            Self::Cone => "cone",
-            Self::Relaxed => "relaxed",
             Self::Live => "live",
             Self::Quadric => "quadric",
             Self::Hull => "hull",
+            Self::Other(search) => search.name,
         }
     }
 
-    /// Whether its tables are rows of cones, which not every solid has.
+    /// The search of this name among `known`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] where none has it.
+    pub fn named(name: &str, known: &[Self]) -> Result<Self> {
+        let found = known.iter().find(|s| s.name() == name);
+        found.copied().ok_or_else(|| {
+            let names: Vec<_> = known.iter().map(|s| s.name()).collect();
+            let names = names.join(", ");
+            let message = format!("{name:?} is no search; give one of {names}");
+            Error::new(ErrorKind::Usage, message)
+        })
+    }
+
+    /// Whether its tables are rows of its own, which not every solid has.
     #[must_use]
-    pub const fn is_of_cones(self) -> bool {
-        matches!(self, Self::Cone | Self::Relaxed)
+    pub const fn reads_own_table(self) -> bool {
+        matches!(self, Self::Other(search) if matches!(search.reads, Reads::Table(_)))
     }
 
     /// Whether it reads the shape map. The others search tables made from the boundary itself.
     #[must_use]
     pub const fn reads_map(self) -> bool {
-        !matches!(
-            self,
-            Self::Cone | Self::Relaxed | Self::Quadric | Self::Hull
-        )
+        match self {
+            Self::Live => true,
+            Self::Quadric | Self::Hull => false,
+            Self::Other(search) => matches!(search.reads, Reads::Map { .. }),
+        }
     }
 
     /// Whether it searches patches, of which there are levels for every [`Tolerance`]. The others
@@ -121,25 +110,32 @@ impl Solver {
         matches!(self, Self::Quadric | Self::Hull)
     }
 
-    /// Whether a ray may use up the bound on steps before its search has come to an end. Equal
-    /// steps reach the end whatever their number, and patches are solved without any.
+    /// The bound on its steps; `None` where it ends by itself, as patches do.
     #[must_use]
-    pub const fn may_run_out(self) -> bool {
-        matches!(self, Self::Circle | Self::Relaxed | Self::Live)
+    pub const fn steps(self) -> Option<Steps> {
+        match self {
+            // More than any ray of a sound map takes.
+            Self::Live => Some(Steps {
+                default: 512,
+                beveled: 512,
+                most: Steps::MOST,
+                may_run_out: true,
+            }),
+            Self::Quadric | Self::Hull => None,
+            Self::Other(search) => search.steps,
+        }
     }
 
-    /// The bound on steps where none is given: 64 equal ones, or relaxed cones; the papers' 20, and
-    /// 25 before the halvings of a bevel; for `live` more than any ray of a sound map takes.
-    /// `cone`, `quadric` and `hull` have none to bound.
+    /// Whether a ray may use up the bound on steps before its search has come to an end.
+    #[must_use]
+    pub fn may_run_out(self) -> bool {
+        self.steps().is_some_and(|steps| steps.may_run_out)
+    }
+
+    /// The bound on steps where none is given; 1 where there is none.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
-        match self {
-            Self::Linear | Self::Relief | Self::Secant | Self::Relaxed => 64,
-            Self::Circle if beveled => 25,
-            Self::Circle => 20,
-            Self::Live => 512,
-            Self::Cone | Self::Quadric | Self::Hull => 1,
-        }
+        self.steps().map_or(1, |steps| steps.of(beveled))
     }
 }
 
@@ -149,7 +145,7 @@ impl fmt::Display for Solver {
     }
 }
 
-/// The inverse of [`Display`](fmt::Display).
+/// The inverse of [`Display`](fmt::Display) for the library's own; [`Solver::named`] knows others.
 ///
 /// ```
 /// use revmap::settings::Solver;
@@ -160,14 +156,7 @@ impl FromStr for Solver {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|s| s.name() == text)
-            .ok_or_else(|| {
-                let names = Self::ALL.map(Self::name).join(", ");
-                let message = format!("{text:?} is no search; give one of {names}");
-                Error::new(Stage::Usage, message)
-            })
+        Self::named(text, &Self::ALL)
     }
 }
 
@@ -277,6 +266,34 @@ impl From<&SearchSettings> for Settings {
 }
 
 impl SearchSettings {
+    /// Fails where the search cannot do what is asked of it.
+    pub(crate) fn check(&self) -> Result<()> {
+        let refused =
+            |message: String, key: &str| Err(Error::new(ErrorKind::Usage, message).at_key(key));
+        if let (Some(steps), Some(bound)) = (self.max_steps, self.solver.steps())
+            && steps > bound.most
+        {
+            let (solver, most) = (self.solver, bound.most);
+            return refused(
+                format!("is {steps}; {solver} takes {most} at most"),
+                "max_steps",
+            );
+        }
+        match self.solver {
+            Solver::Other(search)
+                if self.map_format == MapFormat::Rgba8
+                    && matches!(search.reads, Reads::Map { rgba8: false, .. }) =>
+            {
+                let solver = self.solver;
+                refused(
+                    format!("{solver} reads no maps in rgba8; take r16 or r32"),
+                    "map_format",
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The default with no tolerance, as measurements want it.
     #[must_use]
     pub fn exact() -> Self {

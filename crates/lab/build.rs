@@ -2,13 +2,11 @@
 //! `shaders/floor/` has in place of theirs. None is kept in the repository: they are for measuring
 //! alone.
 
-use std::error::Error;
-use std::fmt::Write as _;
+use shaderc_link::modules::Fallible;
 #[cfg(feature = "shaderc")]
-use std::path::Path;
+use shaderc_link::modules::{Module, Modules};
+use std::fmt::Write as _;
 use std::path::PathBuf;
-
-type Fallible<T> = Result<T, Box<dyn Error>>;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -47,71 +45,45 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
         &[("TEXTURED", "1"), ("OUTPUT", "OUTPUT_PLANES")],
     ];
     let entries = [
-        ("hull.frag", None),
-        ("box.frag", None),
-        ("box.frag", Some("DISPATCH_BEAMS")),
-        ("bins.frag", None),
-        ("listed.comp", Some("DISPATCH_LISTS")),
-        ("trace.comp", None),
-        ("trace.comp", Some("DISPATCH_BEAMS")),
-        ("trace.comp", Some("DISPATCH_BINS")),
+        "cells.frag",
+        "tree.frag",
+        "tile_patches.comp",
+        "tile_tree.comp",
+        "tile_copies.comp",
     ];
-    let compiler = shaderc_link::Compiler::new()?;
-    let mut modules = vec![module(&compiler, "hull.vert", &[])?];
-    for (file, dispatch) in entries {
-        for macros in VARIANTS {
-            let mut all = vec![("SEARCH", "SEARCH_QUADRIC"), ("OWN_TABLES", "1")];
-            all.extend(macros);
-            all.extend(dispatch.map(|dispatch| ("DISPATCH", dispatch)));
-            modules.push(module(&compiler, file, &all)?);
+    let mut all = vec![module("proxy_cells.vert", Vec::new())];
+    for file in entries {
+        for variant in VARIANTS {
+            let mut macros = vec![("SEARCH", "SEARCH_QUADRIC")];
+            macros.extend(variant);
+            all.push(module(file, macros));
         }
     }
-    Ok(modules)
-}
-
-#[cfg(feature = "shaderc")]
-fn module(
-    compiler: &shaderc_link::Compiler,
-    file: &str,
-    macros: &[(&str, &str)],
-) -> Fallible<(String, Vec<u32>)> {
-    let (path, source) = read(file, "../../shaders-glsl")?;
-    let source = (path.as_str(), source.as_str());
-    let level = shaderc_link::OptimizationLevel::Performance;
-    let made = shaderc_link::spirv(compiler, source, macros, level, include)?;
-    Ok((name(file, macros), made.as_binary().to_vec()))
-}
-
-/// As `floor.rs` has it.
-#[cfg(feature = "shaderc")]
-fn name(file: &str, macros: &[(&str, &str)]) -> String {
-    let has = |name: &str| {
-        macros
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|(_, value)| *value)
+    let modules = Modules {
+        entries: &["shaders/floor", "../../shaders-glsl"],
+        includes: &["shaders/floor", "../../shaders-glsl/include"],
+        kept: "",
+        all,
     };
-    format!(
-        "{file} {} {} {}",
-        has("OUTPUT").unwrap_or("OUTPUT_COLOR"),
-        has("DISPATCH").unwrap_or("DISPATCH_RECTANGLE"),
-        has("TEXTURED").unwrap_or("0"),
-    )
+    let words = modules.compiled()?;
+    let names = modules.all.into_iter().map(|module| module.name);
+    Ok(names.zip(words).collect())
 }
 
+/// Its name is as `floor.rs` has it.
 #[cfg(feature = "shaderc")]
-fn include(wanted: &str) -> Result<(String, String), String> {
-    read(wanted, "../../shaders-glsl/include")
-}
-
-/// A file's path and text: the floor's, or else the renderer's.
-#[cfg(feature = "shaderc")]
-fn read(wanted: &str, renderer: &str) -> Result<(String, String), String> {
-    let path = ["shaders/floor", renderer]
-        .iter()
-        .map(|folder| Path::new(folder).join(wanted))
-        .find(|path| path.exists())
-        .ok_or_else(|| format!("{wanted}: there is no such file"))?;
-    let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-    Ok((path.to_string_lossy().into_owned(), text))
+fn module(entry: &'static str, macros: Vec<(&'static str, &'static str)>) -> Module {
+    let value = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
+    let name = format!(
+        "{entry} {} {}",
+        value("OUTPUT").unwrap_or("OUTPUT_COLOR"),
+        value("TEXTURED").unwrap_or("0"),
+    );
+    Module {
+        name,
+        entry,
+        macros,
+        hook: None,
+        named: false,
+    }
 }

@@ -29,7 +29,8 @@ const STUB_BYTES: u64 = 4096;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=SHADERC_LIB_DIR");
-    if std::env::var_os("SHADERC_LIB_DIR").is_some()
+    if std::env::var_os("CARGO_FEATURE_SHADERC").is_none()
+        || std::env::var_os("SHADERC_LIB_DIR").is_some()
         || std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("linux")
     {
         return;

@@ -137,8 +137,8 @@ fn main() -> Fallible<()> {
             // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of
             // its pass.
             |cmd, slot| Ok(unsafe { renderer_cell.borrow_mut().prepare(cmd, slot, &seen) }?),
-            // SAFETY: the slot was prepared, and the pass is of the output's formats.
-            |cmd, slot| unsafe { renderer_cell.borrow().record(cmd, slot) },
+            // SAFETY: the frame was prepared, and the pass is of the output's formats.
+            |cmd, frame| Ok(unsafe { renderer_cell.borrow().record(cmd, frame) }?),
         )?;
         if [0, COUNT / 2, COUNT - 1].contains(&frame) {
             let (pixels, _) = stage.read()?;

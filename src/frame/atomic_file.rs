@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all: written beside their target, then renamed onto it.
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -14,21 +14,22 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// written directly, since nothing can take its place.
 ///
 /// # Errors
-/// Of `stage`, naming the file: what `fill` reports, or that the file cannot be made or written
-/// (folder missing, no permission, full disk).
+/// What `fill` reports; [`ErrorKind::File`] where the file cannot be made or written (folder
+/// missing, no permission, full disk). Both name the file.
 pub fn write_atomically(
-    stage: Stage,
     target: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
 ) -> Result<()> {
     let failed = |what: &str, e: &io::Error| {
-        Error::new(stage, format!("{what}: {}", reason(e))).in_file(target)
+        Error::new(ErrorKind::File, format!("{what}: {}", reason(e))).in_file(target)
     };
     // A link's own place keeps the link; what it points to is replaced.
     let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
     match fs::metadata(&real) {
         Ok(meta) if meta.is_dir() => {
-            return Err(Error::new(stage, "is a folder; give the name of a file").in_file(target));
+            return Err(
+                Error::new(ErrorKind::File, "is a folder; give the name of a file").in_file(target),
+            );
         }
         Ok(meta) if !meta.is_file() => {
             let file = OpenOptions::new()
@@ -42,7 +43,7 @@ pub fn write_atomically(
         _ => {}
     }
     if real.file_name().is_none() {
-        return Err(Error::new(stage, "is not the name of a file").in_file(target));
+        return Err(Error::new(ErrorKind::File, "is not the name of a file").in_file(target));
     }
     let (file, part) = create_part(&real).map_err(|e| failed("cannot be created", &e))?;
     let mut writer = BufWriter::new(file);
@@ -67,11 +68,14 @@ pub fn write_atomically(
 ///
 /// # Errors
 /// As there.
-pub fn write_bytes(stage: Stage, target: &Path, bytes: &[u8]) -> Result<()> {
-    write_atomically(stage, target, |writer| {
-        writer
-            .write_all(bytes)
-            .map_err(|e| Error::new(stage, format!("cannot be written: {}", reason(&e))))
+pub fn write_bytes(target: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(target, |writer| {
+        writer.write_all(bytes).map_err(|e| {
+            Error::new(
+                ErrorKind::File,
+                format!("cannot be written: {}", reason(&e)),
+            )
+        })
     })
 }
 
@@ -127,8 +131,8 @@ mod tests {
     fn the_target_appears_whole_and_alone() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_bytes(Stage::Frame, &target, b"one").unwrap();
-        write_bytes(Stage::Frame, &target, b"two").unwrap();
+        write_bytes(&target, b"one").unwrap();
+        write_bytes(&target, b"two").unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["a.bin"]);
     }
@@ -137,10 +141,10 @@ mod tests {
     fn a_failure_keeps_what_was_there() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
-        write_bytes(Stage::Frame, &target, b"old").unwrap();
-        let error = write_atomically(Stage::Map, &target, |w| {
+        write_bytes(&target, b"old").unwrap();
+        let error = write_atomically(&target, |w| {
             w.write_all(&[7; 100_000]).unwrap();
-            Err(Error::new(Stage::Map, "half way"))
+            Err(Error::new(ErrorKind::Other, "half way"))
         })
         .unwrap_err();
         assert_eq!(error.to_string(), format!("{}: half way", target.display()));
@@ -157,7 +161,7 @@ mod tests {
             (folder.path().to_path_buf(), "is a folder"),
             (folder.path().join("file/a.bin"), "not a folder"),
         ] {
-            let error = write_bytes(Stage::Frame, &target, b"x").unwrap_err();
+            let error = write_bytes(&target, b"x").unwrap_err();
             assert_eq!(error.file.as_deref(), Some(target.as_path()));
             assert!(error.to_string().contains(what), "{error}");
         }
@@ -170,7 +174,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.bin");
         std::os::unix::fs::symlink("/dev/full", &target).unwrap();
-        let error = write_bytes(Stage::Frame, &target, b"x").unwrap_err();
+        let error = write_bytes(&target, b"x").unwrap_err();
         assert!(error.to_string().contains("the disk is full"), "{error}");
         assert_eq!(names(folder.path()), ["a.bin"]);
         assert!(Path::new("/dev/full").exists());
@@ -183,7 +187,7 @@ mod tests {
         let (real, link) = (folder.path().join("real"), folder.path().join("link"));
         fs::write(&real, b"old").unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        write_bytes(Stage::Frame, &link, b"new").unwrap();
+        write_bytes(&link, b"new").unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
@@ -192,7 +196,7 @@ mod tests {
     fn very_long_names_work() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x".repeat(255));
-        write_bytes(Stage::Frame, &target, b"x").unwrap();
+        write_bytes(&target, b"x").unwrap();
         assert_eq!(names(folder.path()).len(), 1);
     }
 }

@@ -9,7 +9,7 @@ mod png;
 pub use openexr::{read_exr, write_exr};
 pub use png::{Picture, linear_from_srgb, srgb_from_linear, write_png};
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use bytemuck::{Zeroable, allocation::try_zeroed_vec};
 
 /// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
@@ -94,8 +94,7 @@ impl Frame {
     /// A frame in which nothing is hit.
     ///
     /// # Errors
-    /// [`Stage::Frame`] when a side is 0, when there are more than [`MAX_PIXELS`], or when memory
-    /// for them is refused.
+    /// As [`pixel_count`]; [`ErrorKind::OutOfHostMemory`].
     pub fn new(width: u32, height: u32, background: [f32; 4]) -> Result<Self> {
         let pixels = pixel_count(width, height)?;
         Ok(Self {
@@ -218,17 +217,17 @@ impl Frame {
 /// Number of pixels of a frame of this size, if one may be that large.
 ///
 /// # Errors
-/// [`Stage::Frame`] when a side is 0 or there are more than [`MAX_PIXELS`].
+/// [`ErrorKind::Usage`] when a side is 0, [`ErrorKind::TooLarge`] beyond [`MAX_PIXELS`].
 pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels == 0 {
         let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
-        return Err(Error::new(Stage::Frame, message));
+        return Err(Error::new(ErrorKind::Usage, message));
     }
     match usize::try_from(pixels) {
         Ok(count) if pixels <= MAX_PIXELS => Ok(count),
         _ => Err(Error::new(
-            Stage::Frame,
+            ErrorKind::TooLarge,
             format!(
                 "a picture of {width}x{height} is too large; at most {MAX_PIXELS} pixels (16384x8192) can be drawn"
             ),
@@ -252,7 +251,7 @@ fn zeros<T: Zeroable>(pixels: usize) -> Result<Vec<T>> {
 
 fn no_memory(pixels: usize) -> Error {
     Error::new(
-        Stage::Frame,
+        ErrorKind::OutOfHostMemory,
         format!("no memory for a picture of {pixels} pixels; give a smaller size"),
     )
 }
@@ -285,7 +284,13 @@ mod tests {
             (16385, 8192),
         ] {
             let error = Frame::new(w, h, [0.0; 4]).unwrap_err();
-            assert_eq!(error.stage, Stage::Frame);
+            let none = w == 0 || h == 0;
+            let wanted = if none {
+                ErrorKind::Usage
+            } else {
+                ErrorKind::TooLarge
+            };
+            assert_eq!(error.kind, wanted, "{error}");
             assert!(error.to_string().contains(&format!("{w}x{h}")), "{error}");
         }
     }

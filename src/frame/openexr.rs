@@ -2,7 +2,7 @@
 
 use super::atomic_file::write_atomically;
 use super::{CHANNELS, Frame, pixel_count};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::pictures::check_exr;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, MetaData,
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed.
 ///
 /// # Errors
-/// [`Stage::Frame`], naming the file, when it cannot be written.
+/// [`ErrorKind::File`], naming the file, when it cannot be written.
 pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
     for index in 0..frame.pixels() {
@@ -37,20 +37,25 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels),
     ));
-    write_atomically(Stage::Frame, path.as_ref(), |writer| {
+    write_atomically(path.as_ref(), |writer| {
         image
             .write()
             .non_parallel()
             .to_buffered(writer)
-            .map_err(|e| Error::new(Stage::Frame, format!("cannot be written: {}", one_line(&e))))
+            .map_err(|e| {
+                Error::new(
+                    ErrorKind::File,
+                    format!("cannot be written: {}", one_line(&e)),
+                )
+            })
     })
 }
 
 /// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
 ///
 /// # Errors
-/// [`Stage::Frame`], naming the file, when it cannot be read, is too large, or lacks a channel
-/// (then naming that).
+/// [`ErrorKind::File`], with the file, when it cannot be read or lacks a channel, which is the key;
+/// those of [`Frame::new`].
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
     let path = path.as_ref();
     read_checked(path).map_err(|e| e.in_file(path))
@@ -59,7 +64,7 @@ pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
 fn read_checked(path: &Path) -> Result<Frame> {
     let unreadable = |e: exr::error::Error| {
         Error::new(
-            Stage::Frame,
+            ErrorKind::File,
             format!("cannot be read as EXR: {}", one_line(&e)),
         )
     };
@@ -67,7 +72,7 @@ fn read_checked(path: &Path) -> Result<Frame> {
     let meta = MetaData::read_from_file(path, false).map_err(unreadable)?;
     let length = std::fs::metadata(path).map_or(0, |file| file.len());
     check_exr(&meta, length)
-        .map_err(|e| Error::new(Stage::Frame, format!("cannot be read as EXR: {e}")))?;
+        .map_err(|e| Error::new(ErrorKind::File, format!("cannot be read as EXR: {e}")))?;
     let mut widest = (0, 0);
     for header in &meta.headers {
         let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
@@ -101,7 +106,7 @@ fn read_checked(path: &Path) -> Result<Frame> {
             .find(|c| c.name.eq(name))
             .ok_or_else(|| {
                 Error::new(
-                    Stage::Frame,
+                    ErrorKind::File,
                     "there is no such channel; give a file that revmap wrote",
                 )
                 .at_key(name)
@@ -109,7 +114,7 @@ fn read_checked(path: &Path) -> Result<Frame> {
         let plane: Vec<f32> = channel.sample_data.values_as_f32().collect();
         if plane.len() != frame.pixels() {
             return Err(Error::new(
-                Stage::Frame,
+                ErrorKind::File,
                 "the channel is subsampled; write it at full size",
             )
             .at_key(name));

@@ -2,7 +2,7 @@
 
 use super::Frame;
 use super::atomic_file::write_atomically;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::io::Write;
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use std::path::Path;
 /// linear.
 ///
 /// # Errors
-/// [`Stage::Frame`], naming the file, when it cannot be written.
+/// [`ErrorKind::File`], naming the file, when it cannot be written.
 pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     Picture::of(frame).write_png(path)
 }
@@ -43,17 +43,15 @@ impl Picture {
     /// Writes a PNG.
     ///
     /// # Errors
-    /// [`Stage::Frame`], naming the file, when it cannot be written.
+    /// [`ErrorKind::File`], naming the file, when it cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_atomically(Stage::Frame, path.as_ref(), |writer| {
-            self.encode_png(writer)
-        })
+        write_atomically(path.as_ref(), |writer| self.encode_png(writer))
     }
 
     /// Writes the bytes of a PNG.
     ///
     /// # Errors
-    /// [`Stage::Frame`] when they cannot be written, or there are not `width * height` pixels.
+    /// [`ErrorKind::File`] when they cannot be written, or there are not `width * height` pixels.
     pub fn encode_png(&self, writer: impl Write) -> Result<()> {
         let write = || -> std::result::Result<(), png::EncodingError> {
             let mut encoder = png::Encoder::new(writer, self.width, self.height);
@@ -68,7 +66,7 @@ impl Picture {
         write().map_err(|e| {
             let full = matches!(&e, png::EncodingError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
             let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
-            Error::new(Stage::Frame, format!("cannot be written: {why}"))
+            Error::new(ErrorKind::File, format!("cannot be written: {why}"))
         })
     }
 }

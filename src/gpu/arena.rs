@@ -6,15 +6,13 @@ use super::device::Shared;
 use super::memory::Buffer;
 use super::offset_surface::OffsetSurface;
 use super::table_slot::{Part, Ranges, Slot};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use range_alloc::RangeAllocator;
 use std::sync::{Arc, Mutex, Weak};
 
 /// The buffer and what of it is free.
 pub(crate) struct TableArena {
-    pub buffer: Buffer,
-    /// Counts buffers: descriptor sets that name an older one must be written anew.
-    pub generation: u64,
+    pub buffer: Arc<Buffer>,
     ranges: Ranges,
     /// Vectors of 16 bytes to a unit: what every beginning is aligned to.
     unit: u32,
@@ -32,8 +30,7 @@ impl TableArena {
         let align = device.limits.min_uniform_buffer_offset_alignment.max(16);
         let unit = u32::try_from(align / 16).unwrap_or(16);
         Ok(Self {
-            buffer: buffer(device, unit, FIRST_UNITS)?,
-            generation: 0,
+            buffer: Arc::new(buffer(device, unit, FIRST_UNITS)?),
             ranges: Arc::new(Mutex::new(RangeAllocator::new(0..FIRST_UNITS))),
             unit,
             placed: Vec::new(),
@@ -42,40 +39,34 @@ impl TableArena {
         })
     }
 
-    /// Gives a part of a surface its place and writes it there, if it has none. Returns the vector
-    /// with which it begins, and the buffer that was too small, which frames in flight may still
-    /// read.
-    pub fn place(
-        &mut self,
-        surface: &Arc<OffsetSurface>,
-        part: Part,
-    ) -> Result<(u32, Option<Buffer>)> {
-        if let Some(slot) = surface.slot(part) {
-            return Ok((slot.begin(), None));
+    /// Gives a part of a surface its place and writes it there, if it has none.
+    pub fn place(&mut self, surface: &Arc<OffsetSurface>, part: Part) -> Result<()> {
+        if surface.slot(part).is_some() {
+            return Ok(());
         }
         let vectors = surface.vectors(part);
         let units = u32::try_from(vectors.len().max(1))
             .unwrap_or(u32::MAX)
             .div_ceil(self.unit);
-        let mut old = None;
         let free = self.ranges()?.allocate_range(units);
         let range = match free {
             Ok(range) => range,
             Err(_) => {
-                old = Some(self.grow(units)?);
+                self.grow(units)?;
                 self.ranges()?.allocate_range(units).map_err(|_| full())?
             }
         };
         let slot = Slot::new(range, self.unit, &self.ranges);
-        let begin = surface.keep_slot(part, slot);
+        let begin = slot.begin();
         self.write(begin, vectors)?;
+        surface.keep_slot(part, slot);
         self.placed.push((Arc::downgrade(surface), part));
         if self.placed.len() > self.crowded {
             self.placed
                 .retain(|(surface, _)| surface.strong_count() > 0);
             self.crowded = 2 * self.placed.len().max(32);
         }
-        Ok((begin, old))
+        Ok(())
     }
 
     fn ranges(&self) -> Result<std::sync::MutexGuard<'_, RangeAllocator<u32>>> {
@@ -83,13 +74,12 @@ impl TableArena {
     }
 
     /// Twice the room, with everything that lives at the places where it was.
-    fn grow(&mut self, more: u32) -> Result<Buffer> {
+    fn grow(&mut self, more: u32) -> Result<()> {
         let units = self.ranges()?.initial_range().end;
         let wanted = units.saturating_mul(2).max(units.saturating_add(more));
         let bigger = buffer(&self.device, self.unit, wanted)?;
         self.ranges()?.grow_to(wanted);
-        let old = std::mem::replace(&mut self.buffer, bigger);
-        self.generation += 1;
+        self.buffer = Arc::new(bigger);
         let placed = std::mem::take(&mut self.placed);
         for (surface, part) in &placed {
             if let Some(surface) = surface.upgrade()
@@ -99,24 +89,20 @@ impl TableArena {
             }
         }
         self.placed = placed;
-        Ok(old)
+        Ok(())
     }
 
     fn write(&mut self, begin: u32, vectors: &[[u32; 4]]) -> Result<()> {
         let bytes: &[u8] = bytemuck::cast_slice(vectors);
-        let from = 16 * begin as usize;
-        self.buffer
-            .mapped()?
-            .get_mut(from..from + bytes.len())
-            .ok_or_else(full)?
-            .copy_from_slice(bytes);
-        Ok(())
+        // SAFETY: the range belongs to one surface, whose parts are written once in a buffer, before
+        // any frame reads them; the arena is behind a lock.
+        unsafe { self.buffer.write_shared(16 * begin as usize, bytes) }
     }
 }
 
 fn full() -> Error {
     Error::new(
-        Stage::Draw,
+        ErrorKind::TooLarge,
         "the tables of all solids do not fit; draw fewer different ones",
     )
 }

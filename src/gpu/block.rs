@@ -2,11 +2,10 @@
 
 use super::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
 use super::map_key::MapFacts;
-use super::output::DepthOrder;
 use super::reach::{farthest_corner, largest_width};
-use super::view::View;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::maps::MapFormat;
+use crate::plan::{DepthOrder, View};
 use crate::scene::{Growth, Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
@@ -21,7 +20,7 @@ pub(crate) fn check_format(
 ) -> Result<()> {
     if solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
         return Err(Error::new(
-            Stage::Scene,
+            ErrorKind::Content,
             "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric",
         )
         .at_key("extend"));
@@ -108,7 +107,6 @@ pub(crate) fn solid_block(
         ],
         patches: [0; 4],
         hull: [0; 4],
-        single: InstanceBlock::default(),
     }
 }
 
@@ -123,7 +121,12 @@ pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) 
 /// A copy of `object` as a view sees it. World coordinates are subtracted here, in double
 /// precision.
 #[allow(clippy::cast_possible_truncation)]
-pub(crate) fn instance_block(object: &Object, placement: &Placement, view: &View) -> InstanceBlock {
+pub(crate) fn instance_block(
+    object: &Object,
+    placement: &Placement,
+    solid: u32,
+    view: &View,
+) -> InstanceBlock {
     let rotation = placement.rotation.normalize();
     let [x, y] = object.axis_offset();
     let p = placement.position - view.eye;
@@ -143,6 +146,7 @@ pub(crate) fn instance_block(object: &Object, placement: &Placement, view: &View
         rotation: q.to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
+        solid: [solid, 0, 0, 0],
     }
 }
 
@@ -196,7 +200,7 @@ pub(crate) fn check_lights(lighting: &Lighting) -> Result<()> {
     let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
     if count > most as usize {
         let message = format!("{count} lights; at most {most} are drawn");
-        return Err(Error::new(Stage::Scene, message).at_key("light"));
+        return Err(Error::new(ErrorKind::Content, message).at_key("light"));
     }
     Ok(())
 }

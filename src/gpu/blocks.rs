@@ -54,6 +54,8 @@ pub struct InstanceBlock {
     /// Of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's
     /// middle.
     pub origin: [f32; 4],
+    /// First: number of its solid.
+    pub solid: [u32; 4],
 }
 
 /// `Solid` of `blocks.glsl`.
@@ -80,14 +82,16 @@ pub struct SolidBlock {
     /// First, number, index of the shape map among those of shadows.
     pub instances: [u32; 4],
     /// Of the quadric search's tables: where they begin, first record, first range, bits of the
-    /// unit of `r^2`; of the cone search's: where they begin, rows, bits of the largest radius.
+    /// unit of `r^2`; of another search's: where they begin, and its three facts.
     pub patches: [u32; 4],
-    /// Of the hull: its first frustum; the first vector of the nodes that beams are asked against;
-    /// the first of the patches that are listed; the first row of the box's sides.
+    /// First frustum of its cells; unused; first vector of the patches that are listed; first row
+    /// of the box's sides.
     pub hull: [u32; 4],
-    /// The batch's instance, where it has but one.
-    pub single: InstanceBlock,
 }
+
+/// Bytes from one solid to the next: the largest alignment of places in a uniform buffer that a
+/// device may have.
+pub const SOLID_STRIDE: u32 = 256;
 
 /// `ShadowBlock` of `blocks.glsl`.
 #[repr(C)]

@@ -1,39 +1,91 @@
-//! Buffers in host memory that the device reads.
+//! Buffers by what touches them, which decides the memory that they get.
+//!
+//! | constructor | the host | the device | memory |
+//! |---|---|---|---|
+//! | [`device_local`] | never touches it | writes and reads it | of the device |
+//! | [`upload`] | writes it once | copies from it once | of the host |
+//! | [`per_frame`] | writes it every frame | reads it | of the device, seen by the host |
+//! | [`read_back`] | reads it | copies into it | of the host, cached where there is such |
+//!
+//! The device's own memory stands in for the host's, and the other way round, where a device has no
+//! other. Memory that the host sees is coherent: the allocator takes no other, so nothing is flushed.
 
 use super::device::Shared;
 use super::memory::Buffer;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
+use vk::BufferUsageFlags as B;
 
-/// A buffer of uniform blocks.
+/// A buffer that the device alone writes and reads.
+pub(crate) fn device_local(
+    device: &Arc<Shared>,
+    name: &str,
+    bytes: u64,
+    usage: B,
+) -> Result<Buffer> {
+    make(device, name, bytes, usage, MemoryLocation::GpuOnly)
+}
+
+/// A buffer of small data that the host writes every frame.
+pub(crate) fn per_frame(device: &Arc<Shared>, name: &str, bytes: u64, usage: B) -> Result<Buffer> {
+    make(device, name, bytes, usage, MemoryLocation::CpuToGpu)
+}
+
+/// A buffer that is written once and copied from once.
+pub(crate) fn upload(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
+    let (usage, location) = (B::TRANSFER_SRC, MemoryLocation::CpuToGpu);
+    Buffer::among(device, name, bytes, usage, location, device.host_types)
+}
+
+/// A buffer that the host reads.
+pub(crate) fn read_back(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
+    let (usage, location) = (B::TRANSFER_DST, MemoryLocation::GpuToCpu);
+    make(device, name, bytes, usage, location)
+}
+
+/// A uniform block.
 pub(crate) fn uniform(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
-    Buffer::new(device, name, bytes, usage, MemoryLocation::CpuToGpu)
+    per_frame(device, name, bytes, B::UNIFORM_BUFFER)
 }
 
+/// Tables and instances, which are read both ways.
 pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let limit = u64::from(device.limits.max_storage_buffer_range);
-    if bytes > limit {
-        return Err(Error::new(
-            Stage::Draw,
-            format!(
-                "the {name} take {bytes} bytes, and {} takes {limit}; draw fewer",
-                device.report.name
-            ),
-        ));
-    }
-    // Patches are read both ways; lists of tiles are made and counted on the device.
-    use vk::BufferUsageFlags as B;
-    let usage = B::STORAGE_BUFFER | B::UNIFORM_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
-    Buffer::new(device, name, bytes, usage, MemoryLocation::CpuToGpu)
+    per_frame(device, name, bytes, B::STORAGE_BUFFER | B::UNIFORM_BUFFER)
 }
 
-pub(crate) fn indices(device: &Arc<Shared>, bytes: usize) -> Result<Buffer> {
-    let usage = vk::BufferUsageFlags::INDEX_BUFFER;
-    let location = MemoryLocation::CpuToGpu;
-    Buffer::new(device, "corners of hulls", bytes as u64, usage, location)
+/// Lists of tiles, which the device makes and counts.
+pub(crate) fn lists(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
+    let usage = B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
+    device_local(device, "lists of tiles", bytes, usage)
+}
+
+/// Draws that the host writes.
+pub(crate) fn indirect(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
+    per_frame(device, "draws", bytes, B::INDIRECT_BUFFER)
+}
+
+/// Corners of proxies.
+pub(crate) fn indices(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
+    per_frame(device, "corners of proxies", bytes, B::INDEX_BUFFER)
+}
+
+fn make(
+    device: &Arc<Shared>,
+    name: &str,
+    bytes: u64,
+    usage: B,
+    location: MemoryLocation,
+) -> Result<Buffer> {
+    let limit = u64::from(device.limits.max_storage_buffer_range);
+    if usage.contains(B::STORAGE_BUFFER) && bytes > limit {
+        let device = &device.report.name;
+        let message =
+            format!("the {name} take {bytes} bytes, and {device} takes {limit}; draw fewer");
+        return Err(Error::new(ErrorKind::TooLarge, message));
+    }
+    Buffer::new(device, name, bytes, usage, location)
 }
 
 /// Writes a value `at` bytes into a buffer.

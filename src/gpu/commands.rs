@@ -2,7 +2,7 @@
 
 use super::call::Call;
 use super::device::Shared;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
 use std::sync::Arc;
 
@@ -90,7 +90,7 @@ impl Commands {
             .and_then(|queue| queue.lock().ok())
             .ok_or_else(|| {
                 Error::new(
-                    Stage::Draw,
+                    ErrorKind::Usage,
                     "the device has no queue to submit to; borrow it with one",
                 )
             })?;

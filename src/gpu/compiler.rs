@@ -1,41 +1,68 @@
-//! What a driver's compiler says of the pipelines: registers, spills, instructions.
+//! What a driver's compiler says of the pipelines: registers, spills, instructions. For the report of
+//! the program alone.
 //!
 //! This makes an instance, a device and pipelines, and no image, memory or fence. Some drivers
 //! compile for GPUs that are not there and can do nothing else, not even destroy their device: it
 //! is left to the end of the process.
 
-mod techniques;
-
 use super::call::Call;
 use super::device::create;
-use super::instance::{Instance, into_device};
-use super::output::{DepthOrder, Output, PassFormats, PassKind};
+use super::instance::Instance;
+use super::output::{Output, PassFormats, PassKind};
 use super::pipelines::DeviceConstants;
 use super::pipelines::Pipelines;
 use super::report::{DeviceReport, candidates, choose, text, variable};
-use crate::error::{Error, Result, Stage};
-use crate::settings::{DrawStage, Planes, Solver};
-use crate::shader::generated::{CUT_ANY, CUT_SOLID};
-use crate::shader::{Dispatch, Kind, Variant, listed};
+use crate::error::{Error, ErrorKind, Result};
+use crate::maps::MapFormat;
+use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
+use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
+use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
+use crate::shader::{Kind, ShadowCasters, Variant, listed};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
-use techniques::{Technique, techniques};
+
+/// What is drawn, as far as pipelines depend on it.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The object.
+    pub object: Object,
+    /// Its light.
+    pub lighting: Lighting,
+    /// The format of its map.
+    pub format: MapFormat,
+    /// What is stored.
+    pub planes: Planes,
+}
+
+/// A pipeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PipelineChoice(Variant, Kind);
+
+impl PipelineChoice {
+    /// What is drawn or dispatched: `cells`, `boxes`, `tiles of one copy`, ...
+    #[must_use]
+    pub fn path(&self) -> String {
+        let Self(variant, kind) = *self;
+        let name = match kind {
+            Kind::Boxes => "boxes",
+            Kind::Cells => "cells",
+            Kind::Quads => "quads of tiles",
+            Kind::TileLists => "lists of patches",
+            Kind::TilePatches => return format!("tiles of {} patches", variant.list_length),
+            Kind::TileTree => "tiles of one copy",
+            Kind::TileCopies => "tiles of several copies",
+        };
+        name.to_owned()
+    }
+}
 
 /// One shader of a pipeline, as compiled.
 #[derive(Clone, Debug)]
-pub struct CompiledShader {
-    /// The technique that a scene uses, e.g. `textured`.
-    pub technique: &'static str,
-    /// Where rays are traced.
-    pub stage: DrawStage,
-    /// The search.
-    pub solver: Solver,
-    /// What is drawn or dispatched: `hull`, `box`, `rectangle`, ... In compute, one object alone or
-    /// one of several, whose depths are compared.
-    pub path: String,
+pub struct Executable {
     /// The driver's name of the shader: `vertex`, `fragment`, `compute`.
     pub shader: String,
-    /// The SPIR-V module that it was compiled from.
+    /// The SPIR-V module that it was compiled from; of a search of another crate the one that it was
+    /// asked for.
     pub module: String,
     /// Invocations in a subgroup.
     pub subgroup_size: u32,
@@ -43,79 +70,117 @@ pub struct CompiledShader {
     pub statistics: Vec<(String, f64)>,
 }
 
-/// Compiles the pipelines of each technique, by these stages and searches, and asks the driver
-/// about each. A pipeline that several rows would use is listed once, where it is used first.
-///
-/// The device is chosen as by [`Device::open`](super::Device::open). It is not destroyed.
-///
-/// # Errors
-/// [`Stage::Device`] as of `open`, and for a driver without
-/// `VK_KHR_pipeline_executable_properties`; [`Stage::Draw`] of Vulkan.
-pub fn compiled_shaders(
-    choice: Option<&str>,
-    stages: &[DrawStage],
-    solvers: &[Solver],
-) -> Result<(DeviceReport, Vec<CompiledShader>)> {
-    let compiler = Compiler::open(choice)?;
-    let mut rows = Vec::new();
-    let mut known = Vec::new();
-    for technique in techniques()? {
-        for &stage in stages {
-            for &solver in solvers {
-                for (variant, kind) in technique.pipelines(stage, solver) {
-                    let drawn =
-                        compiler.clips || stage == DrawStage::Compute || !variant.is_cut(kind);
-                    if !drawn || known.contains(&(variant, kind)) {
-                        continue;
-                    }
-                    known.push((variant, kind));
-                    rows.extend(compiler.shaders(&technique, (stage, solver), (variant, kind))?);
-                }
-            }
-        }
-    }
-    Ok((compiler.report.clone(), rows))
-}
-
-/// A device that compiles.
-struct Compiler {
-    report: DeviceReport,
-    /// As [`Candidate::clips`](super::report::Candidate::clips).
-    clips: bool,
+/// A device that compiles, and is never destroyed.
+pub struct PipelineCompiler {
+    /// The device.
+    pub report: DeviceReport,
+    /// Of a device that does everything.
+    conditions: Conditions,
     asked: khr::pipeline_executable_properties::Device,
     // Never destroyed.
     pipelines: ManuallyDrop<Pipelines>,
     _instance: ManuallyDrop<Instance>,
 }
 
-impl Compiler {
-    fn open(choice: Option<&str>) -> Result<Self> {
+impl PipelineCompiler {
+    /// The device, chosen as by [`Device::open`](super::Device::open).
+    ///
+    /// # Errors
+    /// As `open`; [`ErrorKind::Unsupported`] for a driver without
+    /// `VK_KHR_pipeline_executable_properties`; of Vulkan.
+    pub fn open(choice: Option<&str>) -> Result<Self> {
         let instance = ManuallyDrop::new(Instance::from_environment()?);
         let variable = variable();
         let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
         let extension = khr::pipeline_executable_properties::NAME;
         if !chosen.offers(extension) {
             let (name, extension) = (&chosen.report.name, extension.to_string_lossy());
-            return Err(Error::new(
-                Stage::Device,
-                format!(
-                    "{name} lacks {extension}, by which its compiler is asked; choose another with --device"
-                ),
-            ));
+            let message =
+                format!("{name} lacks {extension}, by which its compiler reports; choose another");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("device"));
         }
         let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
         let constants = DeviceConstants::of(&chosen);
-        let pipelines = Pipelines::new(raw.clone(), None, constants).map_err(into_device)?;
+        let pipelines = Pipelines::new(raw.clone(), None, constants)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
-            clips: chosen.clips(),
+            conditions: Conditions {
+                compute: false,
+                passes_cells: true,
+                clips: chosen.clips(),
+                software: false,
+                subgroup_size: chosen.subgroup_size,
+                most_storage: u32::MAX,
+                own_vectors: 0,
+                least_pixels: 0,
+                occlusion_culling: true,
+                casts: false,
+                host_depths: false,
+            },
             report: chosen.report,
             asked,
             pipelines: ManuallyDrop::new(pipelines.capturing_statistics()),
             _instance: instance,
         })
+    }
+
+    /// The pipelines that draw a look.
+    #[must_use]
+    pub fn pipelines(&self, look: &Look, stage: DrawStage, solver: Solver) -> Vec<PipelineChoice> {
+        let depth_alone = matches!(look.planes, Planes::Depth { .. });
+        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        if (depth_alone && (stage == DrawStage::Compute || !exact))
+            || (look.format == MapFormat::Rgba8 && !solver.reads_map())
+        {
+            return Vec::new();
+        }
+        let settings = SearchSettings {
+            solver,
+            map_format: look.format,
+            ..SearchSettings::default()
+        };
+        let (lighting, object) = (&look.lighting, &look.object);
+        let casters = ShadowCasters::default();
+        let variant = Variant::new(&settings, look.planes, solver, lighting, object, casters);
+        let conditions = Conditions {
+            compute: stage == DrawStage::Compute,
+            casts: lighting.shadow != Shadow::Off,
+            ..self.conditions
+        };
+        let alone = Variant {
+            one_solid: 1,
+            ..variant
+        };
+        let outside = u32::from(object.clip != Clip::Box);
+        let (mut copies, mut all) = (object.clone(), Vec::new());
+        copies.instances = vec![Placement::default(); 2].into();
+        for object in [object, &copies] {
+            let of = PlanObject {
+                object,
+                number: 0,
+                first_instance: 0,
+                variant,
+                textures: 0,
+                surface: None,
+                takes_patches: solver == Solver::Hull,
+                shape: shape_of(object, [0.0; 4]),
+                outline: None,
+            };
+            for (v, kind) in conditions.reachable(&of, alone) {
+                // What other values of the parameters lead to is another look's, and so are tables
+                // that are too large and many solids.
+                let own = variant.of_kind(kind);
+                let look_of = |v: &Variant| (v.more_lights, v.beveled, v.external);
+                let seen = Variant { outside, ..v }.of_kind(kind) == v;
+                let choice = PipelineChoice(v, kind);
+                if look_of(&own) == look_of(&v) && seen && !all.contains(&choice) {
+                    all.push(choice);
+                }
+            }
+        }
+        all
     }
 
     /// Where a stage draws.
@@ -134,14 +199,18 @@ impl Compiler {
         })
     }
 
-    /// The shaders of one pipeline.
-    fn shaders(
+    /// Compiles a pipeline, and asks the driver about its shaders.
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn compile(
         &self,
-        technique: &Technique,
-        (stage, solver): (DrawStage, Solver),
-        (variant, kind): (Variant, Kind),
-    ) -> Result<Vec<CompiledShader>> {
-        let output = self.output(stage, technique.planes)?;
+        choice: PipelineChoice,
+        stage: DrawStage,
+        planes: Planes,
+    ) -> Result<Vec<Executable>> {
+        let PipelineChoice(variant, kind) = choice;
+        let output = self.output(stage, planes)?;
         let pipeline = self.pipelines.get(variant, kind, &output, 0)?;
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline was made with statistics captured, and is never destroyed.
@@ -160,13 +229,12 @@ impl Compiler {
                 Some(module) if vertices => module,
                 _ => variant.module(kind),
             };
-            shaders.push(CompiledShader {
-                technique: technique.name,
-                stage,
-                solver,
-                path: path(variant, kind),
+            shaders.push(Executable {
                 shader: stage_name(&text(&executable.name)),
-                module: listed(&module).unwrap_or(module).name(),
+                module: match variant.external {
+                    Some(external) if !vertices => external.name(&module),
+                    _ => listed(&module).unwrap_or(module).name(),
+                },
                 subgroup_size: executable.subgroup_size,
                 statistics: said.iter().filter_map(statistic).collect(),
             });
@@ -181,45 +249,6 @@ const EXECUTABLES: &str = "vkGetPipelineExecutablePropertiesKHR";
 fn stage_name(name: &str) -> String {
     let name = name.to_lowercase();
     name.strip_suffix(" shader").unwrap_or(&name).to_owned()
-}
-
-fn path(variant: Variant, kind: Kind) -> String {
-    let several = variant.depth_test != 0;
-    let name = match (kind, variant.dispatch) {
-        (Kind::Box, _) => "box",
-        (Kind::Hull, _) => "hull",
-        (Kind::Sides, _) if variant.cut == CUT_SOLID => "solid sides",
-        (Kind::Sides, _) => "sides",
-        (Kind::ConvexHull, _) => "convex hull",
-        (Kind::Spots, Dispatch::Beams) => "squares of one copy in spans",
-        (Kind::Spots, _) => "squares of one copy",
-        (Kind::Bins, _) => "bins",
-        (Kind::Beam, _) => "list of tiles",
-        (Kind::List, _) => "lists of patches",
-        (Kind::ListCopies, _) => "lists of patches of copies",
-        (Kind::Listed, _) | (Kind::Compute, Dispatch::Lists) => {
-            let of = match (variant.alone != 0, several) {
-                (true, _) => " of bins of one copy",
-                (false, true) => " of several",
-                (false, false) => "",
-            };
-            return format!("tiles of {} patches{of}", variant.list_length);
-        }
-        (Kind::Compute, Dispatch::Rectangle) if variant.cut != CUT_ANY => {
-            match (variant.cut == CUT_SOLID, several) {
-                (true, true) => "tiles of cuts of several",
-                (true, false) => "tiles of cuts",
-                (false, true) => "tiles with cuts of several",
-                (false, false) => "tiles with cuts",
-            }
-        }
-        (Kind::Compute, Dispatch::Rectangle) if several => "rectangle of several",
-        (Kind::Compute, Dispatch::Rectangle) => "rectangle",
-        (Kind::Compute, Dispatch::Bins) => "bins",
-        (Kind::Compute, Dispatch::Beams) if several => "tiles of several",
-        (Kind::Compute, Dispatch::Beams) => "tiles",
-    };
-    name.to_owned()
 }
 
 /// A number by its name, unless it is a hash.

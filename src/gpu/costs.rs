@@ -2,11 +2,10 @@
 
 use super::blocks::InstanceBlock;
 use super::entry::Entry;
-use super::levels;
-use super::plan::{DrawPath, Work};
+use super::planned::PlannedObject;
 use super::renderer::Renderer;
 use super::table_slot::Part;
-use super::view::View;
+use crate::plan::{DrawPath, View};
 
 /// How an object was drawn in the last prepared frame, and what it takes on the device.
 ///
@@ -35,47 +34,47 @@ pub struct ObjectCost {
 pub const INSTANCE_BYTES: u64 = size_of::<InstanceBlock>() as u64;
 
 impl Renderer {
-    /// What each object is drawn by and takes, in order.
+    /// What each object is drawn by and takes, in order, in the last planned frame.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
-        let cost = |entry: &Entry| entry.cost(self.view.as_ref());
-        self.ordered().map(cost).collect()
+        let Some(planned) = &self.planned else {
+            return Vec::new();
+        };
+        let objects = planned.objects.iter().zip(&planned.plan.paths);
+        let cost = |(object, path): (&PlannedObject, &DrawPath)| {
+            let entry = self.objects.at(object.number)?;
+            Some(entry.cost(object, *path, &planned.view))
+        };
+        objects.filter_map(cost).collect()
     }
 
-    /// Bytes of all buffers and images of the renderer on the device; a target and the pipelines
-    /// are not among them.
+    /// Bytes of all buffers and images of the renderer on the device, and of the geometry that all
+    /// renderers of the device share; a target and the pipelines are not among them.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
-        let slots: u64 = self.frames.iter().map(|slot| slot.bytes()).sum();
-        self.map_bytes().iter().sum::<u64>() + self.arena.buffer.bytes + self.corners.bytes + slots
+        let slots: u64 = self.slots.iter().map(|slot| slot.bytes()).sum();
+        let shared = self.geometry.lock().map_or(0, |geometry| geometry.bytes());
+        self.map_bytes().iter().sum::<u64>() + shared + slots
     }
 }
 
 impl Entry {
-    fn cost(&self, view: Option<&View>) -> ObjectCost {
+    fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> ObjectCost {
         let prepared = self.prepared.as_ref();
-        let fitted = prepared.and_then(|p| Some((p.level, p.fitted()?)));
-        let error = view.zip(fitted).map(|(view, (level, _))| {
-            let seen = self.pixels_per_unit(view, false);
-            levels::bound(level) * seen
-        });
-        let searched = prepared.and_then(|p| p.surface.as_ref());
-        let surface = searched.or(prepared.and_then(|p| p.proxy.as_ref()));
+        let follows = prepared.is_some_and(|p| p.solver.follows_tolerance());
+        let fitted = object.surface.as_ref().filter(|_| follows);
+        let error = fitted.map(|_| self.error_pixels(object.level, view));
         let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
-            let placed = surface.filter(|s| s.slot(part).is_some());
+            let placed = object.surface.as_ref().filter(|s| s.slot(part).is_some());
             placed.map_or(0, |s| 16 * s.vectors(part).len() as u64)
         });
         let map = prepared.and_then(|p| Some(p.map.as_ref()?.texture.bytes()));
         let arc = prepared.and_then(|p| Some(p.arc.as_ref()?.texture.bytes()));
         ObjectCost {
-            path: self
-                .draw
-                .work
-                .as_ref()
-                .map_or(DrawPath::Nothing, Work::path),
-            level: fitted.map(|(level, _)| u32::from(level)),
+            path,
+            level: fitted.map(|_| u32::from(object.level)),
             error_pixels: error.filter(|e| e.is_finite()),
-            patches: fitted.map_or(0, |(_, surface)| surface.patches()),
+            patches: fitted.map_or(0, |surface| surface.patches()),
             table_bytes: tables.iter().sum(),
             map_bytes: map.unwrap_or(0) + arc.unwrap_or(0),
             instance_bytes: INSTANCE_BYTES * u64::from(self.instances.end - self.instances.start),

@@ -1,17 +1,18 @@
 //! A device to draw on: opened here, or borrowed from a host.
 
 use super::call::Call;
-use super::instance::{Instance, into_device};
-use super::memory::Buffer;
-use super::memory_budget::MemoryBudget;
+use super::geometry::Geometry;
+use super::instance::Instance;
+use super::memory::{Buffer, allocator, host_types};
+use super::memory_budget::{MemoryBudget, MemoryUse};
 use super::pipelines::{DeviceConstants, Pipelines};
 use super::report::{Candidate, DeviceReport, candidates, choose, inspect, refuse, variable};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
-use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocator;
 use std::ffi::CStr;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
 
 /// A Vulkan device and what all renderers on it share: memory and pipelines. Clones share it, too.
 #[derive(Clone)]
@@ -48,6 +49,11 @@ pub(crate) struct Shared {
     pub raw: ash::Device,
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
     pub family: u32,
+    /// Of its instance.
+    pub functions: ash::Instance,
+    pub physical: vk::PhysicalDevice,
+    /// Whether fragment shaders may write to buffers.
+    pub fragment_stores: bool,
     pub limits: vk::PhysicalDeviceLimits,
     pub constants: DeviceConstants,
     /// Invocations that run together.
@@ -56,8 +62,14 @@ pub(crate) struct Shared {
     pub anisotropy: Option<f32>,
     /// As [`Candidate::clips`].
     pub clips: bool,
+    /// As [`Candidate::most_draws`].
+    pub most_draws: u32,
+    /// What renderers share, while there are any.
+    pub geometry: Mutex<Weak<Geometry>>,
     pub report: DeviceReport,
     pub budget: MemoryBudget,
+    /// Bits of the types of memory that is the host's alone, coherent.
+    pub host_types: u32,
     /// None of a borrowed device.
     instance: Option<Instance>,
     /// What must outlive this: of [`Device::with_shaders`] the device's own.
@@ -72,7 +84,7 @@ impl Device {
     /// `REVMAP_VALIDATION=1` in the environment the validation layers watch every call.
     ///
     /// # Errors
-    /// [`Stage::Device`] when there is none, or it lacks what is needed.
+    /// [`ErrorKind::Unsupported`] when there is none, or it lacks what is needed.
     pub fn open(choice: Option<&str>) -> Result<Self> {
         Self::on(Instance::from_environment()?, choice)
     }
@@ -81,7 +93,7 @@ impl Device {
     /// checks and synchronization.
     ///
     /// # Errors
-    /// As `open`, and [`Stage::Device`] when the layer is not installed.
+    /// As `open`, and [`ErrorKind::Unsupported`] when the layer is not installed.
     pub fn open_validated(choice: Option<&str>) -> Result<Self> {
         Self::on(Instance::new(true)?, choice)
     }
@@ -89,7 +101,7 @@ impl Device {
     /// Borrows a host's device.
     ///
     /// # Errors
-    /// [`Stage::Device`] when the device lacks what is needed; [`Stage::Draw`] of Vulkan.
+    /// [`ErrorKind::Unsupported`] when the device lacks what is needed; of Vulkan.
     ///
     /// # Safety
     /// This call makes layouts, and an allocator and a pipeline cache where the host gives none.
@@ -103,16 +115,15 @@ impl Device {
     /// * `host.queue`, where there is one, is used by nobody else while an `Offscreen` submits.
     pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
         let mut candidate = inspect(host.instance, 0, host.physical);
-        refuse(&candidate).map_err(into_device)?;
+        refuse(&candidate)?;
         candidate.features = host.features;
         candidate.family = host.queue_family;
-        let shared = Shared::new(
-            &candidate,
-            host.device.clone(),
-            host.queue,
-            Allocation::of(host),
-            host.pipeline_cache,
-        )?;
+        let memory = match &host.allocator {
+            Some(shared) => shared.clone(),
+            None => allocator(host.instance, host.physical, host.device)?,
+        };
+        let (raw, cache) = (host.device.clone(), host.pipeline_cache);
+        let shared = Shared::new(host.instance, &candidate, raw, host.queue, memory, cache)?;
         Ok(Self {
             shared: Arc::new(shared),
         })
@@ -145,7 +156,7 @@ impl Device {
     /// this value alive.
     ///
     /// # Errors
-    /// [`Stage::Draw`] of Vulkan.
+    /// Of Vulkan.
     ///
     /// # Safety
     /// As of [`Device::borrow_with_shaders`], of `shaders`.
@@ -160,14 +171,20 @@ impl Device {
             raw: shared.raw.clone(),
             queue: shared.queue.clone(),
             family: shared.family,
+            functions: shared.functions.clone(),
+            physical: shared.physical,
+            fragment_stores: shared.fragment_stores,
             limits: shared.limits,
             constants: shared.constants,
             subgroup_size: shared.subgroup_size,
             timestamp_bits: shared.timestamp_bits,
             anisotropy: shared.anisotropy,
             clips: shared.clips,
+            most_draws: shared.most_draws,
+            geometry: Mutex::default(),
             report: shared.report.clone(),
             budget: MemoryBudget::default(),
+            host_types: shared.host_types,
             instance: None,
             opened: Some(shared.clone()),
         };
@@ -183,10 +200,10 @@ impl Device {
         self.shared.budget.set(bytes);
     }
 
-    /// Bytes that all buffers and images on the device take.
+    /// What all buffers and images on the device take.
     #[must_use]
-    pub fn memory_bytes(&self) -> u64 {
-        self.shared.budget.used()
+    pub fn memory_use(&self) -> MemoryUse {
+        self.shared.budget.memory_use()
     }
 
     fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
@@ -195,8 +212,17 @@ impl Device {
         let raw = create(&instance, &chosen, &[], None)?;
         // SAFETY: the queue was asked for when the device was made.
         let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
-        let memory = Allocation::New(&instance.raw, chosen.physical);
-        match Shared::new(&chosen, raw.clone(), Some(queue), memory, None) {
+        let made = allocator(&instance.raw, chosen.physical, &raw).and_then(|memory| {
+            Shared::new(
+                &instance.raw,
+                &chosen,
+                raw.clone(),
+                Some(queue),
+                memory,
+                None,
+            )
+        });
+        match made {
             Ok(mut shared) => {
                 shared.instance = Some(instance);
                 Ok(Self {
@@ -206,7 +232,7 @@ impl Device {
             Err(error) => {
                 // SAFETY: what was made on the device is gone again.
                 unsafe { raw.destroy_device(None) };
-                Err(into_device(error))
+                Err(error)
             }
         }
     }
@@ -227,7 +253,7 @@ impl Device {
     /// are found instead of compiled. Data of another driver is passed over.
     ///
     /// # Errors
-    /// [`Stage::Draw`] of Vulkan.
+    /// Of Vulkan.
     pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
         self.shared.pipelines()?.add_cache(data)
     }
@@ -235,7 +261,7 @@ impl Device {
     /// The driver's compiled pipelines, to be kept for [`Device::add_pipeline_cache`].
     ///
     /// # Errors
-    /// [`Stage::Draw`] of Vulkan.
+    /// Of Vulkan.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
         self.shared.pipelines()?.cache_data()
     }
@@ -249,16 +275,16 @@ impl Device {
     /// Where device memory comes from, for what is drawn beside.
     ///
     /// # Errors
-    /// [`Stage::Draw`] while the device is being closed.
+    /// [`ErrorKind::Other`] while the device is being closed.
     pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
-        let closed = || Error::new(Stage::Draw, "the device is being closed");
+        let closed = || Error::new(ErrorKind::Other, "the device is being closed");
         self.shared.allocator.clone().ok_or_else(closed)
     }
 
     /// A buffer for what is drawn beside, called `name` in messages; it counts in the memory budget.
     ///
     /// # Errors
-    /// [`Stage::Draw`] of Vulkan, and where there is no memory for it.
+    /// Of Vulkan; [`ErrorKind::OutOfDeviceMemory`] beyond the budget, too.
     pub fn buffer(
         &self,
         name: &str,
@@ -285,13 +311,13 @@ impl Device {
     /// Fails when the validation layers have had anything to say since the last call.
     ///
     /// # Errors
-    /// [`Stage::Draw`] with the first message and the number of them.
+    /// [`ErrorKind::Other`] with the first message and the number of them.
     pub fn check(&self) -> Result<()> {
         let messages = self.take_messages();
         match messages.first() {
             None => Ok(()),
             Some(first) => Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Other,
                 format!(
                     "{} messages of the validation layers, the first: {}",
                     messages.len(),
@@ -305,41 +331,6 @@ impl Device {
     #[must_use]
     pub fn validated(&self) -> bool {
         self.messages().is_some()
-    }
-}
-
-/// Where device memory comes from.
-enum Allocation<'a> {
-    Host(Arc<Mutex<Allocator>>),
-    New(&'a ash::Instance, vk::PhysicalDevice),
-}
-
-impl<'a> Allocation<'a> {
-    fn of(host: &HostDevice<'a>) -> Self {
-        match &host.allocator {
-            Some(shared) => Self::Host(shared.clone()),
-            None => Self::New(host.instance, host.physical),
-        }
-    }
-
-    fn allocator(self, device: &ash::Device) -> Result<Arc<Mutex<Allocator>>> {
-        const MIB: u64 = 1 << 20;
-        let (instance, physical_device) = match self {
-            Self::Host(shared) => return Ok(shared),
-            Self::New(instance, physical) => (instance, physical),
-        };
-        Allocator::new(&AllocatorCreateDesc {
-            instance: instance.clone(),
-            device: device.clone(),
-            physical_device,
-            debug_settings: AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            allocation_sizes: AllocationSizes::new(8 * MIB, 4 * MIB)
-                .with_max_device_memblock_size(128 * MIB)
-                .with_max_host_memblock_size(64 * MIB),
-        })
-        .map(|allocator| Arc::new(Mutex::new(allocator)))
-        .map_err(|e| Error::new(Stage::Device, format!("no memory allocator: {e}")))
     }
 }
 
@@ -367,28 +358,29 @@ pub(super) fn create(
         info = info.push_next(more);
     }
     // SAFETY: `info` asks only for what the physical device offers.
-    unsafe { instance.raw.create_device(chosen.physical, &info, None) }
-        .call("vkCreateDevice")
-        .map_err(into_device)
+    unsafe { instance.raw.create_device(chosen.physical, &info, None) }.call("vkCreateDevice")
 }
 
 impl Shared {
     fn new(
+        instance: &ash::Instance,
         chosen: &Candidate,
         raw: ash::Device,
         queue: Option<vk::Queue>,
-        memory: Allocation<'_>,
+        memory: Arc<Mutex<Allocator>>,
         pipeline_cache: Option<vk::PipelineCache>,
     ) -> Result<Self> {
         let limits = chosen.properties.limits;
-        let allocator = memory.allocator(&raw)?;
         let constants = DeviceConstants::of(chosen);
         let pipelines = Pipelines::new(raw.clone(), pipeline_cache, constants)?;
         Ok(Self {
-            allocator: Some(allocator),
+            allocator: Some(memory),
             pipelines: Some(pipelines),
             queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
             family: chosen.family,
+            functions: instance.clone(),
+            physical: chosen.physical,
+            fragment_stores: chosen.features.fragment_stores_and_atomics == vk::TRUE,
             limits,
             constants,
             subgroup_size: chosen.subgroup_size,
@@ -397,7 +389,10 @@ impl Shared {
                 .anisotropic()
                 .then_some(limits.max_sampler_anisotropy),
             clips: chosen.clips(),
+            most_draws: chosen.most_draws(),
+            geometry: Mutex::default(),
             budget: MemoryBudget::default(),
+            host_types: host_types(instance, chosen.physical),
             report: chosen.report.clone(),
             raw,
             instance: None,
@@ -410,13 +405,18 @@ impl Shared {
         self.allocator
             .as_ref()
             .and_then(|a| a.lock().ok())
-            .ok_or_else(|| Error::new(Stage::Draw, "the device's allocator is gone after a panic"))
+            .ok_or_else(|| {
+                Error::new(
+                    ErrorKind::Other,
+                    "the device's allocator is gone after a panic",
+                )
+            })
     }
 
     pub fn pipelines(&self) -> Result<&Pipelines> {
         self.pipelines
             .as_ref()
-            .ok_or_else(|| Error::new(Stage::Draw, "the device is being closed"))
+            .ok_or_else(|| Error::new(ErrorKind::Other, "the device is being closed"))
     }
 }
 

@@ -1,135 +1,131 @@
-//! What one frame in flight reads and no other: its blocks, instances and lists, and the sets that
-//! bind them.
+//! What one prepared frame reads and no other: its blocks, instances, tiles and draws, the sets that
+//! bind them, and hold of all else that its commands read.
 
-use super::blocks::{FrameBlock, InstanceBlock, ShadowBlock, SolidBlock};
-use super::buffers::{storage, uniform, write, write_slice};
-use super::call::Call;
+use super::blocks::{FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock};
+use super::buffers::{indirect, lists, storage, uniform, write, write_slice};
+use super::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use super::device::Shared;
+use super::geometry::Placed;
 use super::memory::Buffer;
+use super::planned::Planned;
 use super::target::ComputeTarget;
+use super::textures::TextureSet;
+use super::uploads::Upload;
 use crate::error::Result;
+use crate::plan::{FramePlan, View};
 use ash::vk;
 use std::sync::Arc;
 
-/// The buffers and descriptor sets of one frame in flight.
+/// The buffers and descriptor sets of one prepared frame.
 pub(crate) struct FrameSlot {
-    /// Set 0: buffers of the frame.
-    pub set: vk::DescriptorSet,
-    /// Set 2: the words of bins; the target of a compute pass.
+    pub frame_set: vk::DescriptorSet,
     pub target_set: vk::DescriptorSet,
     frame: Buffer,
-    blocks: Buffer,
+    solids: Buffer,
     instances: Buffer,
     shadows: Buffer,
+    tiles: Buffer,
     pub lists: Buffer,
-    /// Bytes from block to block, as dynamic offsets need it.
-    pub stride: u32,
-    /// Objects whose blocks or instances are older here than in the renderer.
-    pub stale: Vec<u32>,
-    /// Whether everything is older: buffers are new.
-    pub empty: bool,
-    /// Generations of the arena and of the target that the sets name.
-    named: Option<[u64; 2]>,
+    pub draws: Buffer,
+    /// What is recorded, once it is prepared.
+    pub bound: Option<Bound>,
+    /// Counts its frames: a token of an earlier one records nothing.
+    pub serial: u64,
+    /// The view and the renderer's version that solids and instances were written for; none: all
+    /// must be written.
+    pub written: Option<(View, u64)>,
+    /// Copies that the frame's commands make.
+    pub staging: Vec<Upload>,
+    /// What the sets name: the tables, and how often the target was set.
+    named: Option<(vk::Buffer, u64)>,
     pool: vk::DescriptorPool,
     device: Arc<Shared>,
 }
 
+/// A plan with all that its commands bind.
+pub(crate) struct Bound {
+    pub planned: Arc<Planned>,
+    /// One a step.
+    pub steps: Vec<BoundStep>,
+    pub placed: Placed,
+}
+
+/// What a step binds.
+pub(crate) struct BoundStep {
+    pub pipeline: vk::Pipeline,
+    pub textures: Arc<TextureSet>,
+    /// Bytes at which the only tables and the only solid begin.
+    pub offsets: [u32; 2],
+}
+
 impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
-        let align = device.limits.min_uniform_buffer_offset_alignment.max(1);
-        let stride = (size_of::<SolidBlock>() as u64).next_multiple_of(align);
-        use vk::DescriptorType as T;
-        let sizes = [
-            (T::UNIFORM_BUFFER, 2),
-            (T::UNIFORM_BUFFER_DYNAMIC, 2),
-            (T::STORAGE_BUFFER, 4),
-            (T::STORAGE_IMAGE, 4),
-        ]
-        .map(|(kind, count)| {
-            vk::DescriptorPoolSize::default()
-                .ty(kind)
-                .descriptor_count(count)
-        });
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(2)
-            .pool_sizes(&sizes);
         let mut slot = Self {
-            set: vk::DescriptorSet::null(),
+            frame_set: vk::DescriptorSet::null(),
             target_set: vk::DescriptorSet::null(),
             frame: uniform(device, "frame block", size_of::<FrameBlock>() as u64)?,
-            blocks: uniform(device, "object blocks", stride)?,
+            solids: storage(device, "objects", u64::from(SOLID_STRIDE))?,
             instances: storage(device, "instances", 0)?,
             shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
-            lists: storage(device, "lists", 0)?,
-            stride: u32::try_from(stride).unwrap_or(u32::MAX),
-            stale: Vec::new(),
-            empty: true,
+            tiles: storage(device, "tiles", 0)?,
+            lists: lists(device, 0)?,
+            draws: indirect(device, 0)?,
+            bound: None,
+            serial: 0,
+            written: None,
+            staging: Vec::new(),
             named: None,
             pool: vk::DescriptorPool::null(),
             device: device.clone(),
         };
-        let layouts = device.pipelines()?.set_layouts;
-        let layouts = [layouts[0], layouts[2]];
-        // SAFETY: plain creations, destroyed in Drop; the pool was sized for these sets.
-        unsafe {
-            slot.pool = device
-                .raw
-                .create_descriptor_pool(&info, None)
-                .call("vkCreateDescriptorPool")?;
-            let info = vk::DescriptorSetAllocateInfo::default()
-                .descriptor_pool(slot.pool)
-                .set_layouts(&layouts);
-            let sets = device
-                .raw
-                .allocate_descriptor_sets(&info)
-                .call("vkAllocateDescriptorSets")?;
-            slot.set = sets.first().copied().unwrap_or_default();
-            slot.target_set = sets.get(1).copied().unwrap_or_default();
-        }
+        let layouts = &device.pipelines()?.set_layouts;
+        let sets = [FRAME_SET, TARGET_SET];
+        let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
+        slot.pool = pool;
+        slot.frame_set = sets.first().copied().unwrap_or_default();
+        slot.target_set = sets.get(1).copied().unwrap_or_default();
         Ok(slot)
     }
 
-    /// Sees to it that so many blocks and instances fit. Whoever calls this knows that no frame
+    /// Sees to it that so many solids and instances fit. Whoever calls this knows that no frame
     /// reads the buffers.
-    pub fn fit(&mut self, blocks: u32, instances: u32) -> Result<()> {
-        let blocks = u64::from(blocks) * u64::from(self.stride);
+    pub fn fit(&mut self, solids: usize, instances: u32) -> Result<()> {
+        let solids = solids as u64 * u64::from(SOLID_STRIDE);
         let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
-        if self.blocks.bytes < blocks {
-            self.blocks = uniform(&self.device, "object blocks", blocks.next_power_of_two())?;
-            self.outgrown();
-        }
-        if self.instances.bytes < instances {
-            self.instances = roomy(&self.device, "instances", instances)?;
-            self.outgrown();
+        for (buffer, bytes, name) in [
+            (&mut self.solids, solids, "objects"),
+            (&mut self.instances, instances, "instances"),
+        ] {
+            if buffer.bytes < bytes {
+                *buffer = roomy(&self.device, name, bytes)?;
+                self.written = None;
+                self.named = None;
+            }
         }
         Ok(())
     }
 
     /// Bytes of its buffers.
     pub fn bytes(&self) -> u64 {
-        [
+        let all = [
             &self.frame,
-            &self.blocks,
+            &self.solids,
             &self.instances,
             &self.shadows,
+            &self.tiles,
             &self.lists,
-        ]
-        .iter()
-        .map(|buffer| buffer.bytes)
-        .sum()
-    }
-
-    fn outgrown(&mut self) {
-        self.empty = true;
-        self.named = None;
+            &self.draws,
+        ];
+        all.iter().map(|buffer| buffer.bytes).sum()
     }
 
     pub fn write_frame(&mut self, block: &FrameBlock) -> Result<()> {
         write(&mut self.frame, 0, block)
     }
 
-    pub fn write_block(&mut self, number: u32, block: &SolidBlock) -> Result<()> {
-        write(&mut self.blocks, (number * self.stride) as usize, block)
+    pub fn write_solid(&mut self, number: u32, block: &SolidBlock) -> Result<()> {
+        let at = number as usize * SOLID_STRIDE as usize;
+        write(&mut self.solids, at, block)
     }
 
     pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
@@ -146,74 +142,58 @@ impl FrameSlot {
         write(&mut self.shadows, 0, &all)
     }
 
-    /// Takes over bins and their lists, with room behind them up to `all` words: lists that the
-    /// device makes.
-    pub fn write_lists(&mut self, words: &[u32], all: usize) -> Result<()> {
-        let bytes = 4 * all.max(words.len()) as u64;
-        if self.lists.bytes < bytes {
-            self.lists = roomy(&self.device, "lists", bytes)?;
+    /// Writes a plan's tiles and draws, and makes room for its lists.
+    pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
+        let words = 4 * plan.words.len() as u64;
+        if self.tiles.bytes < words {
+            self.tiles = roomy(&self.device, "tiles", words)?;
             self.named = None;
         }
-        write_slice(&mut self.lists, words)
+        let listed = 4 * u64::from(plan.list_words);
+        if self.lists.bytes < listed {
+            self.lists = lists(&self.device, listed + listed / 2)?;
+            self.named = None;
+        }
+        let draws = size_of_val(plan.draws.as_slice()) as u64;
+        if self.draws.bytes < draws {
+            self.draws = indirect(&self.device, draws.next_power_of_two())?;
+        }
+        write_slice(&mut self.tiles, &plan.words)?;
+        write_slice(&mut self.draws, &plan.draws)
     }
 
     /// Points the sets to their buffers, where those have changed.
-    pub fn name(&mut self, tables: (&Buffer, u64), target: Option<(&ComputeTarget, u64)>) {
-        let generations = [tables.1, target.map_or(0, |t| t.1)];
-        if self.named == Some(generations) {
+    pub fn name(&mut self, tables: &Buffer, target: Option<(&ComputeTarget, u64)>) {
+        let now = (tables.raw, target.map_or(0, |t| t.1));
+        if self.named == Some(now) {
             return;
         }
-        use vk::DescriptorType as T;
-        let block = size_of::<SolidBlock>() as u64;
+        let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
         let window = 16 * u64::from(self.device.constants.own_vectors);
-        for (binding, (kind, buffer, range)) in (0u32..).zip([
-            (T::UNIFORM_BUFFER, self.frame.raw, vk::WHOLE_SIZE),
-            (T::UNIFORM_BUFFER_DYNAMIC, self.blocks.raw, block),
-            (T::STORAGE_BUFFER, self.instances.raw, vk::WHOLE_SIZE),
-            (T::UNIFORM_BUFFER, self.shadows.raw, vk::WHOLE_SIZE),
-            (T::STORAGE_BUFFER, tables.0.raw, vk::WHOLE_SIZE),
-            (T::UNIFORM_BUFFER_DYNAMIC, tables.0.raw, window),
-        ]) {
-            self.buffer(self.set, binding, kind, buffer, range);
-        }
-        let whole = vk::WHOLE_SIZE;
-        self.buffer(self.target_set, 1, T::STORAGE_BUFFER, self.lists.raw, whole);
+        let frame = [
+            whole(&self.frame),
+            whole(&self.solids),
+            whole(&self.instances),
+            whole(&self.shadows),
+            whole(tables),
+            Resource::Buffer(tables.raw, window),
+            Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
+        ];
+        let frame: Vec<_> = (0u32..).zip(frame).collect();
+        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.lists))];
         if let Some((target, _)) = target {
-            self.buffer(self.target_set, 0, T::STORAGE_BUFFER, target.words, whole);
-            for (binding, view) in (2u32..).zip(&target.images) {
-                let info = [vk::DescriptorImageInfo::default()
-                    .image_view(*view)
-                    .image_layout(vk::ImageLayout::GENERAL)];
-                let write = vk::WriteDescriptorSet::default()
-                    .dst_set(self.target_set)
-                    .dst_binding(binding)
-                    .descriptor_type(T::STORAGE_IMAGE)
-                    .image_info(&info);
-                // SAFETY: as for buffers.
-                unsafe { self.device.raw.update_descriptor_sets(&[write], &[]) };
-            }
+            of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
+            let images = target.images.iter().map(|view| Resource::Image(*view));
+            of_target.extend((2u32..).zip(images));
         }
-        self.named = Some(generations);
-    }
-
-    fn buffer(
-        &self,
-        set: vk::DescriptorSet,
-        binding: u32,
-        kind: vk::DescriptorType,
-        buffer: vk::Buffer,
-        range: u64,
-    ) {
-        let info = [vk::DescriptorBufferInfo::default()
-            .buffer(buffer)
-            .range(range)];
-        let write = vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .dst_binding(binding)
-            .descriptor_type(kind)
-            .buffer_info(&info);
-        // SAFETY: the frame that used the set before is done.
-        unsafe { self.device.raw.update_descriptor_sets(&[write], &[]) };
+        let raw = &self.device.raw;
+        // SAFETY: the frame that used the sets before is done; what they name lives as long as the
+        // slot, or as long as the host promised.
+        unsafe {
+            descriptors::write(raw, self.frame_set, FRAME_SET, &frame);
+            descriptors::write(raw, self.target_set, TARGET_SET, &of_target);
+        }
+        self.named = Some(now);
     }
 }
 
@@ -225,8 +205,8 @@ fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
 
 impl Drop for FrameSlot {
     fn drop(&mut self) {
-        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null pool may
-        // be destroyed.
+        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null
+        // pool may be destroyed.
         unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
     }
 }

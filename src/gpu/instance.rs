@@ -1,8 +1,8 @@
 //! The Vulkan loader and an instance, with or without validation.
 
-use super::call::Call;
+use super::call::{Call, kind_of};
 use super::messages::Messages;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::{ext, khr, vk};
 use std::ffi::CStr;
 
@@ -28,7 +28,7 @@ impl Instance {
         // SAFETY: the loader is the system's; nothing else of this process replaces it meanwhile.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
             Error::new(
-                Stage::Device,
+                ErrorKind::Unsupported,
                 format!("no Vulkan loader ({e}); install libvulkan1 and a driver such as mesa-vulkan-drivers"),
             )
         })?;
@@ -40,8 +40,7 @@ impl Instance {
         };
         // SAFETY: plain query.
         let offered = unsafe { entry.enumerate_instance_extension_properties(None) }
-            .call("vkEnumerateInstanceExtensionProperties")
-            .map_err(into_device)?;
+            .call("vkEnumerateInstanceExtensionProperties")?;
         let portability = offered.iter().any(|e| {
             e.extension_name_as_c_str()
                 .is_ok_and(|name| name == khr::portability_enumeration::NAME)
@@ -74,7 +73,7 @@ impl Instance {
         // SAFETY: `info` and all it points to live until the call returns.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|code| {
             Error::new(
-                Stage::Device,
+                kind_of(code),
                 format!("no Vulkan driver answered (vkCreateInstance: {code:?}); install one, e.g. mesa-vulkan-drivers"),
             )
         })?;
@@ -114,8 +113,7 @@ impl Drop for Instance {
 fn require_layer(entry: &ash::Entry) -> Result<()> {
     // SAFETY: plain query.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }
-        .call("vkEnumerateInstanceLayerProperties")
-        .map_err(into_device)?;
+        .call("vkEnumerateInstanceLayerProperties")?;
     let there = layers.iter().any(|layer| {
         layer
             .layer_name_as_c_str()
@@ -125,15 +123,9 @@ fn require_layer(entry: &ash::Entry) -> Result<()> {
         return Ok(());
     }
     Err(Error::new(
-        Stage::Device,
+        ErrorKind::Unsupported,
         format!(
             "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; install vulkan-validationlayers"
         ),
     ))
-}
-
-/// What fails before a device is open counts as having none.
-pub(crate) fn into_device(mut error: Error) -> Error {
-    error.stage = Stage::Device;
-    error
 }

@@ -1,12 +1,14 @@
 //! Buffers and images with their memory.
 
-use super::call::Call;
+use super::call::{Call, allocation_error};
 use super::device::Shared;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
-use std::sync::Arc;
+use gpu_allocator::vulkan::{
+    Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
+};
+use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
+use std::sync::{Arc, Mutex};
 
 /// A buffer with its memory. Whoever drops it has waited for the device.
 pub struct Buffer {
@@ -26,6 +28,18 @@ impl Buffer {
         usage: vk::BufferUsageFlags,
         location: MemoryLocation,
     ) -> Result<Self> {
+        Self::among(device, name, bytes, usage, location, u32::MAX)
+    }
+
+    /// In memory of one of these types, if one of them will do.
+    pub(crate) fn among(
+        device: &Arc<Shared>,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+        types: u32,
+    ) -> Result<Self> {
         let bytes = bytes.max(16);
         let info = vk::BufferCreateInfo::default().size(bytes).usage(usage);
         // SAFETY: a plain creation; the handle is destroyed in Drop.
@@ -37,7 +51,10 @@ impl Buffer {
             device: device.clone(),
         };
         // SAFETY: the buffer is live.
-        let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
+        let mut requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
+        if requirements.memory_type_bits & types != 0 {
+            requirements.memory_type_bits &= types;
+        }
         let allocation = allocate(device, name, requirements, location, true)?;
         let (memory, offset) = bound(&mut buffer.allocation, allocation);
         // SAFETY: the allocation meets the buffer's requirements and is bound once.
@@ -49,14 +66,38 @@ impl Buffer {
     /// it.
     ///
     /// # Errors
-    /// [`Stage::Draw`] of a buffer elsewhere.
+    /// [`ErrorKind::Usage`] for a buffer elsewhere.
     pub fn mapped(&mut self) -> Result<&mut [u8]> {
         let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
         self.allocation
             .as_mut()
             .and_then(Allocation::mapped_slice_mut)
             .and_then(|all| all.get_mut(..bytes))
-            .ok_or_else(|| Error::new(Stage::Draw, "a host buffer is not mapped"))
+            .ok_or_else(|| Error::new(ErrorKind::Usage, "the buffer is not in host memory"))
+    }
+
+    /// Writes bytes of a buffer in host memory that others may hold, too.
+    ///
+    /// # Safety
+    /// This call writes from byte `at` on.
+    ///
+    /// The caller must see to it that nothing else reads or writes these bytes meanwhile, here or on
+    /// the device.
+    pub(crate) unsafe fn write_shared(&self, at: usize, bytes: &[u8]) -> Result<()> {
+        let mapped = self.allocation.as_ref().and_then(Allocation::mapped_ptr);
+        let fits = at
+            .checked_add(bytes.len())
+            .is_some_and(|end| end as u64 <= self.bytes);
+        let Some(mapped) = mapped.filter(|_| fits) else {
+            return Err(Error::new(ErrorKind::Other, "a host buffer is not mapped"));
+        };
+        // SAFETY: the allocation is mapped as long as it lives, and the bytes lie within it; no
+        // other access happens by the caller's promise.
+        unsafe {
+            let to = mapped.as_ptr().cast::<u8>().add(at);
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), to, bytes.len());
+        }
+        Ok(())
     }
 }
 
@@ -168,38 +209,19 @@ fn allocate(
     location: MemoryLocation,
     linear: bool,
 ) -> Result<Allocation> {
-    device.budget.take(name, requirements.size)?;
-    let made = device
-        .allocator()
-        .and_then(|mut allocator| allocated(&mut allocator, name, requirements, location, linear));
-    // What was made is given back as large as it is.
-    let bytes = made.as_ref().map_or(0, Allocation::size);
-    device.budget.give(requirements.size.saturating_sub(bytes));
-    made
-}
-
-fn allocated(
-    allocator: &mut Allocator,
-    name: &str,
-    requirements: vk::MemoryRequirements,
-    location: MemoryLocation,
-    linear: bool,
-) -> Result<Allocation> {
-    allocator
-        .allocate(&AllocationCreateDesc {
+    let bytes = requirements.size;
+    device.budget.take(name, bytes, || {
+        let made = device.allocator()?.allocate(&AllocationCreateDesc {
             name,
             requirements,
             location,
             linear,
             allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        })
-        .map_err(|e| {
-            let mib = requirements.size >> 20;
-            Error::new(
-                Stage::Draw,
-                format!("{name}: no device memory for {mib} MiB ({e}); try a smaller size or fewer map rows"),
-            )
-        })
+        });
+        let made = made.map_err(|e| allocation_error(name, bytes, &e))?;
+        let flags = made.memory_properties();
+        Ok((made, flags))
+    })
 }
 
 /// Hands an allocation to its owner before anything else can fail: whoever owns it frees it.
@@ -215,9 +237,44 @@ fn free(device: &Shared, allocation: Option<Allocation>) {
     let Some(allocation) = allocation else {
         return;
     };
-    device.budget.give(allocation.size());
+    let (bytes, flags) = (allocation.size(), allocation.memory_properties());
+    device.budget.give(bytes, flags);
     if let Ok(mut allocator) = device.allocator() {
         // An error here can only be reported, and nobody is left to report it to.
         let _ = allocator.free(allocation);
     }
+}
+
+/// Bits of the types of memory that is the host's alone, coherent.
+pub(crate) fn host_types(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
+    use vk::MemoryPropertyFlags as Flags;
+    // SAFETY: plain query of a live physical device.
+    let all = unsafe { instance.get_physical_device_memory_properties(physical) };
+    let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
+    let of_host = |flags: Flags| flags & (seen | Flags::DEVICE_LOCAL) == seen;
+    (0u32..)
+        .zip(all.memory_types_as_slice())
+        .filter(|(_, kind)| of_host(kind.property_flags))
+        .fold(0, |bits, (number, _)| bits | 1 << number)
+}
+
+/// An allocator for a host that gives none.
+pub(crate) fn allocator(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: &ash::Device,
+) -> Result<Arc<Mutex<Allocator>>> {
+    const MIB: u64 = 1 << 20;
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings: AllocatorDebugSettings::default(),
+        buffer_device_address: false,
+        allocation_sizes: AllocationSizes::new(8 * MIB, 4 * MIB)
+            .with_max_device_memblock_size(128 * MIB)
+            .with_max_host_memblock_size(64 * MIB),
+    })
+    .map(|allocator| Arc::new(Mutex::new(allocator)))
+    .map_err(|e| Error::new(ErrorKind::Other, format!("no memory allocator: {e}")))
 }

@@ -1,47 +1,139 @@
-//! How much of the device's memory may be taken.
+//! How much of the device's memory is taken, and may be taken.
 
-use crate::error::{Error, Result, Stage};
-use std::sync::atomic::{AtomicU64, Ordering};
+use crate::error::{Error, ErrorKind, Result};
+use ash::vk::MemoryPropertyFlags as Flags;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Bytes that all buffers and images on a device take, by the kind of heap that they are in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryUse {
+    /// Of the device, not seen by the host: what the device alone touches.
+    pub device: u64,
+    /// Of the device, seen by the host: what changes every frame, where there is such memory.
+    /// Integrated and software devices have no other.
+    pub visible: u64,
+    /// Of the host: what is copied to the device once or read back, and what changes every frame
+    /// where the device shows the host nothing.
+    pub host: u64,
+}
+
+impl MemoryUse {
+    /// Of all heaps.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.device + self.visible + self.host
+    }
+}
 
 /// Bytes that buffers and images take, and the most that they may.
 #[derive(Default)]
 pub(crate) struct MemoryBudget {
+    /// With what is about to be allocated.
     used: AtomicU64,
     /// 0: as much as the device has.
     limit: AtomicU64,
+    /// In the order of [`MemoryUse`].
+    by_heap: [AtomicU64; 3],
 }
 
 impl MemoryBudget {
     pub fn set(&self, bytes: Option<u64>) {
         // A budget of nothing is one byte: nothing fits.
-        let limit = bytes.map_or(0, |b| b.max(1));
-        self.limit.store(limit, Ordering::Relaxed);
+        self.limit.store(bytes.map_or(0, |b| b.max(1)), Relaxed);
     }
 
-    pub fn used(&self) -> u64 {
-        self.used.load(Ordering::Relaxed)
-    }
-
-    /// Takes so many bytes, if the budget has them.
-    pub fn take(&self, name: &str, bytes: u64) -> Result<()> {
-        let used = self.used.fetch_add(bytes, Ordering::Relaxed);
-        let limit = self.limit.load(Ordering::Relaxed);
-        if limit == 0 || used + bytes <= limit {
-            return Ok(());
+    pub fn memory_use(&self) -> MemoryUse {
+        let [device, visible, host] = [0, 1, 2].map(|heap| self.by_heap[heap].load(Relaxed));
+        MemoryUse {
+            device,
+            visible,
+            host,
         }
-        self.give(bytes);
-        let mib = |bytes: u64| bytes as f64 / f64::from(1u32 << 20);
-        let message = format!(
-            "{name}: {:.2} MiB on top of {:.2} exceed the memory budget of {:.2} MiB; give more, or take a smaller picture, fewer objects or fewer map rows",
-            mib(bytes),
-            mib(used),
-            mib(limit)
-        );
-        Err(Error::new(Stage::Draw, message))
+    }
+
+    /// Allocates so many bytes by `make`, which returns what was made and the flags of its memory,
+    /// if the budget has them.
+    pub fn take<T>(
+        &self,
+        name: &str,
+        bytes: u64,
+        make: impl FnOnce() -> Result<(T, Flags)>,
+    ) -> Result<T> {
+        let used = self.used.fetch_add(bytes, Relaxed);
+        let limit = self.limit.load(Relaxed);
+        let made = if limit == 0 || used + bytes <= limit {
+            make()
+        } else {
+            let mib = |bytes: u64| bytes as f64 / f64::from(1u32 << 20);
+            let message = format!(
+                "{name}: {:.2} MiB on top of {:.2} exceed the memory budget of {:.2} MiB; give more, or take a smaller picture, fewer objects or fewer map rows",
+                mib(bytes),
+                mib(used),
+                mib(limit)
+            );
+            Err(Error::new(ErrorKind::OutOfDeviceMemory, message))
+        };
+        match made {
+            Ok((made, flags)) => {
+                self.by_heap[heap(flags)].fetch_add(bytes, Relaxed);
+                Ok(made)
+            }
+            Err(error) => {
+                self.used.fetch_sub(bytes, Relaxed);
+                Err(error)
+            }
+        }
     }
 
     /// Gives back what was taken.
-    pub fn give(&self, bytes: u64) {
-        self.used.fetch_sub(bytes, Ordering::Relaxed);
+    pub fn give(&self, bytes: u64, flags: Flags) {
+        self.used.fetch_sub(bytes, Relaxed);
+        self.by_heap[heap(flags)].fetch_sub(bytes, Relaxed);
+    }
+}
+
+/// The place of a kind of heap in [`MemoryUse`].
+fn heap(flags: Flags) -> usize {
+    if !flags.contains(Flags::DEVICE_LOCAL) {
+        2
+    } else {
+        usize::from(flags.contains(Flags::HOST_VISIBLE))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn what_is_taken_counts_in_its_heap_until_it_is_given_back() {
+        let (budget, seen) = (MemoryBudget::default(), Flags::HOST_VISIBLE);
+        let kinds = [
+            Flags::DEVICE_LOCAL,
+            Flags::DEVICE_LOCAL | seen,
+            seen | Flags::HOST_COHERENT,
+        ];
+        let all = MemoryUse {
+            device: 1,
+            visible: 2,
+            host: 3,
+        };
+        for (bytes, flags) in (1..).zip(kinds) {
+            budget.take("a", bytes, || Ok(((), flags))).unwrap();
+        }
+        assert_eq!((budget.memory_use(), all.total()), (all, 6));
+        budget.set(Some(7));
+        let full = budget.take("a", 2, || Ok(((), seen))).unwrap_err();
+        assert_eq!(full.kind, ErrorKind::OutOfDeviceMemory);
+        // What could not be allocated is not counted, either.
+        let failed = || Err::<((), Flags), _>(Error::new(ErrorKind::DeviceLost, "planted"));
+        budget.take("a", 1, failed).unwrap_err();
+        assert_eq!(budget.memory_use(), all);
+        for (bytes, flags) in (1..).zip(kinds) {
+            budget.give(bytes, flags);
+        }
+        assert_eq!(budget.memory_use(), MemoryUse::default());
+        budget.take("a", 7, || Ok(((), seen))).unwrap();
     }
 }

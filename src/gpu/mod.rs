@@ -6,35 +6,35 @@
 #![allow(unsafe_code)]
 
 mod arena;
-mod bins;
 mod block;
 pub(crate) mod blocks;
 mod buffers;
 mod call;
-mod choose_levels;
 mod clock;
 mod commands;
-mod compiler;
+#[cfg(feature = "other-shaders")]
+#[doc(hidden)]
+pub mod compiler;
 mod costs;
+pub(crate) mod descriptors;
 mod device;
 mod entry;
-mod frame_plan;
 mod frame_slot;
-mod hulls;
+mod geometry;
 mod instance;
 mod kept;
-mod levels;
 mod map_key;
 mod memory;
 mod memory_budget;
 mod messages;
+mod object_id;
 mod objects;
 mod offscreen;
-mod offset_surface;
-mod outlined;
+pub(crate) mod offset_surface;
+pub(crate) mod outline_cache;
 mod output;
 mod pipelines;
-mod plan;
+mod planned;
 mod prepare;
 mod prewarm;
 mod proxy_hull;
@@ -48,7 +48,7 @@ mod report;
 mod requirements;
 mod sampler;
 mod shape_texture;
-mod solid;
+pub(crate) mod solid;
 mod srgb;
 mod table_slot;
 mod tables;
@@ -56,25 +56,25 @@ mod target;
 mod textures;
 mod uploads;
 mod usage;
-mod view;
 
-pub use compiler::{CompiledShader, compiled_shaders};
+pub use crate::plan::{DepthOrder, DrawPath, View, Viewport};
+pub use call::{allocation_error, vulkan_error};
 pub use costs::{INSTANCE_BYTES, ObjectCost};
 pub use device::{Device, HostDevice};
-pub use entry::ObjectId;
 pub use instance::VALIDATION_VARIABLE;
 pub use memory::Buffer;
+pub use memory_budget::MemoryUse;
+pub use object_id::ObjectId;
 pub use offscreen::{Guest, Offscreen, Times};
-pub use output::{DepthOrder, Output, PassFormats, PassKind};
+pub use output::{Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]
 pub use pipelines::ShaderSource;
-pub use plan::DrawPath;
+pub use prepare::PreparedFrame;
 pub use prewarm::Prewarm;
 pub use renderer::Renderer;
 pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
 pub use requirements::Requirements;
 pub use target::ComputeTarget;
-pub use view::{View, Viewport};
 
 use crate::error::Result;
 use crate::frame::Frame;

@@ -1,88 +1,199 @@
-//! Objects come, go and change.
+//! The objects of a renderer: they come, go and change.
 
-use super::entry::{Draw, Entry, ObjectId};
-use super::output::Output;
+use super::entry::Entry;
+use super::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
 use super::renderer::Renderer;
-use crate::error::Result;
-#[cfg(doc)]
-use crate::error::Stage;
+use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Copies, Lighting, Object, Offset, Placement};
+use range_alloc::RangeAllocator;
+use std::ops::Range;
+
+/// Entries by number, their order, and ranges of instances.
+pub(crate) struct Objects {
+    /// The renderer that ids name.
+    renderer: u32,
+    places: Vec<Place>,
+    free: Vec<u32>,
+    /// Numbers and generations in the order in which objects were added, the dead among them.
+    order: Vec<(u32, u32)>,
+    /// How many of those are dead.
+    dead: usize,
+    instances: RangeAllocator<u32>,
+}
+
+#[derive(Default)]
+struct Place {
+    generation: u32,
+    entry: Option<Entry>,
+}
+
+impl Objects {
+    /// None yet, of a renderer of this identity.
+    pub fn of(renderer: u32) -> Self {
+        Self {
+            renderer,
+            places: Vec::new(),
+            free: Vec::new(),
+            order: Vec::new(),
+            dead: 0,
+            instances: RangeAllocator::new(0..64),
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.order.len() - self.dead
+    }
+
+    /// One more than the largest number that one had.
+    pub fn places(&self) -> usize {
+        self.places.len()
+    }
+
+    /// One more than the number of the last instance.
+    pub fn instances(&self) -> u32 {
+        self.instances.initial_range().end
+    }
+
+    /// All of them, with their numbers, in the order in which they were added.
+    pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
+        self.order.iter().filter_map(|&(number, generation)| {
+            let place = &self.places[number as usize];
+            let entry = place.entry.as_ref()?;
+            (place.generation == generation).then_some((number, entry))
+        })
+    }
+
+    /// Their numbers.
+    pub fn numbers(&self) -> Vec<u32> {
+        self.ordered().map(|(number, _)| number).collect()
+    }
+
+    /// That of a number, which may be gone.
+    pub fn at(&self, number: u32) -> Option<&Entry> {
+        self.places.get(number as usize)?.entry.as_ref()
+    }
+
+    /// Likewise.
+    pub fn at_mut(&mut self, number: u32) -> Option<&mut Entry> {
+        self.places.get_mut(number as usize)?.entry.as_mut()
+    }
+
+    /// Where an object stands among all.
+    pub fn position(&self, number: u32) -> usize {
+        self.ordered().position(|(n, _)| n == number).unwrap_or(0)
+    }
+
+    fn add(&mut self, object: Object, version: u64) -> Result<ObjectId> {
+        if self.free.is_empty() && self.places.len() == MOST_NUMBERS {
+            let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
+            return Err(Error::new(ErrorKind::TooLarge, message));
+        }
+        let instances = self.allocate(object.placements().len())?;
+        let number = self.free.pop().unwrap_or_else(|| {
+            self.places.push(Place::default());
+            self.places.len() as u32 - 1
+        });
+        let place = &mut self.places[number as usize];
+        place.entry = Some(Entry::new(object, instances, version));
+        self.order.push((number, place.generation));
+        Ok(ObjectId {
+            renderer: self.renderer,
+            number,
+            generation: place.generation,
+        })
+    }
+
+    fn remove(&mut self, id: ObjectId) {
+        let place = &mut self.places[id.number as usize];
+        place.generation += 1;
+        if let Some(entry) = place.entry.take() {
+            self.instances.free_range(entry.instances);
+        }
+        if place.generation < MOST_GENERATIONS {
+            self.free.push(id.number);
+        }
+        self.dead += 1;
+        if self.dead > self.order.len() / 2 {
+            let alive = |&(n, g): &(u32, u32)| self.places[n as usize].generation == g;
+            self.order.retain(alive);
+            self.dead = 0;
+        }
+    }
+
+    fn allocate(&mut self, count: usize) -> Result<Range<u32>> {
+        let many = || Error::new(ErrorKind::TooLarge, "more than 2^31 instances");
+        let count = u32::try_from(count).map_err(|_| many())?;
+        if let Ok(range) = self.instances.allocate_range(count) {
+            return Ok(range);
+        }
+        let end = self.instances();
+        let bigger = end.checked_add(end.max(count)).filter(|e| *e < 1 << 31);
+        self.instances.grow_to(bigger.ok_or_else(many)?);
+        self.instances.allocate_range(count).map_err(|_| many())
+    }
+
+    /// Gives an object another range of instances.
+    pub fn resize(&mut self, number: u32, count: usize) -> Result<()> {
+        let new = self.allocate(count)?;
+        if let Some(entry) = self.at_mut(number) {
+            let old = std::mem::replace(&mut entry.instances, new);
+            self.instances.free_range(old);
+        }
+        Ok(())
+    }
+}
 
 impl Renderer {
     /// Adds an object; it is drawn from the next prepared frame on, after those that were there
     /// before.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Draw`] for more than 2^32
-    /// instances.
+    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::TooLarge`] for
+    /// more than 2^31 instances or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
-        let instances = self.allocate_instances(object.placements().len())?;
-        let free = self.entries.iter().position(Option::is_none);
-        let number = free.unwrap_or(self.entries.len());
-        if free.is_none() {
-            self.entries.push(None);
-            self.generations.push(0);
-        }
-        self.entries[number] = Some(Entry {
-            object,
-            wanted: None,
-            grown: None,
-            prepared: None,
-            draw: Draw::default(),
-            instances,
-            stale: 0,
-        });
-        let number = u32::try_from(number).unwrap_or(u32::MAX);
-        self.order.push(number);
-        self.changed.push(number);
-        self.reordered();
-        Ok(ObjectId {
-            number,
-            generation: self.generations[number as usize],
-        })
+        self.version += 1;
+        let id = self.objects.add(object, self.version)?;
+        self.changed.push(id.number);
+        Ok(id)
     }
 
-    /// Takes an object away. What frames in flight read of it is kept until they are done.
+    /// Takes an object away. Frames that were prepared before keep it until they are done.
     ///
     /// # Errors
-    /// [`Stage::Usage`] for an object that is not there.
+    /// [`ErrorKind::Usage`] for an object that is not there.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.entry(id)?;
-        let number = id.number as usize;
-        self.generations[number] += 1;
-        if let Some(entry) = self.entries[number].take() {
-            self.instances.free_range(entry.instances.clone());
-            self.retire(entry.prepared);
-        }
-        for list in [&mut self.order, &mut self.changed, &mut self.unplanned] {
-            list.retain(|&n| n != id.number);
-        }
-        for slot in &mut self.frames {
-            slot.stale.retain(|&n| n != id.number);
-        }
-        self.reordered();
+        self.objects.remove(id);
+        self.version += 1;
         Ok(())
+    }
+
+    /// The values of an object, as set last.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for an object that is not there.
+    pub fn object(&self, id: ObjectId) -> Result<&Object> {
+        Ok(self.entry(id)?.latest())
     }
 
     /// Gives an object other values, all of them. What is equal costs nothing.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key; [`Stage::Usage`] for an object that
-    /// is not there.
+    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::Usage`] for an
+    /// object that is not there.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
-        if self.entry(id)?.latest().same_look(&object) {
-            if self.entry(id)?.latest().instances != object.instances {
+        let latest = self.entry(id)?.latest();
+        if latest.same_look(&object) {
+            if latest.instances != object.instances {
                 self.set_instances(id, object.instances)?;
             }
             return self.set_placement(id, object.placement);
         }
-        let count = object.placements().len();
-        if self.entry(id)?.placements_len() != count {
-            self.resize_instances(id, count)?;
-        }
-        self.entry(id)?.wanted = Some(object);
+        self.resize(id, object.placements().len())?;
+        self.change(id)?.wanted = Some(object);
         self.changed.push(id.number);
         Ok(())
     }
@@ -93,10 +204,10 @@ impl Renderer {
     /// As [`Renderer::set`].
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
-        let entry = self.entry(id)?;
-        if entry.latest().offset == offset {
+        if self.entry(id)?.latest().offset == offset {
             return Ok(());
         }
+        let entry = self.change(id)?;
         let (wanted, object) = (&mut entry.wanted, &entry.object);
         wanted.get_or_insert_with(|| object.clone()).offset = offset;
         self.changed.push(id.number);
@@ -109,10 +220,10 @@ impl Renderer {
     /// As [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
-        let entry = self.entry(id)?;
-        if entry.latest().placement == placement {
+        if self.entry(id)?.latest().placement == placement {
             return Ok(());
         }
+        let entry = self.change(id)?;
         entry.object.placement = placement;
         if let Some(wanted) = &mut entry.wanted {
             wanted.placement = placement;
@@ -120,7 +231,6 @@ impl Renderer {
         if let Some(grown) = &mut entry.grown {
             grown.object.placement = grown.growth.placement(&placement);
         }
-        self.unplanned.push(id.number);
         Ok(())
     }
 
@@ -131,11 +241,8 @@ impl Renderer {
     pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
-        let count = instances.len().max(1);
-        if self.entry(id)?.placements_len() != count {
-            self.resize_instances(id, count)?;
-        }
-        let entry = self.entry(id)?;
+        self.resize(id, instances.len().max(1))?;
+        let entry = self.change(id)?;
         if let Some(wanted) = &mut entry.wanted {
             wanted.instances.clone_from(&instances);
         }
@@ -144,30 +251,53 @@ impl Renderer {
             grown.object.instances = all.collect();
         }
         entry.object.instances = instances;
-        self.unplanned.push(id.number);
         Ok(())
     }
 
     /// Sets lights and shadows for all objects.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for values out of range, with the key.
+    /// [`ErrorKind::Content`] for values out of range, with the key.
     pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
         lighting.check()?;
         super::block::check_lights(lighting)?;
         let codes = |l: &Lighting| (l.lights.len(), l.shadow);
         if codes(lighting) != codes(&self.lighting) {
-            self.changed.extend(&self.order);
+            self.changed.extend(self.objects.numbers());
+            self.version += 1;
         }
         self.lighting = lighting.clone();
         Ok(())
     }
 
-    /// What depends on the order: depths that compute compares, shadows' lists.
-    fn reordered(&mut self) {
+    /// An object that is there.
+    fn entry(&self, id: ObjectId) -> Result<&Entry> {
+        let place = self.objects.places.get(id.number as usize);
+        let place =
+            place.filter(|place| place.generation == id.generation && id.renderer == self.identity);
+        place.and_then(|place| place.entry.as_ref()).ok_or_else(|| {
+            let message = "the object was removed, or is another renderer's";
+            Error::new(ErrorKind::Usage, message)
+        })
+    }
+
+    /// An object that is about to change.
+    fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
+        self.entry(id)?;
         self.version += 1;
-        if matches!(self.output, Output::Compute(_)) {
-            self.unplanned.extend(&self.order);
+        let version = self.version;
+        let gone = || Error::new(ErrorKind::Usage, "the object was removed");
+        let entry = self.objects.at_mut(id.number).ok_or_else(gone)?;
+        entry.version = version;
+        Ok(entry)
+    }
+
+    /// Sees to it that an object has room for so many copies.
+    fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
+        if self.entry(id)?.instances.len() != count {
+            self.objects.resize(id.number, count)?;
+            self.change(id)?;
         }
+        Ok(())
     }
 }

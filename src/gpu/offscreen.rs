@@ -4,16 +4,15 @@ use super::clock::Clock;
 use super::commands::Commands;
 use super::costs::ObjectCost;
 use super::device::{Device, Shared};
-use super::entry::ObjectId;
-use super::output::{DepthOrder, Output, PassFormats, PassKind};
-use super::plan::DrawPath;
+use super::object_id::ObjectId;
+use super::output::{Output, PassFormats, PassKind};
 use super::read_back;
 use super::renderer::Renderer;
 use super::target::Target;
-use super::view::View;
 use crate::antialias::Solids;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::Frame;
+use crate::plan::{DepthOrder, DrawPath, View};
 use crate::scene::{CameraFrame, Cluster, Growth, Object, Placement, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
@@ -78,8 +77,8 @@ impl Offscreen {
     /// compiled by the first frame.
     ///
     /// # Errors
-    /// Of baking ([`Stage::Map`]), of the scene's values ([`Stage::Scene`]), of Vulkan
-    /// ([`Stage::Draw`]).
+    /// Of baking and of the scene's values ([`ErrorKind::Content`]); [`ErrorKind::TooLarge`] for
+    /// more pixels than the device takes; of Vulkan.
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         Self::open(device, scene, settings, false)
     }
@@ -101,7 +100,7 @@ impl Offscreen {
     ) -> Result<Self> {
         if matches!(settings.planes, Planes::Depth { .. }) {
             let message = "depth alone is drawn in a host's pass; give color or all";
-            return Err(Error::new(Stage::Usage, message));
+            return Err(Error::new(ErrorKind::Usage, message));
         }
         let size = (settings.width, settings.height);
         let view = view_of(scene, size)?;
@@ -136,8 +135,11 @@ impl Offscreen {
             }),
         };
         let mut renderer = Renderer::new(device, output, &SearchSettings::from(settings), 1)?;
-        renderer.set_target(target.for_shaders());
-        renderer.keeps_depths = keeps_depths && settings.stage == DrawStage::Compute;
+        if let Some(target) = target.for_shaders() {
+            // SAFETY: the target is of this device and of the size of all views; it is dropped after
+            // the renderer.
+            unsafe { renderer.set_compute_target(target) }?;
+        }
         let mut offscreen = Self {
             renderer,
             target,
@@ -161,16 +163,15 @@ impl Offscreen {
     /// differs from the scene before.
     ///
     /// # Errors
-    /// Of the scene's values ([`Stage::Scene`]), of profiles and maps: what was drawn before can be
-    /// drawn on. Of Vulkan ([`Stage::Draw`]): nothing is drawn before an update succeeds.
+    /// [`ErrorKind::Content`] for the scene's values, profiles and maps: what was drawn before can
+    /// be drawn on. Of Vulkan: nothing is drawn before an update succeeds.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         scene.check()?;
         let view = view_of(scene, (self.settings.width, self.settings.height))?;
-        self.take_over(scene, &view)?;
+        self.apply(scene, &view)?;
         self.view = view;
         self.background = scene.background;
         self.stale = true;
-        self.renderer.plan(&self.view)?;
         if self.settings.antialias {
             let (width, height) = (self.settings.width, self.settings.height);
             let camera = CameraFrame::new(&scene.camera, width, height)?;
@@ -183,10 +184,9 @@ impl Offscreen {
     }
 
     /// All or nothing: what fails is taken back.
-    fn take_over(&mut self, scene: &Scene, view: &View) -> Result<()> {
+    fn apply(&mut self, scene: &Scene, view: &View) -> Result<()> {
         let lighting = scene.lighting();
-        super::block::check_lights(&lighting)?;
-        let before = self.renderer.lighting.clone();
+        let before = self.renderer.lighting().clone();
         let objects: &[Object] = if self.guests_only {
             &[]
         } else {
@@ -209,7 +209,7 @@ impl Offscreen {
             for object in &objects[kept..] {
                 self.ids.push(self.renderer.add(object.clone())?);
             }
-            self.renderer.refresh(Some(view))
+            self.renderer.plan(view)
         };
         let result = change();
         if result.is_err() {
@@ -222,7 +222,7 @@ impl Offscreen {
             self.renderer.set_lighting(&before)?;
             // What never was drawn has nothing to go back to.
             if there > 0 {
-                self.renderer.refresh(Some(view))?;
+                self.renderer.plan(view)?;
             }
         }
         result
@@ -233,7 +233,7 @@ impl Offscreen {
     /// only then ([`Renderer::record_prewarm`]).
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
+    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
     pub fn prewarm(&mut self) -> Result<()> {
         self.check_whole()?;
         self.renderer.prewarm()?.compile()?;
@@ -244,13 +244,13 @@ impl Offscreen {
         self.commands.record(|cmd| {
             // SAFETY: as in `draw_with`.
             unsafe {
-                renderer.prepare(cmd, 0, &self.view)?;
-                target.clear(cmd, self.background, renderer.compares_depths());
+                let frame = renderer.prepare(cmd, 0, &self.view)?;
+                target.clear(cmd, self.background, frame.reads_depths());
                 if compute {
-                    return renderer.record_prewarm(cmd, 0);
+                    return renderer.record_prewarm(cmd, &frame);
                 }
                 target.begin(cmd, self.pass, self.background);
-                renderer.record_prewarm(cmd, 0)?;
+                renderer.record_prewarm(cmd, &frame)?;
                 self.device.raw.cmd_end_render_pass(cmd);
             }
             Ok(())
@@ -261,7 +261,7 @@ impl Offscreen {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
+    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
     pub fn draw(&mut self) -> Result<Times> {
         self.draw_with(None)
     }
@@ -286,23 +286,23 @@ impl Offscreen {
         let (compute, pass) = (self.settings.stage == DrawStage::Compute, self.pass);
         commands.record(|cmd| {
             // SAFETY: `cmd` is recording, and the frame before was waited for.
-            unsafe { renderer.prepare(cmd, 0, view)? };
+            let frame = unsafe { renderer.prepare(cmd, 0, view)? };
             if let (Some(guest), false) = (guest, compute) {
                 // SAFETY: `cmd` is recording outside of a pass, and is waited for before this
                 // returns.
                 unsafe { guest.prepare(cmd) };
             }
             clock.start(cmd);
-            target.clear(cmd, *background, renderer.compares_depths());
+            target.clear(cmd, *background, frame.reads_depths());
             // SAFETY: the frame was prepared above; the target was cleared, the pass is of the
             // output's formats and sets viewport and scissor; the commands are waited for before
             // anything is dropped.
             unsafe {
                 if compute {
-                    renderer.record_compute(cmd, 0);
+                    renderer.record_compute(cmd, &frame)?;
                 } else {
                     target.begin(cmd, pass, *background);
-                    renderer.record(cmd, 0);
+                    renderer.record(cmd, &frame)?;
                     if let Some(guest) = guest {
                         guest.record(cmd);
                     }
@@ -339,7 +339,7 @@ impl Offscreen {
     /// The frame that was drawn last.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]); [`Stage::Draw`], too, after an update that has failed half way.
+    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
     pub fn read(&mut self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
@@ -389,7 +389,7 @@ impl Offscreen {
     fn check_whole(&self) -> Result<()> {
         if self.stale {
             return Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Usage,
                 "the last update failed half way; update again with what can be drawn, or make a new one",
             ));
         }

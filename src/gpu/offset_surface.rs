@@ -1,15 +1,14 @@
-//! Surfaces under an offset: the boundary as quadrics or cones, or the envelope of a map, and what
-//! is made of them for the GPU.
+//! Surfaces under an offset: the boundary as quadrics or as another search's table, and what is made of
+//! them for the GPU.
 
-use super::bins::{Inner, Outer};
-use super::outlined::Outlined;
+use super::outline_cache::OutlineCache;
 use super::proxy_hull::GpuProxyHull;
 use super::table_slot::{Part, Slot};
 use super::tables::{self, GpuTables};
 use crate::error::Result;
-use crate::maps::envelope::Envelope;
 use crate::scene::Offset;
-use crate::surface::{Cones, FitOptions, QuadricPatch, fit_patches};
+use crate::search::{Reads, Search, SearchTable};
+use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
 use std::sync::{Arc, OnceLock};
 
 /// One surface, made when first wanted, shared by all objects that show it.
@@ -19,8 +18,8 @@ pub(crate) struct OffsetSurface {
     tables: OnceLock<GpuTables>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
-    inner: OnceLock<Inner>,
-    outer: OnceLock<Outer>,
+    inner: OnceLock<InnerCylinders>,
+    outer: OnceLock<OuterCylinders>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -28,18 +27,15 @@ pub(crate) struct OffsetSurface {
 pub(crate) enum Recipe {
     /// Quadrics that follow the outline under an offset, of this level, within this distance in
     /// object units.
-    Patches(Arc<Outlined>, Offset, u8, f64),
-    /// A row of so many empty cones around it, relaxed or not.
-    Cones(Arc<Outlined>, Offset, u32, bool),
-    /// Where a map's solid may be.
-    Envelope(Envelope),
+    Patches(Arc<OutlineCache>, Offset, u8, f64),
+    /// The table of a search, of so many rows.
+    Search(&'static Search, Arc<OutlineCache>, Offset, u32),
 }
 
 enum Made {
     /// And their largest radius, least and largest `z`.
     Patches(Vec<QuadricPatch>, [f64; 3]),
-    Cones(Cones),
-    Envelope,
+    Table(SearchTable),
 }
 
 impl OffsetSurface {
@@ -77,13 +73,11 @@ impl OffsetSurface {
 
     /// What the search walks.
     pub fn tables(&self) -> &GpuTables {
-        self.tables
-            .get_or_init(|| match (self.made(), &self.recipe) {
-                (Ok(Made::Patches(patches, _)), _) => GpuTables::patches(patches),
-                (Ok(Made::Cones(cones)), _) => GpuTables::cones(cones),
-                (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuTables::envelope(envelope),
-                _ => GpuTables::patches(&[]),
-            })
+        self.tables.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => GpuTables::patches(patches),
+            Ok(Made::Table(table)) => GpuTables::of_search(table),
+            Err(_) => GpuTables::patches(&[]),
+        })
     }
 
     /// What lists of patches are made from; nothing where there are none, or too many.
@@ -94,35 +88,37 @@ impl OffsetSurface {
         })
     }
 
-    /// What the rasteriser draws; of cones nothing.
+    /// What the rasteriser draws; of another search's table nothing.
     pub fn hull(&self) -> &GpuProxyHull {
-        self.hull.get_or_init(|| match (self.made(), &self.recipe) {
-            (Ok(Made::Patches(patches, _)), _) => GpuProxyHull::new(patches),
-            (Ok(Made::Envelope), Recipe::Envelope(envelope)) => GpuProxyHull::convex(envelope),
+        self.hull.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => GpuProxyHull::new(patches),
             _ => GpuProxyHull::new(&[]),
         })
     }
 
     /// What its solid is sure to hide; of patches alone.
-    pub fn inner(&self) -> Option<&Inner> {
+    pub fn inner(&self) -> Option<&InnerCylinders> {
         match self.made() {
-            Ok(Made::Patches(patches, _)) => Some(self.inner.get_or_init(|| Inner::new(patches))),
+            Ok(Made::Patches(patches, _)) => {
+                Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
+            }
             _ => None,
         }
     }
 
     /// Where its solid can be; of patches alone.
-    pub fn outer(&self) -> Option<&Outer> {
+    pub fn outer(&self) -> Option<&OuterCylinders> {
         match self.made() {
-            Ok(Made::Patches(patches, _)) => Some(self.outer.get_or_init(|| Outer::new(patches))),
+            Ok(Made::Patches(patches, _)) => {
+                Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
+            }
             _ => None,
         }
     }
 
-    /// Whether it is the boundary itself; an envelope only says where the solid may be, and rays
-    /// are searched as in the box.
-    pub fn is_boundary(&self) -> bool {
-        !matches!(self.recipe, Recipe::Envelope(_))
+    /// Whether it is made of patches.
+    pub fn is_of_patches(&self) -> bool {
+        matches!(self.recipe, Recipe::Patches(..))
     }
 
     /// Largest radius, least and largest `z`; of patches alone.
@@ -171,8 +167,8 @@ impl OffsetSurface {
 impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
-            Self::Patches(outlined, offset, _, tolerance) => {
-                let contour = outlined.contour(offset)?;
+            Self::Patches(outline, offset, _, tolerance) => {
+                let contour = outline.contour(offset)?;
                 let options = FitOptions {
                     tolerance: *tolerance,
                 };
@@ -183,12 +179,10 @@ impl Recipe {
                 });
                 Ok(Made::Patches(patches, extent))
             }
-            Self::Cones(outlined, offset, rows, relaxed) => {
-                let contour = outlined.contour(offset)?;
-                let make = if *relaxed { Cones::relaxed } else { Cones::new };
-                Ok(Made::Cones(make(&contour, *rows)?))
-            }
-            Self::Envelope(_) => Ok(Made::Envelope),
+            Self::Search(search, outline, offset, rows) => match search.reads {
+                Reads::Table(make) => Ok(Made::Table(make(&outline.contour(offset)?, *rows)?)),
+                Reads::Map { .. } => Ok(Made::Table(SearchTable::default())),
+            },
         }
     }
 }

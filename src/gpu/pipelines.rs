@@ -4,21 +4,20 @@
 mod compile;
 
 use super::call::Call;
+use super::descriptors;
 use super::output::{Output, PassFormats, PassKind};
 use super::render_pass::render_pass;
 use super::report::Candidate;
 use super::tables::own_vectors;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
+use crate::plan::Pushed;
 use crate::settings::Planes;
-use crate::shader::generated::{LARGE_POINTS_ID, MAX_SHADOW_MAPS, OWN_VECTORS_ID};
+use crate::shader::generated::{LARGE_POINTS_ID, OWN_VECTORS_ID};
 use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard};
-
-/// Words that are pushed: `Pushed` of `beams.glsl`.
-pub(crate) const PUSHED: u32 = 4;
 
 /// Specialisation constants that are the same for all pipelines of a device.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +47,7 @@ impl DeviceConstants {
 
 /// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
-    /// By frequency: 0 buffers of a frame, 1 textures of an object, 2 the target of a compute pass.
+    /// Those of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
     pub layout: vk::PipelineLayout,
     cache: vk::PipelineCache,
@@ -106,49 +105,12 @@ impl Pipelines {
             raw,
         };
         let raw = &all.raw;
-        use vk::DescriptorType as T;
-        use vk::ShaderStageFlags as S;
-        let every = S::VERTEX | S::FRAGMENT | S::COMPUTE;
-        let pixel = S::FRAGMENT | S::COMPUTE;
-        let sets: [&[(T, S)]; 3] = [
-            &[
-                (T::UNIFORM_BUFFER, every),
-                (T::UNIFORM_BUFFER_DYNAMIC, every),
-                (T::STORAGE_BUFFER, every),
-                (T::UNIFORM_BUFFER, every),
-                (T::STORAGE_BUFFER, every),
-                (T::UNIFORM_BUFFER_DYNAMIC, pixel),
-            ],
-            &[(T::COMBINED_IMAGE_SAMPLER, pixel); 5],
-            &[
-                (T::STORAGE_BUFFER, pixel),
-                (T::STORAGE_BUFFER, every),
-                (T::STORAGE_IMAGE, S::COMPUTE),
-                (T::STORAGE_IMAGE, S::COMPUTE),
-                (T::STORAGE_IMAGE, S::COMPUTE),
-                (T::STORAGE_IMAGE, S::COMPUTE),
-            ],
-        ];
-        for (set, (layout, bindings)) in all.set_layouts.iter_mut().zip(sets).enumerate() {
-            let bindings: Vec<_> = (0u32..)
-                .zip(bindings)
-                .map(|(binding, (kind, stages))| {
-                    let shadow_maps = set == 1 && binding == 4;
-                    vk::DescriptorSetLayoutBinding::default()
-                        .binding(binding)
-                        .descriptor_type(*kind)
-                        .descriptor_count(if shadow_maps { MAX_SHADOW_MAPS } else { 1 })
-                        .stage_flags(*stages)
-                })
-                .collect();
-            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            // SAFETY: a plain creation, destroyed in Drop.
-            *layout = unsafe { raw.create_descriptor_set_layout(&info, None) }
-                .call("vkCreateDescriptorSetLayout")?;
+        for (set, layout) in all.set_layouts.iter_mut().enumerate() {
+            *layout = descriptors::layout(raw, set)?;
         }
         let pushed = [vk::PushConstantRange::default()
-            .stage_flags(S::COMPUTE)
-            .size(4 * PUSHED)];
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            .size(size_of::<Pushed>() as u32)];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&all.set_layouts)
             .push_constant_ranges(&pushed);
@@ -168,6 +130,7 @@ impl Pipelines {
     }
 
     /// The driver keeps its compiler's statistics of what is compiled from now on.
+    #[cfg(feature = "other-shaders")]
     pub fn capturing_statistics(mut self) -> Self {
         self.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
         self
@@ -242,7 +205,7 @@ impl Pipelines {
         let mut passes = self
             .passes
             .lock()
-            .map_err(|_| Error::new(Stage::Draw, "the render passes' lock is poisoned"))?;
+            .map_err(|_| Error::new(ErrorKind::Other, "the render passes' lock is poisoned"))?;
         if let Some(known) = passes.get(&(planes, keeps_depths)) {
             return Ok(*known);
         }
@@ -281,7 +244,7 @@ impl Pipelines {
     fn made(&self) -> Result<MutexGuard<'_, HashMap<Key, vk::Pipeline>>> {
         self.made
             .lock()
-            .map_err(|_| Error::new(Stage::Draw, "the pipelines' lock is poisoned"))
+            .map_err(|_| Error::new(ErrorKind::Other, "the pipelines' lock is poisoned"))
     }
 }
 

@@ -1,153 +1,189 @@
-//! What a frame needs before it can be recorded: plans, blocks, lists, copies. The cost follows
-//! what has changed.
+//! What a frame needs before it can be recorded: a plan, places of tables, pipelines, blocks. The
+//! cost follows what has changed.
 
 use super::block::{frame_block, instance_block};
-use super::blocks::SolidBlock;
-use super::output::Output;
-use super::plan::Work;
+use super::blocks::{SOLID_STRIDE, SolidBlock};
+use super::frame_slot::{Bound, BoundStep};
+use super::planned::Planned;
 use super::renderer::Renderer;
-use super::view::View;
-use crate::error::{Error, Result, Stage};
+use super::table_slot::{Part, Slot};
+use crate::error::{Error, ErrorKind, Result};
+use crate::plan::View;
 use crate::scene::Shadow;
-use crate::settings::Planes;
+use crate::shader::Kind;
 use ash::vk;
+use std::sync::Arc;
+
+/// A frame that was prepared in a slot: what [`Renderer::record`] takes. It is of no use once its
+/// slot is prepared again.
+#[derive(Debug, PartialEq, Eq)]
+#[must_use]
+pub struct PreparedFrame {
+    pub(super) renderer: u32,
+    pub(super) slot: usize,
+    pub(super) serial: u64,
+    reads_depths: bool,
+}
+
+impl PreparedFrame {
+    /// Whether compute compares with the depths of its target and leaves its own there. Where it
+    /// does not, the target's depths may hold anything.
+    #[must_use]
+    pub fn reads_depths(&self) -> bool {
+        self.reads_depths
+    }
+}
 
 impl Renderer {
-    /// Prepares the frame of slot `slot`, seen by `view`: takes over what was set, writes what
-    /// changed, records copies of new textures. To be called outside of a render pass, before
-    /// [`Renderer::record`].
+    /// Takes over what was set, and plans what `view` shows, as the next [`Renderer::prepare`] does
+    /// by itself: to learn early whether that succeeds, or how objects are drawn.
     ///
     /// # Errors
-    /// [`Stage::Scene`] or [`Stage::Profile`](crate::error::Stage) for what cannot be drawn, with
-    /// the key `object.N...`, N counted in order: everything stays as it was before it was set.
-    /// [`Stage::Usage`] for a slot that is not there or a view of the other depth order.
-    /// [`Stage::Draw`] of Vulkan.
+    /// As `prepare`.
+    pub fn plan(&mut self, view: &View) -> Result<()> {
+        self.planned(view).map(|_| ())
+    }
+
+    /// Prepares a frame in slot `slot`, seen by `view`: takes over what was set, writes what
+    /// changed, records copies of new textures. To be called outside of a render pass.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for what cannot be drawn, with the key `object.N...`, N counted in
+    /// order: everything stays as it was before it was set. [`ErrorKind::Usage`] for a slot that is
+    /// not there, a view of the other depth order, or a target that is missing. Of Vulkan.
     ///
     /// # Safety
     /// This call writes to memory that the frame before in `slot` read; records image copies and
-    /// their barriers into `cmd`; drops what no frame in flight reads any more.
+    /// their barriers into `cmd`; drops what that frame alone has held.
     ///
     /// The caller must see to it that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
     /// * the commands recorded for `slot` before have run, or were never submitted;
-    /// * commands of other slots that were recorded before are submitted before these.
+    /// * command buffers of prepared frames are submitted in the order of their `prepare`.
     pub unsafe fn prepare(
         &mut self,
         cmd: vk::CommandBuffer,
         slot: usize,
         view: &View,
-    ) -> Result<()> {
+    ) -> Result<PreparedFrame> {
         self.check(slot, view)?;
-        self.frame += 1;
-        let done = |r: &(u64, _)| r.0 < self.frame;
-        let count = self.retired.iter().take_while(|r| done(r)).count();
-        self.retired.drain(..count);
-        self.refresh(Some(view))?;
-        self.plan(view)?;
-        let staging = self.uploads.record(&self.device, cmd);
-        if !staging.is_empty() {
-            self.retire(staging);
+        let planned = self.planned(view)?;
+        self.slots[slot].staging = self.uploads.record(&self.device, cmd);
+        let anew = {
+            let bound = self.slots[slot].bound.as_ref();
+            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.planned, &planned))
+        };
+        if anew {
+            self.slots[slot].bound = None;
+            let bound = self.bind(&planned)?;
+            self.write(slot, view, &planned)?;
+            let to = &mut self.slots[slot];
+            let target = self.target.as_ref().map(|(t, n)| (t, *n));
+            to.name(&bound.placed.tables, target);
+            to.bound = Some(bound);
         }
-        self.write(slot, view)
+        let to = &mut self.slots[slot];
+        to.write_frame(&frame_block(view, &self.lighting))?;
+        to.serial += 1;
+        Ok(PreparedFrame {
+            renderer: self.identity,
+            slot,
+            serial: to.serial,
+            reads_depths: planned.plan.compares_depths,
+        })
     }
 
     fn check(&self, slot: usize, view: &View) -> Result<()> {
-        let usage = |message: String| Err(Error::new(Stage::Usage, message));
-        if slot >= self.frames.len() {
-            return usage(format!(
-                "frame slot {slot}; there are {}",
-                self.frames.len()
-            ));
+        let usage = |message: String| Err(Error::new(ErrorKind::Usage, message));
+        if slot >= self.slots.len() {
+            return usage(format!("slot {slot}; there are {}", self.slots.len()));
         }
         if view.order != self.output.depth_order() {
             return usage("the view's depth order is not the output's; give both the same".into());
         }
-        let parallel = self.output.planes() == Planes::Depth { parallel: true };
-        if view.parallel != parallel {
+        if view.parallel != self.is_parallel() {
             return usage(
                 "parallel views go with an output of parallel depths, and no others".into(),
             );
         }
-        if matches!(self.output, Output::Compute(_)) && self.target.is_none() {
-            return usage("compute has no target yet; give one to set_compute_target".into());
-        }
-        Ok(())
+        self.output.check_target(self.target.as_ref().map(|t| &t.0))
     }
 
-    /// Writes what of a slot is older than the renderer.
-    fn write(&mut self, slot: usize, view: &View) -> Result<()> {
-        let frame = frame_block(view, &self.lighting);
-        let blocks = u32::try_from(self.entries.len()).unwrap_or(u32::MAX) + self.lists.2;
-        let instances = self.instances.initial_range().end;
-        let slots = &mut self.frames;
-        let to = &mut slots[slot];
-        to.fit(blocks, instances)?;
-        to.write_frame(&frame)?;
-        let bit = 1u32 << slot;
-        let casts = self.lighting.shadow != Shadow::Off;
-        let mut stale = std::mem::take(&mut to.stale);
-        if std::mem::take(&mut to.empty) {
-            stale.clone_from(&self.order);
+    /// Places the tables of a plan, and finds what its steps bind.
+    fn bind(&self, planned: &Arc<Planned>) -> Result<Bound> {
+        let plan = &planned.plan;
+        let parts = planned.objects.iter().zip(&plan.parts);
+        let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
+        let placed = self.geometry.lock()?.place(read)?;
+        let pipelines = self.device.pipelines()?;
+        let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
+        let mut steps = Vec::with_capacity(plan.steps.len());
+        for step in &plan.steps {
+            let object = &planned.objects[step.object as usize];
+            let entry = self.objects.at(object.number).ok_or_else(gone)?;
+            let prepared = entry.prepared.as_ref().ok_or_else(gone)?;
+            let tables = object
+                .surface
+                .as_ref()
+                .filter(|_| step.variant.own_tables != 0);
+            let part = match step.kind {
+                Kind::TileLists | Kind::TilePatches => Part::Patches,
+                _ => Part::Tables,
+            };
+            let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
+            steps.push(BoundStep {
+                pipeline: pipelines.get(step.variant, step.kind, &self.output, self.owner)?,
+                textures: prepared.textures.clone(),
+                offsets: [16 * begin, object.number * SOLID_STRIDE],
+            });
         }
-        for number in stale {
-            let Some(entry) = &mut self.entries[number as usize] else {
+        Ok(Bound {
+            planned: planned.clone(),
+            steps,
+            placed,
+        })
+    }
+
+    /// Writes what of a slot is older than the renderer, or of another view.
+    fn write(&mut self, slot: usize, view: &View, planned: &Planned) -> Result<()> {
+        let casts = self.lighting.shadow != Shadow::Off;
+        let to = &mut self.slots[slot];
+        to.fit(self.objects.places(), self.objects.instances())?;
+        to.write_plan(&planned.plan)?;
+        // Instances are as the eye sees them.
+        let known = to.written.take().filter(|(before, _)| before == view);
+        let known = known.map_or(0, |(_, version)| version);
+        let mut throwing: Vec<SolidBlock> = Vec::new();
+        for (object, copies) in planned.objects.iter().zip(&planned.plan.copies) {
+            let number = object.number;
+            let Some(entry) = self.objects.at(number) else {
                 continue;
             };
-            entry.stale &= !bit;
-            let Some(mut block) = entry.block(&self.settings) else {
+            let Some(block) = entry.block(number, object.surface.as_deref(), &self.settings) else {
                 continue;
             };
             let placements = entry.drawn().placements();
-            if let Some(copy) = placements.first() {
-                block.single = instance_block(entry.drawn(), copy, view);
+            to.write_solid(number, &block)?;
+            if casts {
+                throwing.push(block);
             }
-            to.write_block(number, &block)?;
             let mut write = |copy: u32| {
-                let of =
-                    |copy: u32| instance_block(entry.drawn(), &placements[copy as usize], view);
-                let block = if copy == 0 { block.single } else { of(copy) };
+                let placement = &placements[copy as usize];
+                let block = instance_block(entry.drawn(), placement, number, view);
                 to.write_instance(entry.instances.start + copy, &block)
             };
-            match &entry.draw.work {
-                // Nothing reads the others, unless they may throw a shadow.
-                Some(Work::Bins(shown)) if !casts => {
-                    shown.copies.iter().try_for_each(|&copy| write(copy))?
+            match copies {
+                Some(shown) => shown.iter().try_for_each(|&copy| write(copy))?,
+                None if entry.version > known => {
+                    (0..placements.len() as u32).try_for_each(write)?;
                 }
-                _ => (0..entry.instances.end - entry.instances.start).try_for_each(write)?,
+                None => {}
             }
         }
-        if self.listed[slot] != self.version {
-            if casts {
-                let all: Vec<SolidBlock> = self
-                    .order
-                    .iter()
-                    .filter_map(|&n| self.entries[n as usize].as_ref()?.block(&self.settings))
-                    .collect();
-                to.write_shadows(&all)?;
-            }
-            let (words, tiles, _) = &self.lists;
-            to.write_lists(words, words.len() + tiles)?;
-            if matches!(self.output, Output::Compute(_)) {
-                for &number in &self.order {
-                    let Some(entry) = &self.entries[number as usize] else {
-                        continue;
-                    };
-                    if let (Some(Work::Beams { copies, .. }), Some(mut block)) =
-                        (&entry.draw.work, entry.block(&self.settings))
-                    {
-                        for tiles in copies {
-                            let Some(number) = tiles.block else { continue };
-                            let copy = &entry.drawn().placements()[tiles.instance];
-                            block.single = instance_block(entry.drawn(), copy, view);
-                            to.write_block(number, &block)?;
-                        }
-                    }
-                }
-            }
-            self.listed[slot] = self.version;
+        if casts {
+            to.write_shadows(&throwing)?;
         }
-        let target = self.target.as_ref().map(|(t, n)| (t, *n));
-        to.name((&self.arena.buffer, self.arena.generation), target);
+        to.written = Some((*view, planned.version));
         Ok(())
     }
 }

@@ -2,11 +2,13 @@
 
 use super::device::Shared;
 use super::entry::Entry;
-use super::hulls;
 use super::output::Output;
+use super::planned::PlannedObject;
+use super::prepare::PreparedFrame;
 use super::refresh::FALLBACK;
 use super::renderer::Renderer;
 use crate::error::Result;
+use crate::plan::{PlanObject, Pushed, variants};
 use crate::settings::Solver;
 use crate::shader::{Kind, Variant};
 use ash::vk;
@@ -37,7 +39,7 @@ impl Prewarm {
     /// Compiles those that are not compiled yet. The renderer must live until this returns.
     ///
     /// # Errors
-    /// [`Stage::Draw`](crate::error::Stage::Draw) of Vulkan.
+    /// Of Vulkan.
     pub fn compile(&self) -> Result<()> {
         let pipelines = self.device.pipelines()?;
         for &(variant, kind) in &self.wanted {
@@ -50,19 +52,19 @@ impl Prewarm {
 impl Renderer {
     /// Every pipeline that the objects can reach while parameters, lights, placements and the view
     /// change. What makes others necessary is another technique: textures where there were none,
-    /// replicas, shadows, a box that cuts; in compute also more objects or copies than one.
+    /// replicas, shadows, a box that cuts, copies of what was one.
     ///
     /// # Errors
     /// As [`Renderer::prepare`], of what was added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
-        let view = self.view;
+        let view = self.planned.as_ref().map(|p| p.view);
         self.refresh(view.as_ref())?;
-        let mut wanted = Vec::new();
-        for entry in self.ordered() {
-            self.reachable(entry, &mut wanted);
-        }
         Ok(Prewarm {
-            wanted,
+            wanted: self
+                .reachable()
+                .into_iter()
+                .map(|(v, k, _)| (v, k))
+                .collect(),
             output: self.output.clone(),
             owner: self.owner,
             device: self.device.clone(),
@@ -74,69 +76,112 @@ impl Renderer {
     /// first draw; they do it when these commands run.
     ///
     /// # Errors
-    /// As [`Prewarm::compile`], for pipelines that it has not compiled.
+    /// As [`Prewarm::compile`], for pipelines that it has not compiled, and as [`Renderer::record`].
     ///
     /// # Safety
     /// This call does what [`Renderer::record`] does in a pass, and [`Renderer::record_compute`]
     /// outside; in a pass it sets the scissor, too, to nothing.
     ///
     /// The caller must see to what the same function asks for.
-    pub unsafe fn record_prewarm(&self, cmd: vk::CommandBuffer, slot: usize) -> Result<()> {
-        let Some(slot) = self.frames.get(slot) else {
-            return Ok(());
-        };
+    pub unsafe fn record_prewarm(
+        &self,
+        cmd: vk::CommandBuffer,
+        frame: &PreparedFrame,
+    ) -> Result<()> {
+        let (slot, _) = self.frame(frame)?;
         let pipelines = self.device.pipelines()?;
         let raw = &self.device.raw;
-        if self.draws_hulls() {
+        let compute = self.is_compute();
+        if !compute {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        let mut wanted = Vec::new();
-        for (&number, entry) in self.order.iter().zip(self.ordered()) {
-            wanted.clear();
-            self.reachable(entry, &mut wanted);
-            for &(variant, kind) in &wanted {
-                let pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
-                self.bind(cmd, slot, entry, pipeline, number);
-                if self.draws_hulls() {
-                    // SAFETY: `cmd` is recording within a pass; all that is bound lives as long as
-                    // the caller promised.
-                    unsafe { raw.cmd_draw(cmd, 3, 1, 0, entry.instances.start) };
-                } else {
-                    self.dispatch(cmd, [0; 4], [0, 0]);
-                    self.wait_for_writes(cmd);
-                }
+        for (variant, kind, textures) in self.reachable() {
+            let pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
+            let point = if compute {
+                vk::PipelineBindPoint::COMPUTE
+            } else {
+                vk::PipelineBindPoint::GRAPHICS
+            };
+            self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
+            if compute {
+                self.push(cmd, &Pushed::default());
+                // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as
+                // long as the caller promised.
+                unsafe { raw.cmd_dispatch(cmd, 0, 0, 1) };
+                self.wait_for_writes(cmd);
+            } else {
+                // SAFETY: likewise, within a pass.
+                unsafe { raw.cmd_draw(cmd, 3, 1, 0, 0) };
             }
         }
         Ok(())
     }
 
-    fn reachable(&self, entry: &Entry, all: &mut Vec<(Variant, Kind)>) {
-        let object = entry.drawn();
-        let surface = entry.prepared.as_ref().and_then(|p| p.surface.as_deref());
-        let (settings, solver) = (&self.settings, self.settings.solver);
+    /// Pipelines, each with a set of textures that it may be bound with.
+    fn reachable(&self) -> Vec<(Variant, Kind, vk::DescriptorSet)> {
+        let with = self.conditions();
         let planes = self.output.planes();
-        let of = |solver| Variant::new(settings, planes, solver, &self.lighting, object, self.met);
-        let fallback = matches!(solver, Solver::Quadric | Solver::Hull).then(|| of(FALLBACK));
-        let wraps = settings.proxy_min_pixels != u32::MAX && object.repeat == [1; 3];
-        let several = self.order.len() > 1;
-        let copies = object.placements().len() > 1;
-        let compute = (!self.draws_hulls()).then_some(several);
-        // An offset may move the size of tables across the limit.
-        let own = surface.map_or(0, |s| s.tables().own);
-        let limit = self.device.constants.own_vectors as usize;
-        let fits = [own <= limit + limit / 2, own > limit - limit / 4];
-        let clips = self.device.clips || !self.draws_hulls();
-        let may_be_cut = clips && hulls::may_be_cut(object);
-        let reachable = of(solver).reachable(solver, wraps, copies, compute, fallback);
-        let drawn = |(v, kind): &(Variant, Kind)| may_be_cut || !v.is_cut(*kind);
-        for (variant, kind) in reachable.into_iter().filter(drawn) {
-            for (fit, _) in [true, false].into_iter().zip(fits).filter(|(_, may)| *may) {
-                let keeps = self.keeps_depths && matches!(kind, Kind::Compute | Kind::Listed);
-                let variant = variant.keeping(keeps).with_tables_of(kind, fit);
-                let new = variant.filter(|v| !all.contains(&(*v, kind)));
-                all.extend(new.map(|v| (v, kind)));
+        let solver = self.settings.solver;
+        let of = |solver, entry: &Entry| {
+            let (settings, lighting) = (&self.settings, &self.lighting);
+            Variant::new(
+                settings,
+                planes,
+                solver,
+                lighting,
+                entry.drawn(),
+                self.casters,
+            )
+        };
+        let prepared: Vec<_> = (self.objects.ordered())
+            .filter_map(|(number, entry)| {
+                let prepared = entry.prepared.as_ref()?;
+                let planned = PlannedObject {
+                    number,
+                    level: 0,
+                    surface: prepared.levels.first().map(|l| l.1.clone()),
+                };
+                Some((entry, prepared.textures.set, planned))
+            })
+            .collect();
+        // Those that fall back, too, as their contour may close again.
+        let own: Vec<PlanObject> = prepared
+            .iter()
+            .filter_map(|(entry, _, planned)| {
+                Some(PlanObject {
+                    variant: of(solver, entry),
+                    ..entry.plan_object(planned, &self.settings)?
+                })
+            })
+            .collect();
+        let falls_back = matches!(solver, Solver::Quadric | Solver::Hull);
+        let mut all: Vec<(Variant, Kind, vk::DescriptorSet)> = Vec::new();
+        for ((entry, set, _), (object, variant)) in
+            prepared.iter().zip(own.iter().zip(variants(&own, &with)))
+        {
+            let fallback = falls_back.then(|| PlanObject {
+                variant: of(FALLBACK, entry),
+                surface: None,
+                takes_patches: false,
+                ..*object
+            });
+            let mut reachable = with.reachable(object, variant);
+            for object in fallback.iter() {
+                let variant = Variant {
+                    one_solid: variant.one_solid,
+                    ..object.variant
+                };
+                // Where it stands in for another search there is one form of it, the general one.
+                let general = |(v, _): &(Variant, Kind)| v.beveled != 0;
+                reachable.extend(with.reachable(object, variant).into_iter().filter(general));
+            }
+            for (variant, kind) in reachable {
+                if !all.iter().any(|(v, k, _)| (*v, *k) == (variant, kind)) {
+                    all.push((variant, kind, *set));
+                }
             }
         }
+        all
     }
 }

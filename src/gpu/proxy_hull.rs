@@ -1,8 +1,7 @@
 //! Proxy hulls as the vertex shader grows them.
 
-use crate::maps::envelope::Envelope;
 use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
-use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch, solid_radii};
+use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics
 /// and guards, and the box's sides.
@@ -11,7 +10,7 @@ pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
 /// Components that these vertices put out: a position and four distances to clip by, besides.
 pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;
 
-/// A hull: its frusta in the layout of `hull.vert`, then the rows of `sides.vert`.
+/// A hull: its frusta in the layout of `proxy_cells.vert`, then the rows of `proxy_boxes.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
@@ -29,7 +28,7 @@ impl GpuProxyHull {
         };
         let hull = ProxyHull::new(patches, &options);
         let mut vectors = pack(&hull, patches);
-        vectors.extend(rows(&hull, patches));
+        vectors.extend(rows(&hull));
         let touches = touches(patches);
         Self {
             hull,
@@ -37,41 +36,13 @@ impl GpuProxyHull {
             touches,
         }
     }
-
-    /// The convex hull of an envelope.
-    pub fn convex(envelope: &Envelope) -> Self {
-        let hull = ProxyHull::convex(&envelope.convex(), HULL_SIDES);
-        let vectors = pack(&hull, &[]);
-        Self {
-            hull,
-            vectors,
-            touches: false,
-        }
-    }
 }
 
-/// Vertices of the strips of all sides.
-pub(crate) const SIDE_VERTICES: u32 = 6 * 4 * SIDE_ROWS;
-
-/// The rows of `sides.vert`: lowest and highest `z`; the radius that shells stay within, and the
-/// one within which the row and those beside it are solid.
-fn rows(hull: &ProxyHull, patches: &[QuadricPatch]) -> impl Iterator<Item = [u32; 4]> {
-    let solid = solid_radii(patches);
+/// The rows of `proxy_boxes.vert`: lowest and highest `z`; the radius that shells stay within.
+fn rows(hull: &ProxyHull) -> impl Iterator<Item = [u32; 4]> {
     hull.rows::<{ SIDE_ROWS as usize }>()
         .into_iter()
-        .map(move |[low, high, radius]| {
-            let step = high - low;
-            let of = |z: f64| (z * solid.len() as f64).floor();
-            let (first, last) = (of(low - step), of(high + step));
-            let within = if first < 0.0 || last >= solid.len() as f64 {
-                0.0
-            } else {
-                solid[first as usize..=last as usize]
-                    .iter()
-                    .fold(f64::INFINITY, |m, r| m.min(*r))
-            };
-            [low as f32, high as f32, radius as f32, within as f32].map(f32::to_bits)
-        })
+        .map(|[low, high, radius]| [low as f32, high as f32, radius as f32, 0.0].map(f32::to_bits))
 }
 
 /// Points of an outline nearer than this are one, object units: what the union of loops rounds to.
@@ -95,7 +66,7 @@ fn touches(patches: &[QuadricPatch]) -> bool {
     })
 }
 
-/// A hull's frusta in the layout of `hull.vert`.
+/// A hull's frusta in the layout of `proxy_cells.vert`.
 fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     let mut out = Vec::with_capacity(hull.frusta.len() * FRUSTUM_VECTORS as usize);
     // A guard that nothing passes.
@@ -117,22 +88,50 @@ fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     out
 }
 
-/// How many corners the triangles of so many frusta have.
-pub(crate) fn corners(frusta: u32) -> u32 {
-    6 * HULL_SIDES * frusta
+/// Vertices of a shape box, before those of its sides' strips.
+const BOX_VERTICES: u32 = 14;
+
+/// Indices of every proxy, the same for all: the box, whose vertices are a strip; the strips of its
+/// sides; then so many frusta, two rings of vertices each.
+pub(crate) fn indices(frusta: u32) -> Vec<u32> {
+    // Every second triangle of a strip turns round.
+    let boxes = (0..BOX_VERTICES - 2).flat_map(|k| match k % 2 {
+        0 => [k, k + 1, k + 2],
+        _ => [k + 1, k, k + 2],
+    });
+    let strips = (0..4 * SIDE_ROWS).flat_map(|strip| {
+        let at = BOX_VERTICES + 4 * strip;
+        [at, at + 1, at + 2, at, at + 2, at + 3]
+    });
+    let n = HULL_SIDES;
+    let frusta = (0..frusta).flat_map(move |frustum| {
+        (0..n).flat_map(move |side| {
+            let (a, b) = (frustum * 2 * n, frustum * 2 * n + n);
+            let next = (side + 1) % n;
+            [a + side, a + next, b + next, a + side, b + next, b + side]
+        })
+    });
+    boxes.chain(strips).chain(frusta).collect()
 }
 
-/// Corners that every frustum's triangles join, in the numbering of `hull.vert`: `2 n` vertices a
-/// frustum, the rings one after the other.
-pub(crate) fn indices(frusta: usize) -> Vec<u32> {
-    let n = HULL_SIDES;
-    (0..u32::try_from(frusta).unwrap_or(0))
-        .flat_map(|frustum| {
-            (0..n).flat_map(move |side| {
-                let (a, b) = (frustum * 2 * n, frustum * 2 * n + n);
-                let next = (side + 1) % n;
-                [a + side, a + next, b + next, a + side, b + next, b + side]
-            })
-        })
-        .collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::generated::{BOX_INDICES, STRIP_INDICES};
+
+    /// Draws begin where the plan says.
+    #[test]
+    fn indices_of_boxes_strips_and_frusta_follow_each_other() {
+        let all = indices(3);
+        let (boxes, rest) = all.split_at(BOX_INDICES as usize);
+        let (strips, frusta) = rest.split_at(STRIP_INDICES as usize);
+        assert!(boxes.iter().all(|v| *v < BOX_VERTICES));
+        assert!(
+            strips
+                .iter()
+                .all(|v| (BOX_VERTICES..BOX_VERTICES + 16 * SIDE_ROWS).contains(v))
+        );
+        assert_eq!(frusta.len() as u32, 3 * 6 * HULL_SIDES);
+        assert_eq!(frusta.iter().max(), Some(&(3 * 2 * HULL_SIDES - 1)));
+    }
 }

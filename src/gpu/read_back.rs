@@ -1,9 +1,9 @@
 //! From the bytes of a target to a frame.
 
-use super::view::View;
 use crate::antialias::{self, Solids};
 use crate::error::Result;
 use crate::frame::{Frame, linear_from_srgb};
+use crate::plan::View;
 use crate::scene::CameraFrame;
 use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;

@@ -3,22 +3,19 @@
 
 use super::block::check_format;
 use super::entry::{Entry, Prepared};
-use super::levels;
 use super::map_key::MapKey;
 use super::offset_surface::OffsetSurface;
-use super::reach::largest_width;
 use super::renderer::Renderer;
 use super::shape_texture::ShapeTexture;
 use super::solid::Solid;
 use super::textures::{Bound, ShadowMaps};
-use super::view::View;
-use crate::error::{Error, Result, Stage};
-use crate::maps::envelope::SLACK;
-use crate::maps::{MapFormat, Projection};
+use crate::error::{Error, ErrorKind, Result};
+use crate::maps::Projection;
+use crate::plan::{View, levels};
 use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
 use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
-use crate::shader::{Met, Variant};
+use crate::shader::{ShadowCasters, Variant};
 use std::sync::Arc;
 
 /// The search of what has no surface of its own: it reads the map alone.
@@ -53,7 +50,7 @@ impl Renderer {
         let mut changed = std::mem::take(&mut self.changed);
         changed.sort_unstable();
         changed.dedup();
-        let result = self.take_over(&changed, view);
+        let result = self.apply(&changed, view);
         if result.is_err() {
             for number in changed {
                 self.forget(number)?;
@@ -64,37 +61,36 @@ impl Renderer {
 
     /// Drops what was set of an entry.
     fn forget(&mut self, number: u32) -> Result<()> {
-        let Some(entry) = &mut self.entries[number as usize] else {
+        let version = self.version + 1;
+        let Some(entry) = self.objects.at_mut(number) else {
             return Ok(());
         };
         entry.wanted = None;
+        entry.version = version;
+        self.version = version;
         let count = entry.object.placements().len();
         if entry.instances.len() != count {
-            let unused = entry.instances.clone();
-            let range = self.swap_instances(unused, count)?;
-            if let Some(entry) = &mut self.entries[number as usize] {
-                entry.instances = range;
-            }
+            self.objects.resize(number, count)?;
         }
         Ok(())
     }
 
-    fn take_over(&mut self, changed: &[u32], view: Option<&View>) -> Result<()> {
+    fn apply(&mut self, changed: &[u32], view: Option<&View>) -> Result<()> {
         let resolved = self.resolve(changed, view)?;
-        let (falls_back, met) = (self.falls_back(&resolved), self.shadows_meet());
-        if falls_back != self.all_fall_back || met != self.met {
-            (self.all_fall_back, self.met) = (falls_back, met);
+        let (falls_back, casters) = (self.falls_back(&resolved), self.shadow_casters());
+        if falls_back != self.all_fall_back || casters != self.casters {
+            (self.all_fall_back, self.casters) = (falls_back, casters);
             // Each is drawn by another code from now on.
-            if changed.len() < self.order.len() {
-                let all = self.order.clone();
-                return self.take_over(&all, view);
+            if changed.len() < self.objects.len() {
+                let all = self.objects.numbers();
+                return self.apply(&all, view);
             }
         }
         let casts = self.lighting.shadow != Shadow::Off;
-        if casts && self.order.len() > MAX_SHADOW_BATCHES as usize {
-            let (count, most) = (self.order.len(), MAX_SHADOW_BATCHES);
+        if casts && self.objects.len() > MAX_SHADOW_BATCHES as usize {
+            let (count, most) = (self.objects.len(), MAX_SHADOW_BATCHES);
             return Err(Error::new(
-                Stage::Scene,
+                ErrorKind::Content,
                 format!("shadows between {count} objects; at most {most} are drawn: use instances, or set \"off\""),
             )
             .at_key("shadow"));
@@ -108,12 +104,11 @@ impl Renderer {
         }
         let shadow_maps = self.shadow_maps_with(&mapped)?;
         let all_anew = !Arc::ptr_eq(&shadow_maps, &self.shadow_maps);
-        let before = std::mem::replace(&mut self.shadow_maps, shadow_maps);
-        if all_anew && mapped.len() < self.order.len() {
-            let all = self.order.clone();
-            return self.take_over(&all, view);
+        self.shadow_maps = shadow_maps;
+        if all_anew && mapped.len() < self.objects.len() {
+            let all = self.objects.numbers();
+            return self.apply(&all, view);
         }
-        self.retire(before);
         let mut ready = Vec::with_capacity(mapped.len());
         for (one, map) in mapped {
             let number = one.number;
@@ -122,17 +117,18 @@ impl Renderer {
                 .map_err(|e| self.named(e, number, "profile"))?;
             ready.push((number, one.grown, prepared));
         }
+        self.version += 1;
+        let version = self.version;
         for (number, grown, prepared) in ready {
-            let Some(entry) = &mut self.entries[number as usize] else {
+            let Some(entry) = self.objects.at_mut(number) else {
                 continue;
             };
             if let Some(wanted) = entry.wanted.take() {
                 entry.object = wanted;
             }
             entry.grown = grown;
-            let old = entry.prepared.replace(prepared);
-            self.retire(old);
-            self.unplanned.push(number);
+            entry.prepared = Some(prepared);
+            entry.version = version;
         }
         Ok(())
     }
@@ -142,13 +138,15 @@ impl Renderer {
         let solver = self.settings.solver;
         let mut resolved = Vec::with_capacity(changed.len());
         for &number in changed {
-            let Some(entry) = &self.entries[number as usize] else {
+            let Some(entry) = self.objects.at(number) else {
                 continue;
             };
-            let grown = self.solids.grown.grown(entry.latest());
+            let mut geometry = self.geometry.lock()?;
+            let grown = geometry.solids.grown.grown(entry.latest());
             let object = grown.as_ref().map_or(entry.latest(), |g| &g.object);
             let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
-            let solid = self.solids.get(&object.profile);
+            let solid = geometry.solids.get(&object.profile);
+            drop(geometry);
             // Shadows' common level is known when all are planned.
             let level = match view {
                 Some(view) if self.has_levels() && self.lighting.shadow == Shadow::Off => {
@@ -159,9 +157,9 @@ impl Renderer {
             };
             let surface = if solver.reads_map() {
                 None
-            } else if solver.is_of_cones() {
+            } else if let Solver::Other(search) = solver {
                 let rows = MapKey::new(object, &growth, &self.settings).rows;
-                Some(solid.cones(&object.offset, rows, solver == Solver::Relaxed)?)
+                Some(solid.search_table(search, &object.offset, rows)?)
             } else {
                 Some(solid.patches(&object.offset, &growth, level)?)
             };
@@ -173,20 +171,20 @@ impl Renderer {
                 surface,
             });
         }
-        self.make_surfaces(resolved.iter().filter_map(|r| r.surface.as_ref()));
+        let surfaces: Vec<_> = resolved.iter().filter_map(|r| r.surface.clone()).collect();
+        self.make_surfaces(&surfaces);
         for one in &resolved {
             let Some(error) = one.surface.as_ref().and_then(|s| s.failure()) else {
                 continue;
             };
-            if solver.is_of_cones() {
+            if solver.reads_own_table() {
                 return Err(self.named(error.clone(), one.number, "profile"));
             }
-            let name = self.entries[one.number as usize]
-                .as_ref()
-                .map_or("", |e| &e.latest().name);
+            let entry = self.objects.at(one.number);
+            let name = entry.map_or("", |e| &e.latest().name);
             let note = format!(
                 "object.{} ({name}) is drawn by the search {} in place of {}: {}",
-                self.place(one.number),
+                self.objects.position(one.number),
                 FALLBACK.name(),
                 solver.name(),
                 error.message
@@ -203,22 +201,22 @@ impl Renderer {
         let fails =
             |s: &Option<Arc<OffsetSurface>>| s.as_ref().is_some_and(|s| s.failure().is_some());
         let is_new = |number: u32| resolved.iter().any(|r| r.number == number);
-        let of_old = |&number: &u32| {
-            let entry = self.entries[number as usize].as_ref();
-            let prepared = entry.and_then(|e| e.prepared.as_ref());
-            prepared.is_some_and(|p| fails(&p.surface)) && !is_new(number)
+        let of_old = |(number, entry): (u32, &Entry)| {
+            let prepared = entry.prepared.as_ref();
+            let surface = prepared.and_then(|p| p.levels.first().map(|l| l.1.clone()));
+            prepared.is_some_and(|p| p.fails || fails(&surface)) && !is_new(number)
         };
         self.lighting.shadow != Shadow::Off
-            && (resolved.iter().any(|r| fails(&r.surface)) || self.order.iter().any(of_old))
+            && (resolved.iter().any(|r| fails(&r.surface)) || self.objects.ordered().any(of_old))
     }
 
     /// What shadows' rays may meet; nothing where there are none.
-    fn shadows_meet(&self) -> Met {
+    fn shadow_casters(&self) -> ShadowCasters {
         if self.lighting.shadow == Shadow::Off {
-            return Met::default();
+            return ShadowCasters::default();
         }
-        let objects = || self.ordered().map(Entry::latest);
-        Met {
+        let objects = || self.objects.ordered().map(|(_, e)| e.latest());
+        ShadowCasters {
             repeated: objects().any(|o| o.repeat != [1; 3]),
             beveled: objects().any(|o| o.offset.bevel != 0.0),
         }
@@ -239,7 +237,7 @@ impl Renderer {
         if !self.solver_of(one.surface.as_ref()).reads_map() && !soft {
             return Ok(None);
         }
-        let Some(entry) = &self.entries[one.number as usize] else {
+        let Some(entry) = self.objects.at(one.number) else {
             return Ok(None);
         };
         let (wanted, growth) = one.shown(entry);
@@ -270,13 +268,11 @@ impl Renderer {
             });
         }
         let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
-        for &number in &self.order {
+        for (number, entry) in self.objects.ordered() {
             let new = mapped.iter().find(|(r, _)| r.number == number);
             let map = match new {
                 Some((_, map)) => map.as_ref(),
-                None => self.entries[number as usize]
-                    .as_ref()
-                    .and_then(|e| e.prepared.as_ref()?.map.as_ref()),
+                None => entry.prepared.as_ref().and_then(|p| p.map.as_ref()),
             };
             if let Some(map) = map
                 && !maps.iter().any(|m| Arc::ptr_eq(m, map))
@@ -287,7 +283,7 @@ impl Renderer {
         let (count, most) = (maps.len(), MAX_SHADOW_MAPS as usize);
         if count > most {
             return Err(Error::new(
-                Stage::Scene,
+                ErrorKind::Content,
                 format!("shadows between {count} different shapes; at most {most} are drawn: share profiles, or set \"off\""),
             )
             .at_key("shadow"));
@@ -307,9 +303,9 @@ impl Renderer {
     fn prepared(&mut self, one: &Resolved, map: Option<Arc<ShapeTexture>>) -> Result<Prepared> {
         let (number, solid, surface) = (one.number, &one.solid, one.surface.clone());
         let solver = self.solver_of(surface.as_ref());
-        let Some(entry) = &self.entries[number as usize] else {
+        let Some(entry) = self.objects.at(number) else {
             return Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Other,
                 "an object is gone while it is prepared",
             ));
         };
@@ -324,10 +320,9 @@ impl Renderer {
         } else {
             None
         };
-        let proxy = self.proxy(object, solver, solid, map.as_deref(), surface.as_ref())?;
         let planes = self.output.planes();
         let (settings, lighting) = (&self.settings, &self.lighting);
-        let variant = Variant::new(settings, planes, solver, lighting, object, self.met);
+        let variant = Variant::new(settings, planes, solver, lighting, object, self.casters);
         let shadow_map = map.as_ref().and_then(|map| {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
@@ -341,47 +336,20 @@ impl Renderer {
         Ok(Prepared {
             textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
             solid: solid.clone(),
-            level: one.level,
-            levels: Vec::new(),
+            fails: surface.as_ref().is_some_and(|s| s.failure().is_some()),
+            levels: surface
+                .filter(|_| !solver.reads_map())
+                .map(|surface| (one.level, surface))
+                .into_iter()
+                .collect(),
             solver,
-            surface: surface.filter(|_| !solver.reads_map()),
-            proxy,
+            takes_patches: solver == Solver::Hull && settings.proxy_min_pixels != u32::MAX,
             map,
             facts,
             arc,
             shadow_map: shadow_map.and_then(|n| u32::try_from(n).ok()).unwrap_or(0),
             variant,
         })
-    }
-
-    /// What rays of an object can be held to before they are searched: its boundary; of a search on
-    /// the map, where its solid may be.
-    fn proxy(
-        &self,
-        object: &Object,
-        solver: Solver,
-        solid: &Solid,
-        map: Option<&ShapeTexture>,
-        surface: Option<&Arc<OffsetSurface>>,
-    ) -> Result<Option<Arc<OffsetSurface>>> {
-        if self.settings.proxy_min_pixels == u32::MAX {
-            return Ok(None);
-        }
-        match (solver, map) {
-            (Solver::Hull, _) => Ok(surface.cloned()),
-            // A map of 8 bits bounds nothing.
-            (Solver::Live, Some(map)) if self.settings.map_format != MapFormat::Rgba8 => {
-                let by = largest_width(&object.offset).max(0.0) + SLACK / f64::from(map.facts.rows);
-                // As much as halves of floats are rounded by.
-                solid.envelope(map, by * (1.0 + 1.0 / 1024.0))
-            }
-            _ => Ok(None),
-        }
-    }
-
-    /// Where an entry stands among all.
-    fn place(&self, number: u32) -> usize {
-        self.order.iter().position(|&n| n == number).unwrap_or(0)
     }
 
     /// Adds which object it was to an error that has a key, or this one.
@@ -391,8 +359,11 @@ impl Renderer {
         } else {
             error
         };
-        let entry: Option<&Entry> = self.entries[number as usize].as_ref();
-        match entry.and_then(|e| e.latest().file.clone()) {
+        match self
+            .objects
+            .at(number)
+            .and_then(|e| e.latest().file.clone())
+        {
             Some(file) if error.file.is_none() => error.in_file(file),
             _ => error,
         }
@@ -402,7 +373,7 @@ impl Renderer {
         if let Some(key) = &mut error.key
             && !key.starts_with("object.")
         {
-            *key = format!("object.{}.{key}", self.place(number));
+            *key = format!("object.{}.{key}", self.objects.position(number));
         }
         error
     }

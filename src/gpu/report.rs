@@ -1,8 +1,8 @@
 //! What each Vulkan device offers, and which of them to take.
 
 use super::call::Call;
-use super::instance::{API_VERSION, Instance, into_device};
-use crate::error::{Error, Result, Stage};
+use super::instance::{API_VERSION, Instance};
+use crate::error::{Error, ErrorKind, Result};
 use crate::shader::generated::GROUP_PIXELS;
 use ash::vk;
 use std::ffi::CStr;
@@ -10,10 +10,10 @@ use std::ffi::CStr;
 /// The environment variable that names the device to take.
 pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
 
-/// What a Vulkan device is and offers, as `revmap devices` prints it.
+/// What a Vulkan device is and offers.
 #[derive(Clone, Debug)]
 pub struct DeviceReport {
-    /// Position in the loader's list; `--device` takes it.
+    /// Position in the loader's list; [`Device::open`](super::Device::open) takes it.
     pub index: usize,
     /// The device's name.
     pub name: String,
@@ -23,11 +23,11 @@ pub struct DeviceReport {
     pub driver: String,
     /// Vulkan version, as `1.3.230`.
     pub api_version: String,
-    /// What the program would use of it: `(what, whether or which)`.
+    /// What a renderer would use of it: `(what, whether or which)`.
     pub uses: Vec<(String, String)>,
-    /// What it lacks that is needed; empty: the program runs on it.
+    /// What it lacks that is needed; empty: renderers can be made on it.
     pub missing: Vec<String>,
-    /// Whether it is the one taken where no `--device` is given.
+    /// Whether [`Device::open`](super::Device::open) takes it where none is named.
     pub preferred: bool,
 }
 
@@ -65,7 +65,26 @@ impl Candidate {
     /// Whether squares of up to eight pixels a side are drawn as points: one vertex for six, and
     /// no diagonal, along which blocks of pixels are searched twice.
     pub fn large_points(&self) -> bool {
-        large_points(&self.features, &self.properties.limits)
+        let limits = &self.properties.limits;
+        let [least, most] = limits.point_size_range;
+        let step = limits.point_size_granularity;
+        self.features.large_points == vk::TRUE
+            && least <= 1.0
+            && most >= GROUP_PIXELS as f32
+            && (step == 0.0 || (1.0 / step).fract() == 0.0)
+    }
+
+    /// How many indexed draws one indirect command takes.
+    pub fn most_draws(&self) -> u32 {
+        let both = [
+            self.features.multi_draw_indirect,
+            self.features.draw_indirect_first_instance,
+        ];
+        if both == [vk::TRUE; 2] {
+            self.properties.limits.max_draw_indirect_count
+        } else {
+            0
+        }
     }
 
     /// Whether it offers an extension.
@@ -81,24 +100,41 @@ impl Candidate {
             sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
             shader_clip_distance: vk::Bool32::from(self.clips()),
             large_points: vk::Bool32::from(self.large_points()),
+            multi_draw_indirect: self.features.multi_draw_indirect,
+            draw_indirect_first_instance: self.features.draw_indirect_first_instance,
             ..Default::default()
         }
     }
-}
 
-fn large_points(features: &vk::PhysicalDeviceFeatures, limits: &vk::PhysicalDeviceLimits) -> bool {
-    let [least, most] = limits.point_size_range;
-    let step = limits.point_size_granularity;
-    features.large_points == vk::TRUE
-        && least <= 1.0
-        && most >= GROUP_PIXELS as f32
-        && (step == 0.0 || (1.0 / step).fract() == 0.0)
+    /// [`DeviceReport::uses`].
+    fn uses(&self) -> Vec<(String, String)> {
+        let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
+        let limits = &self.properties.limits;
+        let timestamps = if self.timestamp_bits > 0 {
+            let (bits, period) = (self.timestamp_bits, limits.timestamp_period);
+            format!("{bits} bits of {period} ns")
+        } else {
+            "no: times are the wall clock's alone".to_owned()
+        };
+        let (width, height) = (limits.max_framebuffer_width, limits.max_framebuffer_height);
+        let side = limits.max_image_dimension2_d;
+        [
+            ("GPU timestamps", timestamps),
+            ("anisotropic filtering", yes_no(self.anisotropic())),
+            ("hulls of solids that their box cuts", yes_no(self.clips())),
+            ("squares of crowds as points", yes_no(self.large_points())),
+            ("largest map", format!("{side} texels a side")),
+            ("largest picture", format!("{width} x {height}")),
+        ]
+        .map(|(what, which)| (what.to_owned(), which))
+        .to_vec()
+    }
 }
 
 /// All devices that the Vulkan loader offers.
 ///
 /// # Errors
-/// [`Stage::Device`] when there is no loader or no device.
+/// [`ErrorKind::Unsupported`] when there is no loader or no device.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let instance = Instance::from_environment()?;
     let found = candidates(&instance)?;
@@ -122,16 +158,15 @@ pub(crate) fn variable() -> Option<String> {
 
 fn none() -> Error {
     Error::new(
-        Stage::Device,
+        ErrorKind::Unsupported,
         "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers",
     )
 }
 
 pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
     // SAFETY: plain query of a live instance.
-    let all = unsafe { instance.raw.enumerate_physical_devices() }
-        .call("vkEnumeratePhysicalDevices")
-        .map_err(into_device)?;
+    let all =
+        unsafe { instance.raw.enumerate_physical_devices() }.call("vkEnumeratePhysicalDevices")?;
     Ok(all
         .into_iter()
         .enumerate()
@@ -171,7 +206,7 @@ fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
             .collect();
         let names = names.join(", ");
         let message = format!("no device is called '{wanted}'; there are: {names}");
-        Error::new(Stage::Usage, message).at_key("--device")
+        Error::new(ErrorKind::Usage, message).at_key("device")
     })
 }
 
@@ -181,14 +216,9 @@ pub(crate) fn refuse(candidate: &Candidate) -> Result<()> {
     if report.missing.is_empty() {
         return Ok(());
     }
-    Err(Error::new(
-        Stage::Device,
-        format!(
-            "{} lacks {}; choose another with --device",
-            report.name,
-            report.missing.join(", ")
-        ),
-    ))
+    let missing = report.missing.join(", ");
+    let message = format!("{} lacks {missing}; choose another", report.name);
+    Err(Error::new(ErrorKind::Unsupported, message).at_key("device"))
 }
 
 fn rank(kind: vk::PhysicalDeviceType) -> u8 {
@@ -277,52 +307,14 @@ pub(crate) fn inspect(
         text(&driver.driver_name),
         text(&driver.driver_info)
     );
-    let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
-    let limits = &basic.limits;
-    let uses = vec![
-        (
-            "GPU timestamps".to_owned(),
-            if timestamp_bits > 0 {
-                format!("{timestamp_bits} bits of {} ns", limits.timestamp_period)
-            } else {
-                "no: times are the wall clock's alone".to_owned()
-            },
-        ),
-        (
-            "anisotropic filtering".to_owned(),
-            yes_no(
-                features.sampler_anisotropy == vk::TRUE
-                    && basic.device_type != vk::PhysicalDeviceType::CPU,
-            ),
-        ),
-        (
-            "hulls of solids that their box cuts".to_owned(),
-            yes_no(features.shader_clip_distance == vk::TRUE && limits.max_clip_distances >= 4),
-        ),
-        (
-            "squares of crowds as points".to_owned(),
-            yes_no(large_points(&features, limits)),
-        ),
-        (
-            "largest map".to_owned(),
-            format!("{} texels a side", limits.max_image_dimension2_d),
-        ),
-        (
-            "largest picture".to_owned(),
-            format!(
-                "{} x {}",
-                limits.max_framebuffer_width, limits.max_framebuffer_height
-            ),
-        ),
-    ];
-    Candidate {
+    let mut candidate = Candidate {
         report: DeviceReport {
             index,
             name: text(&basic.device_name),
             kind: kind_name(basic.device_type),
             driver: driver_text.trim().to_owned(),
             api_version: version(basic.api_version),
-            uses,
+            uses: Vec::new(),
             missing,
             preferred: false,
         },
@@ -333,7 +325,9 @@ pub(crate) fn inspect(
         properties: basic,
         subgroup_size: subgroup.subgroup_size,
         extensions,
-    }
+    };
+    candidate.report.uses = candidate.uses();
+    candidate
 }
 
 const FORMATS: &[(vk::Format, vk::FormatFeatureFlags, &str)] = &[

@@ -1,6 +1,6 @@
 //! What a device must offer, for hosts that open it themselves.
 
-use super::instance::{API_VERSION, into_device};
+use super::instance::API_VERSION;
 use super::report::{inspect, refuse};
 use crate::error::Result;
 use ash::vk;
@@ -24,15 +24,15 @@ impl Requirements {
     /// Of one physical device.
     ///
     /// # Errors
-    /// [`Stage::Device`](crate::error::Stage::Device) when it lacks something, with all that it
-    /// lacks.
+    /// [`Unsupported`](crate::error::ErrorKind::Unsupported) when it lacks something, with all that
+    /// it lacks.
     ///
     /// # Safety
     /// This call makes queries of `physical` alone. The caller must see to it that `physical`
     /// belongs to `instance`, and that the instance lives until the call returns.
     pub unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<Self> {
         let candidate = inspect(instance, 0, physical);
-        refuse(&candidate).map_err(into_device)?;
+        refuse(&candidate)?;
         Ok(Self {
             api_version: API_VERSION,
             features: candidate.wanted_features(),

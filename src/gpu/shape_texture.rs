@@ -5,7 +5,6 @@ use super::map_key::{MapFacts, MapKey};
 use super::memory::Image;
 use super::uploads::Uploads;
 use crate::error::Result;
-use crate::maps::envelope::Envelope;
 use crate::maps::{ArcLength, BakeOptions, MapFormat, ShapeMap};
 use crate::profile::Profile;
 use ash::vk;
@@ -16,7 +15,6 @@ pub(crate) struct ShapeTexture {
     pub key: MapKey,
     pub facts: MapFacts,
     pub texture: Arc<Image>,
-    envelope: Option<Envelope>,
 }
 
 /// Lengths along the outline on the device, for a map of the same size.
@@ -56,13 +54,7 @@ impl ShapeTexture {
                 bounds: map.bounds,
             },
             texture: uploads.image(device, "shape map", format, size, &[&encoded.bytes])?,
-            envelope: Envelope::of(&map),
         })
-    }
-
-    /// Where its solid may be; none of a solid that lies partly outside of the map.
-    pub fn envelope(&self) -> Option<&Envelope> {
-        self.envelope.as_ref()
     }
 }
 

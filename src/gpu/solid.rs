@@ -6,19 +6,20 @@
 
 use super::device::Shared;
 use super::kept::Kept;
-use super::levels;
 use super::map_key::{MapFacts, MapKey};
 use super::offset_surface::{OffsetSurface, Recipe};
-use super::outlined::Outlined;
+use super::outline_cache::OutlineCache;
 use super::shape_texture::{ArcTexture, ShapeTexture};
 use super::uploads::Uploads;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
+use crate::plan::levels;
 use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Growth, Offset};
+use crate::search::Search;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex};
 
-/// The solids of a renderer, by profile.
+/// Solids by profile.
 #[derive(Default)]
 pub(crate) struct SolidCache {
     /// By the profile's address, which a solid keeps from being used again.
@@ -29,10 +30,11 @@ pub(crate) struct SolidCache {
 
 /// All that is made from one profile.
 pub(crate) struct Solid {
-    pub outlined: Arc<Outlined>,
+    pub outline: Arc<OutlineCache>,
     surfaces: Shelf<SurfaceKey, OffsetSurface>,
-    maps: Shelf<MapKey, ShapeTexture>,
-    arcs: Shelf<(u32, u32), ArcTexture>,
+    /// By who uploads them, too: commands of two renderers may run in any order.
+    maps: Shelf<(u32, MapKey), ShapeTexture>,
+    arcs: Shelf<(u32, u32, u32), ArcTexture>,
 }
 
 /// A table for several threads.
@@ -43,7 +45,7 @@ fn shelved<K: Hash + Eq, V>(
     key: K,
     make: impl FnOnce() -> Result<V>,
 ) -> Result<Arc<V>> {
-    let poisoned = |_| Error::new(Stage::Draw, "a solid's lock is poisoned");
+    let poisoned = |_| Error::new(ErrorKind::Other, "a solid's lock is poisoned");
     shelf.lock().map_err(poisoned)?.get(key, make)
 }
 
@@ -51,10 +53,8 @@ fn shelved<K: Hash + Eq, V>(
 enum SurfaceKey {
     /// Bits of the offset, level.
     Patches([u64; 3], u8),
-    /// Likewise, rows, whether relaxed.
-    Cones([u64; 3], u32, bool),
-    /// The map, and bits of what its envelope is grown by.
-    Envelope(MapKey, u64),
+    /// Likewise; rows.
+    Search(&'static Search, [u64; 3], u32),
 }
 
 impl SolidCache {
@@ -69,7 +69,7 @@ impl SolidCache {
 impl Solid {
     fn new(profile: &Arc<Profile>) -> Self {
         Self {
-            outlined: Arc::new(Outlined::new(profile)),
+            outline: Arc::new(OutlineCache::new(profile)),
             surfaces: Shelf::default(),
             maps: Shelf::default(),
             arcs: Shelf::default(),
@@ -86,31 +86,23 @@ impl Solid {
         let key = SurfaceKey::Patches(bits(offset), level);
         shelved(&self.surfaces, key, || {
             let tolerance = levels::bound(level) / growth.height();
-            let recipe = Recipe::Patches(self.outlined.clone(), *offset, level, tolerance);
+            let recipe = Recipe::Patches(self.outline.clone(), *offset, level, tolerance);
             Ok(OffsetSurface::new(recipe))
         })
     }
 
-    /// The boundary as empty cones; not made yet where it is new.
-    pub fn cones(&self, offset: &Offset, rows: u32, relaxed: bool) -> Result<Arc<OffsetSurface>> {
-        let key = SurfaceKey::Cones(bits(offset), rows, relaxed);
+    /// The table of a search of another crate; not made yet where it is new.
+    pub fn search_table(
+        &self,
+        search: &'static Search,
+        offset: &Offset,
+        rows: u32,
+    ) -> Result<Arc<OffsetSurface>> {
+        let key = SurfaceKey::Search(search, bits(offset), rows);
         shelved(&self.surfaces, key, || {
-            let recipe = Recipe::Cones(self.outlined.clone(), *offset, rows, relaxed);
+            let recipe = Recipe::Search(search, self.outline.clone(), *offset, rows);
             Ok(OffsetSurface::new(recipe))
         })
-    }
-
-    /// Where the solid of `map` may be under offsets up to `by`; none of a solid that lies partly
-    /// outside of its map.
-    pub fn envelope(&self, map: &ShapeTexture, by: f64) -> Result<Option<Arc<OffsetSurface>>> {
-        let Some(envelope) = map.envelope() else {
-            return Ok(None);
-        };
-        let key = SurfaceKey::Envelope(map.key, by.to_bits());
-        let made = shelved(&self.surfaces, key, || {
-            Ok(OffsetSurface::new(Recipe::Envelope(envelope.grown(by))))
-        });
-        made.map(Some)
     }
 
     /// The shape map, baked and on its way to the device where it is new.
@@ -120,8 +112,8 @@ impl Solid {
         uploads: &mut Uploads,
         key: MapKey,
     ) -> Result<Arc<ShapeTexture>> {
-        shelved(&self.maps, key, || {
-            ShapeTexture::bake(device, uploads, &self.outlined.profile, key)
+        shelved(&self.maps, (uploads.owner(), key), || {
+            ShapeTexture::bake(device, uploads, &self.outline.profile, key)
         })
     }
 
@@ -132,9 +124,11 @@ impl Solid {
         uploads: &mut Uploads,
         facts: &MapFacts,
     ) -> Result<Arc<ArcTexture>> {
-        shelved(&self.arcs, (facts.columns, facts.rows), || {
-            ArcTexture::new(device, uploads, &self.outlined.profile, facts)
-        })
+        shelved(
+            &self.arcs,
+            (uploads.owner(), facts.columns, facts.rows),
+            || ArcTexture::new(device, uploads, &self.outline.profile, facts),
+        )
     }
 }
 

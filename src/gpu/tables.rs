@@ -1,10 +1,8 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
-use crate::maps::envelope::Envelope;
-use crate::shader::generated::{
-    BEAM_FIRST_NODE, LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS,
-};
-use crate::surface::{Cones, GpuPatch, QuadricPatch, Tables, solid_radii};
+use crate::search::SearchTable;
+use crate::shader::generated::{LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS};
+use crate::surface::{GpuPatch, QuadricPatch, Tables};
 use ash::vk;
 
 /// A table that may stand anywhere in a buffer.
@@ -14,8 +12,6 @@ pub(crate) struct GpuTables {
     pub own: usize,
     /// What `Solid.patches` of `blocks.glsl` holds behind the place where it begins.
     facts: [u32; 3],
-    /// The vector with which the nodes begin that beams are asked against.
-    beam_nodes: u32,
 }
 
 impl GpuTables {
@@ -23,11 +19,6 @@ impl GpuTables {
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;
         [begin, a, b, c]
-    }
-
-    /// `Solid.hull` likewise, as far as beams read it.
-    pub fn beams(&self, begin: u32) -> u32 {
-        begin + self.beam_nodes
     }
 
     /// The layout of `patch_tables.glsl`.
@@ -55,35 +46,15 @@ impl GpuTables {
             vectors,
             own,
             facts: [index(first_record), index(first_range), unit.to_bits()],
-            beam_nodes: BEAM_FIRST_NODE / 4,
         }
     }
 
-    /// The layout of `search_cone.glsl`.
-    pub fn cones(cones: &Cones) -> Self {
-        let vectors: Vec<_> = cones.rows.iter().map(|r| r.map(f32::to_bits)).collect();
-        let rows = vectors.len();
+    /// As the search has laid it out.
+    pub fn of_search(table: &SearchTable) -> Self {
         Self {
-            vectors,
-            own: rows,
-            facts: [index(rows), cones.reach.to_bits(), 0],
-            beam_nodes: 0,
-        }
-    }
-
-    /// What beams ask of an envelope: nodes, and nothing that a search walks.
-    pub fn envelope(envelope: &Envelope) -> Self {
-        let extents: Vec<[f32; 2]> = envelope
-            .radii
-            .iter()
-            .map(|r| [0.0, (r * r) as f32])
-            .collect();
-        let (words, unit) = nodes(&extents);
-        Self {
-            vectors: fours(&words),
-            own: 0,
-            facts: [0, 0, unit.to_bits()],
-            beam_nodes: 0,
+            vectors: table.vectors.clone(),
+            own: table.vectors.len(),
+            facts: table.facts,
         }
     }
 }
@@ -93,7 +64,7 @@ pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
     (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
 }
 
-/// Patches of which lists are made, in the layout of `patch_lists.glsl`; nothing if there are too
+/// Patches of which lists are made, in the layout of `patch_runs.glsl`; nothing if there are too
 /// many.
 pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
@@ -122,12 +93,9 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     };
     // A guard that nothing passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
-    let radii = solid_radii(patches).map(|r| (r as f32).to_bits());
-    let solid = radii.as_chunks().0.iter().copied();
     std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
         .chain(patches.iter().enumerate().flat_map(record))
         .chain(none)
-        .chain(solid)
         .collect()
 }
 

@@ -1,6 +1,7 @@
 //! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading
 //! them back.
 
+use super::buffers::{device_local, read_back};
 use super::call::Call;
 use super::commands::Commands;
 use super::device::Shared;
@@ -8,10 +9,9 @@ use super::memory::{Buffer, Image, ImageKind};
 use super::render_pass::{DEPTH_FORMAT, color_formats};
 use super::srgb::pack_srgb;
 use super::usage::{Usage, buffer_barrier, image_barrier};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{DrawStage, Planes};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
 /// What compute shaders write to, and fragments of all planes besides their attachments.
@@ -26,6 +26,10 @@ pub struct ComputeTarget {
     /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where
     /// colour alone is drawn, or fragments draw.
     pub images: Vec<vk::ImageView>,
+    /// Whether depths count: compute compares with those that are there, and leaves its own. If
+    /// not, they may hold anything, and are read and written only where objects have to be told
+    /// apart ([`PreparedFrame::reads_depths`](super::PreparedFrame::reads_depths)).
+    pub depths: bool,
 }
 
 impl ComputeTarget {
@@ -87,14 +91,14 @@ impl Target {
         let words_fit = 8 * pixels <= u64::from(limits.max_storage_buffer_range);
         if width > most_x || height > most_y || (needs_words && !words_fit) {
             return Err(Error::new(
-                Stage::Draw,
+                ErrorKind::TooLarge,
                 format!(
                     "{width}x{height} pixels are more than {} takes ({most_x}x{most_y}, and {} in all for this kind of picture); make it smaller",
                     device.report.name,
                     limits.max_storage_buffer_range / 8
                 ),
             )
-            .at_key("--size"));
+            .at_key("size"));
         }
         let mut target = Self {
             width,
@@ -155,15 +159,9 @@ impl Target {
                 .call("vkCreateFramebuffer")?;
         }
         if needs_words {
-            target.words = Some(Buffer::new(
-                device,
-                "pixel words",
-                8 * pixels,
-                vk::BufferUsageFlags::STORAGE_BUFFER
-                    | vk::BufferUsageFlags::TRANSFER_DST
-                    | vk::BufferUsageFlags::TRANSFER_SRC,
-                MemoryLocation::GpuOnly,
-            )?);
+            use vk::BufferUsageFlags as B;
+            let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
+            target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
         }
         Ok(target)
     }
@@ -174,6 +172,7 @@ impl Target {
         Some(ComputeTarget {
             words: self.words.as_ref()?.raw,
             images: self.images.iter().filter(storage).map(|i| i.view).collect(),
+            depths: self.keeps_depths,
         })
     }
 
@@ -312,13 +311,7 @@ impl Target {
         let sizes: Vec<u64> = parts.iter().map(bytes).collect();
         let host = match kept {
             Some(host) => host,
-            None => Buffer::new(
-                &self.device,
-                "read back",
-                sizes.iter().sum(),
-                vk::BufferUsageFlags::TRANSFER_DST,
-                MemoryLocation::GpuToCpu,
-            )?,
+            None => read_back(&self.device, "read back", sizes.iter().sum())?,
         };
         commands.run(|cmd| {
             let mut at = 0;

@@ -1,14 +1,14 @@
 //! What an object's shader samples: colour and displacement maps, each on the device once, and the
 //! sets that bind them.
 
-use super::call::Call;
+use super::descriptors::{TEXTURE_SET, allocate};
 use super::device::Shared;
 use super::kept::Kept;
 use super::memory::Image;
 use super::sampler::{Sampler, Wrap};
 use super::shape_texture::{ArcTexture, ShapeTexture};
 use super::uploads::Uploads;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
 use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
@@ -277,32 +277,18 @@ impl SetPool {
         let mut state = self
             .state
             .lock()
-            .map_err(|_| Error::new(Stage::Draw, "the pool of textures is poisoned"))?;
+            .map_err(|_| Error::new(ErrorKind::Other, "the pool of textures is poisoned"))?;
         if let Some(set) = state.free.pop() {
             return Ok(set);
         }
-        let raw = &self.device.raw;
-        let sizes = [vk::DescriptorPoolSize::default()
-            .ty(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-            .descriptor_count(SETS * (4 + MAX_SHADOW_MAPS))];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(SETS)
-            .pool_sizes(&sizes);
-        // SAFETY: a plain creation, destroyed in Drop.
-        let pool =
-            unsafe { raw.create_descriptor_pool(&info, None) }.call("vkCreateDescriptorPool")?;
+        let layouts = &self.device.pipelines()?.set_layouts;
+        let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
         state.pools.push(pool);
-        let layouts = vec![self.device.pipelines()?.set_layouts[1]; SETS as usize];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(pool)
-            .set_layouts(&layouts);
-        // SAFETY: the pool was sized for these.
-        state.free =
-            unsafe { raw.allocate_descriptor_sets(&info) }.call("vkAllocateDescriptorSets")?;
+        state.free = sets;
         state
             .free
             .pop()
-            .ok_or_else(|| Error::new(Stage::Draw, "a pool of textures gave no set"))
+            .ok_or_else(|| Error::new(ErrorKind::Other, "a pool of textures gave no set"))
     }
 
     fn give_back(&self, set: vk::DescriptorSet) {

@@ -1,18 +1,18 @@
 //! Bytes on their way to the device: written to staging buffers at once, copied by the next
 //! commands that are prepared.
 
+use super::buffers::upload;
 use super::device::Shared;
 use super::memory::{Buffer, Image, ImageKind};
 use super::usage::{Usage, image_barrier};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
-/// Copies that wait for commands.
-#[derive(Default)]
+/// Copies that wait for a renderer's commands.
 pub(crate) struct Uploads {
     waiting: Vec<Upload>,
+    owner: u32,
 }
 
 /// One image's copy.
@@ -23,6 +23,19 @@ pub(crate) struct Upload {
 }
 
 impl Uploads {
+    /// Those of the renderer of this identity.
+    pub fn of(owner: u32) -> Self {
+        Self {
+            waiting: Vec::new(),
+            owner,
+        }
+    }
+
+    /// The renderer's identity.
+    pub fn owner(&self) -> u32 {
+        self.owner
+    }
+
     /// Makes a sampled image of `levels`, the bytes of each mip level from the largest.
     pub fn image(
         &mut self,
@@ -35,7 +48,7 @@ impl Uploads {
         let limit = device.limits.max_image_dimension2_d;
         if width > limit || height > limit {
             return Err(Error::new(
-                Stage::Draw,
+                ErrorKind::TooLarge,
                 format!(
                     "{name}: {width} x {height} texels, and the device takes {limit} a side; use fewer map rows"
                 ),
@@ -50,9 +63,7 @@ impl Uploads {
         };
         let image = Arc::new(Image::new(device, name, kind)?);
         let total: usize = levels.iter().map(|l| l.len().next_multiple_of(16)).sum();
-        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-        let location = MemoryLocation::CpuToGpu;
-        let mut staging = Buffer::new(device, "staging", total as u64, usage, location)?;
+        let mut staging = upload(device, "staging", total as u64)?;
         let mut regions = Vec::new();
         let mut at = 0;
         for (level, bytes) in (0u32..).zip(levels) {

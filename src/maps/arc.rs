@@ -2,7 +2,7 @@
 //! projection `arc`.
 
 use super::nearest::for_each_texel;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Outline, Profile, Segment};
 use glam::DVec2;
 
@@ -43,7 +43,7 @@ impl ArcLength {
     /// Measures a profile's contour.
     ///
     /// # Errors
-    /// [`Stage::Map`]: the profile has no surface.
+    /// [`ErrorKind::Content`]: the profile has no surface.
     pub fn new(profile: &Profile) -> Result<Self> {
         let mut this = Self {
             segments: Vec::new(),
@@ -54,7 +54,7 @@ impl ArcLength {
         }
         if this.segments.is_empty() {
             return Err(Error::new(
-                Stage::Map,
+                ErrorKind::Content,
                 "the profile has no surface to lay a texture along; draw a solid",
             ));
         }

@@ -2,7 +2,7 @@
 
 use super::displacement::{Level, read_map};
 use super::halving;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::linear_from_srgb;
 use crate::pictures::decode;
 use std::path::Path;
@@ -21,11 +21,11 @@ impl ColorMap {
     /// Reads a PNG or JPEG.
     ///
     /// # Errors
-    /// [`Stage::Map`], with the file: missing, damaged, no picture, larger than 16384 on a side.
+    /// [`ErrorKind::File`]: missing, damaged, no picture, larger than 16384 on a side.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let read = || {
-            let picture = decode(&read_map(path, "colour map")?, Stage::Map, "PNG or JPEG")?;
+            let picture = decode(&read_map(path, "colour map")?, "PNG or JPEG")?;
             Self::from_texels(picture.width, picture.height, picture.rgba8())
         };
         read().map_err(|e: Error| e.in_file(path))
@@ -34,11 +34,11 @@ impl ColorMap {
     /// From sRGB texels with straight (not premultiplied) alpha, row by row from the top.
     ///
     /// # Errors
-    /// [`Stage::Map`]: no texels, or not `width * height` of them.
+    /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
     pub fn from_texels(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self> {
         if texels.is_empty() || texels.len() != width as usize * height as usize {
             return Err(Error::new(
-                Stage::Map,
+                ErrorKind::Content,
                 format!(
                     "{} colours for {width} x {height} texels; give as many as there are texels",
                     texels.len()

@@ -5,7 +5,7 @@ use super::files::{encode_png, extension};
 use super::half::to_half;
 use super::halving;
 use super::header::Header;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::atomic_file::write_bytes;
 use crate::pictures::decode;
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ impl DisplacementMap {
     /// [`DisplacementMap::save`] wrote is loaded as what it is.
     ///
     /// # Errors
-    /// [`Stage::Map`], with the file: missing, damaged, no picture, larger than 16384 on a side.
+    /// [`ErrorKind::File`]: missing, damaged, no picture, larger than 16384 on a side.
     pub fn from_image(path: impl AsRef<Path>) -> Result<Self> {
         Self::from_image_with(path, SlopeFilter::default())
     }
@@ -71,7 +71,7 @@ impl DisplacementMap {
             {
                 return Self::from_file(&bytes, &header);
             }
-            let picture = decode(&bytes, Stage::Map, "PNG or JPEG")?;
+            let picture = decode(&bytes, "PNG or JPEG")?;
             Self::from_heights(picture.width, picture.height, &picture.luminance(), filter)
         };
         read().map_err(|e: Error| e.in_file(path))
@@ -80,7 +80,8 @@ impl DisplacementMap {
     /// From heights in `[0, 1]`, row by row from the top.
     ///
     /// # Errors
-    /// [`Stage::Map`]: no texels, or not `width * height` of them, or a height that is not finite.
+    /// [`ErrorKind::Content`]: no texels, or not `width * height` of them, or a height that is not
+    /// finite.
     pub fn from_heights(
         width: u32,
         height: u32,
@@ -88,6 +89,7 @@ impl DisplacementMap {
         filter: SlopeFilter,
     ) -> Result<Self> {
         let (w, h) = (width as usize, height as usize);
+        let fault = |message: String| Error::new(ErrorKind::Content, message);
         if heights.is_empty() || heights.len() != w * h {
             return Err(fault(format!(
                 "{} heights for {width} x {height} texels; give as many as there are texels",
@@ -156,7 +158,7 @@ impl DisplacementMap {
     /// Slopes come back within 1/65534 of the largest.
     ///
     /// # Errors
-    /// [`Stage::Map`], with the file: another extension than `.png`, or it cannot be written.
+    /// [`ErrorKind::File`]: another extension than `.png`, or it cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let write = || {
@@ -190,14 +192,14 @@ impl DisplacementMap {
                 &header,
                 &data,
             )?;
-            write_bytes(Stage::Map, path, &bytes)
+            write_bytes(path, &bytes)
         };
         write().map_err(|e: Error| e.in_file(path))
     }
 
     fn from_file(bytes: &[u8], header: &Header) -> Result<Self> {
         let scale = header.number("scale")? as f32;
-        let picture = decode(bytes, Stage::Map, "PNG")?;
+        let picture = decode(bytes, "PNG")?;
         let slope = |code: u16| (f32::from(code) - ZERO) / (ZERO - 1.0) * scale;
         let texels = picture.rgb16();
         let slopes = texels.iter().map(|p| [slope(p[0]), slope(p[1])]).collect();
@@ -222,7 +224,7 @@ impl DisplacementMap {
 }
 
 fn fault(message: impl Into<String>) -> Error {
-    Error::new(Stage::Map, message)
+    Error::new(ErrorKind::File, message)
 }
 
 /// A texture's file, or what is wrong with it.

@@ -4,7 +4,7 @@ use super::binary;
 use super::header::{Header, KEYWORD, shape_header};
 use super::store::unpack_distance;
 use super::{Bounds, MapFormat, MapSource, ShapeMap};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::atomic_file::write_bytes;
 #[cfg(feature = "exr")]
 use crate::pictures::check_exr;
@@ -82,7 +82,7 @@ impl Projection {
 }
 
 fn fault(message: impl Into<String>) -> Error {
-    Error::new(Stage::Map, message)
+    Error::new(ErrorKind::File, message)
 }
 
 impl ShapeMap {
@@ -96,7 +96,7 @@ impl ShapeMap {
     /// The file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Stage::Map`], with the file: another extension, or it cannot be written.
+    /// [`ErrorKind::File`]: another extension, or it cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let bytes = match extension(path).as_deref() {
@@ -107,7 +107,7 @@ impl ShapeMap {
             )),
         };
         bytes
-            .and_then(|b| write_bytes(Stage::Map, path, &b))
+            .and_then(|b| write_bytes(path, &b))
             .map_err(|e| e.in_file(path))
     }
 
@@ -119,13 +119,13 @@ impl ShapeMap {
     /// its distances are measured from its form, and its box is as wide as the map.
     ///
     /// # Errors
-    /// [`Stage::Map`], with the file: missing, damaged, or no shape map.
+    /// [`ErrorKind::File`]: missing, damaged, or no shape map.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let read = || {
             let bytes = std::fs::read(path).map_err(|e| {
                 fault(format!(
-                    "the map cannot be read ({e}); give a file that `revmap bake` wrote"
+                    "the map cannot be read ({e}); give a file that `ShapeMap::save` wrote"
                 ))
             })?;
             if bytes.starts_with(b"\x76\x2f\x31\x01") {
@@ -317,7 +317,7 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
 }
 
 fn no_map() -> Error {
-    fault("is no shape map; give a file that `revmap bake` wrote")
+    fault("is no shape map; give a file that `ShapeMap::save` wrote")
 }
 
 fn checked_size(columns: u64, rows: u64) -> Result<(u32, u32)> {

@@ -4,7 +4,7 @@
 //! Numbers are written so that they come back to the last bit.
 
 use super::{Bounds, MapSource, ShapeMap};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 use std::io::Cursor;
 
@@ -52,7 +52,7 @@ impl Header {
             .filter(|v: &f64| v.is_finite());
         number.ok_or_else(|| {
             Error::new(
-                Stage::Map,
+                ErrorKind::File,
                 format!("the map's header lacks a good `{key}`; bake the map again"),
             )
         })
@@ -64,7 +64,7 @@ impl Header {
         let found = MapSource::NAMES.iter().find(named);
         found.map(|(_, source)| *source).ok_or_else(|| {
             Error::new(
-                Stage::Map,
+                ErrorKind::File,
                 "the map's header lacks a good `source`; bake the map again",
             )
         })

@@ -5,7 +5,6 @@ mod arc;
 mod binary;
 mod color;
 mod displacement;
-pub(crate) mod envelope;
 mod exact;
 mod files;
 mod half;

@@ -1,7 +1,7 @@
 //! Baking a shape map, and reading it as the shaders do.
 
 use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, exact};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::pictures::MAX_SIDE;
 use crate::profile::{Outline, Profile};
 use glam::DVec2;
@@ -32,15 +32,15 @@ impl ShapeMap {
     /// * [`MapSource::Exact`]: to the outline's segments.
     ///
     /// # Errors
-    /// [`Stage::Map`]: rows outside 2 ..= 16384, a reach that is not finite or leads to more than
-    /// 16384 columns, a shape that leaves no texel solid.
+    /// [`ErrorKind::Content`]: rows outside 2 ..= 16384, a reach that is not finite or leads to
+    /// more than 16384 columns, a shape that leaves no texel solid.
     pub fn bake(profile: &Profile, options: &BakeOptions) -> Result<Self> {
         let BakeOptions {
             source,
             rows,
             reach,
         } = *options;
-        let fault = |message: String| Error::new(Stage::Map, message);
+        let fault = |message: String| Error::new(ErrorKind::Content, message);
         if !(2..=MAX_SIDE).contains(&rows) {
             return Err(fault(format!("{rows} rows; give 2 to {MAX_SIDE}")).at_key("map_rows"));
         }

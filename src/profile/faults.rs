@@ -1,11 +1,11 @@
 //! What pictures and drawings fail with, and what to do about it.
 
-use crate::error::{Error, Stage};
+use crate::error::{Error, ErrorKind};
 
 /// The failure of a picture without anything dark.
 pub(super) fn empty_fault(what: &str) -> Error {
     Error::new(
-        Stage::Profile,
+        ErrorKind::Content,
         format!(
             "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
              white, or set profile_threshold, profile_invert or profile_axis"
@@ -16,7 +16,7 @@ pub(super) fn empty_fault(what: &str) -> Error {
 /// The failure of a picture that is dark all over.
 pub(super) fn full_fault(what: &str) -> Error {
     Error::new(
-        Stage::Profile,
+        ErrorKind::Content,
         format!(
             "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
              or set profile_threshold or profile_invert (a plain cylinder: use a polygon)"

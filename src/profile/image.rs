@@ -2,7 +2,7 @@
 
 use super::faults::full_fault;
 use super::{Profile, ProfileAxis, ProfileOptions, Raster, reading, trace};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::maps::header::Header;
 use crate::pictures::{Pixels, Samples, decode, luminance};
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
 
 /// The form of a shape map in its file.
 fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
-    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
+    let picture = decode(bytes, "PNG, JPEG or SVG")?;
     let raster = Raster {
         columns: picture.width,
         rows: picture.height,
@@ -51,11 +51,11 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
 /// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how
 /// light over black.
 fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
-    let picture = decode(bytes, Stage::Profile, "PNG, JPEG or SVG")?;
+    let picture = decode(bytes, "PNG, JPEG or SVG")?;
     let (width, height) = (picture.width, picture.height);
     if width < 2 || height < 2 {
         return Err(Error::new(
-            Stage::Profile,
+            ErrorKind::Content,
             format!(
                 "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
             ),

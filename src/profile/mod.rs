@@ -25,7 +25,7 @@ mod trace;
 pub use outline::Segment;
 pub use reading::ProfileOptions;
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 use std::path::Path;
 
@@ -88,9 +88,10 @@ impl Profile {
     /// of that with it in the middle.
     ///
     /// # Errors
-    /// [`Stage::Profile`], with the file: missing, a folder, damaged, neither picture nor drawing,
-    /// more than 16384 or less than 2 pixels on a side, all light or all dark, or a drawing with
-    /// what has no outline (text, pictures, patterns, masks, filters).
+    /// [`ErrorKind::File`] for a file that is missing, a folder, damaged, or neither picture nor
+    /// drawing; [`ErrorKind::Content`] for a picture of more than 16384 or less than 2 pixels on a
+    /// side, all light or all dark, or a drawing with what has no outline (text, pictures,
+    /// patterns, masks, filters). Both with the file.
     pub fn load(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Self> {
         let (path, options) = (path.as_ref(), options.into());
         let read = || Self::from_bytes(&read_file(path)?, options);
@@ -125,9 +126,9 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`Stage::Profile`], with the key `polygon` or `radius`: fewer than 3 points, a coordinate
-    /// that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that is not
-    /// positive.
+    /// [`ErrorKind::Content`], with the key `polygon` or `radius`: fewer than 3 points, a
+    /// coordinate that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that
+    /// is not positive.
     pub fn polygon(points: &[[f64; 2]], radius: f64) -> Result<Self> {
         polygon::profile(points, radius)
     }
@@ -151,7 +152,7 @@ impl Profile {
     /// picture's upper, lower and right border all is empty.
     ///
     /// # Errors
-    /// [`Stage::Profile`]: no pixel is more than half covered, or the list of coverages has not
+    /// [`ErrorKind::Content`]: no pixel is more than half covered, or the list of coverages has not
     /// `columns * rows` values.
     pub fn traced(raster: Raster) -> Result<Self> {
         trace::profile(raster, false)
@@ -160,7 +161,7 @@ impl Profile {
 
 /// A file's bytes, or what is wrong with it.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
-    let fault = |message: String| Error::new(Stage::Profile, message);
+    let fault = |message: String| Error::new(ErrorKind::File, message);
     if path.is_dir() {
         return Err(fault("is a folder; give a PNG, JPEG or SVG file".into()));
     }
@@ -189,7 +190,7 @@ fn drawing_profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
 #[cfg(not(feature = "drawing"))]
 fn drawing_profile(_: &[u8], _: &ProfileOptions) -> Result<Profile> {
     Err(Error::new(
-        Stage::Profile,
+        ErrorKind::Content,
         "is an SVG drawing, and this build lacks the feature `drawing`; build with it, or give a PNG",
     ))
 }

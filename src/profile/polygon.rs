@@ -2,7 +2,7 @@
 
 use super::Profile;
 use super::region::{Rule, enclosed};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 
 /// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite
@@ -19,13 +19,13 @@ pub(super) const EXTENT: f64 = 1e4;
 /// rule). It may reach past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
 ///
 /// # Errors
-/// [`Stage::Profile`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a
+/// [`ErrorKind::Content`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a
 /// point with `r < 0`, no area, or a radius that is not positive and finite.
 pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
-    let fault = |message: String| Err(Error::new(Stage::Profile, message).at_key("polygon"));
+    let fault = |message: String| Err(Error::new(ErrorKind::Content, message).at_key("polygon"));
     if !(radius.is_finite() && radius > 0.0) {
         return Err(Error::new(
-            Stage::Profile,
+            ErrorKind::Content,
             format!("{radius} is no radius; give a positive number"),
         )
         .at_key("radius"));

@@ -3,7 +3,7 @@
 
 use super::outline::area;
 use super::{Outline, ProfileAxis, Raster};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
 
 /// How a profile is read from a file.
@@ -49,10 +49,10 @@ impl ProfileOptions {
     /// Looks at every value.
     ///
     /// # Errors
-    /// [`Stage::Profile`], with the key as in a scene file.
+    /// [`ErrorKind::Content`], with the key as in a scene file.
     pub fn check(&self) -> Result<()> {
         let wrong =
-            |key: &str, message: String| Err(Error::new(Stage::Profile, message).at_key(key));
+            |key: &str, message: String| Err(Error::new(ErrorKind::Content, message).at_key(key));
         if !(self.threshold > 0.0 && self.threshold < 1.0) {
             let message = format!("is {:?}; give a grey level between 0 and 1", self.threshold);
             return wrong("profile_threshold", message);
@@ -76,7 +76,7 @@ impl ProfileOptions {
             _ => return Ok(self.axis),
         };
         let message = "counts for pictures alone; leave it out for a drawing";
-        Err(Error::new(Stage::Profile, message).at_key(key))
+        Err(Error::new(ErrorKind::Content, message).at_key(key))
     }
 
     /// The darkness of a picture's half-plane as coverage, with the threshold at one half. `split`:

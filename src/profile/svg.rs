@@ -1,7 +1,7 @@
 //! Drawings as the SVG reader gives them, in the terms of this crate.
 
 use super::region::Rule;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use kurbo::{Affine, BezPath, Cap, Join, PathEl, Point, Stroke};
 use usvg::roxmltree;
 use usvg::tiny_skia_path::PathSegment;
@@ -50,7 +50,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<usvg::Tree> {
 
 /// The failure of a drawing that cannot be read as a profile.
 pub(super) fn fault(message: impl Into<String>) -> Error {
-    Error::new(Stage::Profile, message)
+    Error::new(ErrorKind::Content, message)
 }
 
 /// The refusal of something that has no outline.

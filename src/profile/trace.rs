@@ -21,7 +21,7 @@ use super::faults::empty_fault;
 use super::region::{Rule, enclosed};
 use super::smooth::{Trail, smooth};
 use super::{Outline, Profile, Raster};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -32,7 +32,7 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
     let (columns, rows) = (raster.columns as usize, raster.rows as usize);
     if raster.coverage.len() != columns * rows {
         return Err(Error::new(
-            Stage::Profile,
+            ErrorKind::Content,
             format!(
                 "{} coverages are no {columns} x {rows} pixels; give one for each",
                 raster.coverage.len()

@@ -2,7 +2,7 @@
 //! the reference.
 
 use super::Camera;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::DVec3;
 
 /// The rays of a camera for pictures of one size.
@@ -35,12 +35,12 @@ impl CameraFrame {
     /// straight down.
     ///
     /// # Errors
-    /// [`Stage::Scene`], naming the key, when eye and target are one point, the field of view is
-    /// not between 0 and 180 degrees, `up` is zero, or a number is not finite; [`Stage::Frame`]
-    /// when a side of the picture is 0.
+    /// [`ErrorKind::Content`], naming the key, when eye and target are one point, the field of view
+    /// is not between 0 and 180 degrees, `up` is zero, or a number is not finite;
+    /// [`ErrorKind::Usage`] when a side of the picture is 0.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
         let wrong = |key: &str, what: &str| {
-            Err(Error::new(Stage::Scene, what).at_key(format!("camera.{key}")))
+            Err(Error::new(ErrorKind::Content, what).at_key(format!("camera.{key}")))
         };
         for (key, value) in [
             ("eye", camera.eye),
@@ -56,7 +56,7 @@ impl CameraFrame {
         }
         if width == 0 || height == 0 {
             let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
-            return Err(Error::new(Stage::Frame, message));
+            return Err(Error::new(ErrorKind::Usage, message));
         }
         if !camera.shift.iter().all(|s| s.is_finite()) {
             return wrong("shift", "is not finite; give two numbers");
@@ -232,8 +232,8 @@ mod tests {
             );
         }
         assert_eq!(
-            CameraFrame::new(&camera(), 0, 8).unwrap_err().stage,
-            Stage::Frame
+            CameraFrame::new(&camera(), 0, 8).unwrap_err().kind,
+            ErrorKind::Usage
         );
     }
 }

@@ -1,7 +1,7 @@
 //! Whether a scene's values make sense. Every message names the key as a scene file would.
 
 use super::{Camera, Light, Lighting, Object, Offset, Placement, Scene};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -20,8 +20,8 @@ impl Scene {
     /// Looks at every value.
     ///
     /// # Errors
-    /// [`Stage::Scene`]: the first value out of its range, with its key (`object.0.scale`) and what
-    /// would be right.
+    /// [`ErrorKind::Content`]: the first value out of its range, with its key (`object.0.scale`)
+    /// and what would be right.
     pub fn check(&self) -> Result<()> {
         color("background", &self.background)?;
         camera(&self.camera)?;
@@ -82,7 +82,7 @@ fn lighting(ambient: &[f32], lights: &[Light]) -> Result<()> {
 }
 
 fn fail(key: &str, message: impl Into<String>) -> Error {
-    Error::new(Stage::Scene, message).at_key(key)
+    Error::new(ErrorKind::Content, message).at_key(key)
 }
 
 /// Puts `list.index.` before the key of `error`.
@@ -308,8 +308,8 @@ mod tests {
         spoil(&mut scene);
         let error = scene.check().unwrap_err();
         assert_eq!(
-            (error.stage, error.key.as_deref()),
-            (Stage::Scene, Some(key)),
+            (error.kind, error.key.as_deref()),
+            (ErrorKind::Content, Some(key)),
             "{error}"
         );
     }

@@ -48,7 +48,7 @@ use super::instances;
 use super::keys::Keys;
 use super::values::{camera, light, offset, placement, specular};
 use super::{BumpForm, Camera, Clip, Object, Scene, Shadow, Texturing, overrides};
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
 use crate::profile::{Profile, ProfileAxis, ProfileOptions};
 use glam::DVec3;
@@ -104,8 +104,8 @@ const RADIUS: f64 = 0.5;
 /// what the file says: `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
 ///
 /// # Errors
-/// [`Stage::Scene`] and [`Stage::Profile`], with file and key; [`Stage::Usage`] for a malformed
-/// assignment.
+/// [`ErrorKind::Content`] and [`ErrorKind::File`], with file and key; [`ErrorKind::Usage`] for a
+/// malformed assignment, with its key or `sets`.
 pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
     SceneFile::open(file)?.scene(sets)
 }
@@ -131,7 +131,7 @@ impl SceneFile {
     /// scene of its own: seen from in front and a little above, as a whole.
     ///
     /// # Errors
-    /// [`Stage::Scene`], with the file; [`Stage::Profile`] for a profile that cannot be read.
+    /// [`ErrorKind::File`] for what cannot be read; those of a profile.
     pub fn open(file: impl AsRef<Path>) -> Result<Self> {
         let file = file.as_ref();
         let folder = file.parent().unwrap_or(Path::new(""));
@@ -142,7 +142,7 @@ impl SceneFile {
         }
         let text = std::fs::read_to_string(file).map_err(|e| {
             Error::new(
-                Stage::Scene,
+                ErrorKind::File,
                 format!("cannot be read ({e}); give a scene in TOML"),
             )
             .in_file(file)
@@ -155,7 +155,7 @@ impl SceneFile {
     /// Reads `text`; paths in it are relative to `folder`.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for what is not TOML.
+    /// [`ErrorKind::File`] for what is not TOML.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
         Ok(Self {
             root: text.parse().map_err(|e| syntax(text, &e))?,
@@ -224,13 +224,13 @@ impl SceneFile {
     /// Its paths are relative to the same folder; comments and order of keys are lost.
     ///
     /// # Errors
-    /// [`Stage::Usage`] for a malformed assignment.
+    /// [`ErrorKind::Usage`] for a malformed assignment.
     pub fn text(&self, sets: &[String]) -> Result<String> {
         let mut root = self.root.clone();
         for assignment in sets {
             overrides::apply(&mut root, assignment)?;
         }
-        let fault = |e| Error::new(Stage::Scene, format!("cannot be written as TOML: {e}"));
+        let fault = |e| Error::new(ErrorKind::Other, format!("cannot be written as TOML: {e}"));
         toml::to_string(&root).map_err(fault)
     }
 }
@@ -242,7 +242,7 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let before = text.get(..start).unwrap_or("");
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    Error::new(Stage::Scene, format!("is not TOML: {message}"))
+    Error::new(ErrorKind::File, format!("is not TOML: {message}"))
         .at_key(format!("line {line}, column {column}"))
 }
 

@@ -1,7 +1,7 @@
 //! Placements of copies from a CSV file: one row `x,y,z,qx,qy,qz,qw,sx,sy,sz` for each.
 
 use super::Placement;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 
@@ -17,7 +17,7 @@ const MAX_COPIES: usize = 1 << 20;
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let text = std::fs::read_to_string(file).map_err(|e| {
         Error::new(
-            Stage::Scene,
+            ErrorKind::File,
             format!("cannot be read ({e}); give a CSV file"),
         )
         .in_file(file)
@@ -94,7 +94,7 @@ pub(super) fn unit(xyzw: [f64; 4]) -> Result<DQuat> {
 }
 
 fn fail(message: impl Into<String>) -> Error {
-    Error::new(Stage::Scene, message)
+    Error::new(ErrorKind::Content, message)
 }
 
 #[cfg(test)]

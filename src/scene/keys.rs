@@ -1,7 +1,7 @@
 //! One table of a scene file: known keys only, each read as the type it must have, every message
 //! with the key's full path.
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -44,7 +44,7 @@ impl<'a> Keys<'a> {
 
     /// A failure at `key`.
     pub(super) fn fail(&self, key: &str, message: impl Into<String>) -> Error {
-        Error::new(Stage::Scene, message).at_key(self.place(key))
+        Error::new(ErrorKind::Content, message).at_key(self.place(key))
     }
 
     fn get(&self, key: &str) -> Option<&'a Value> {

@@ -1,6 +1,6 @@
-//! `--set key=value`: values put into a scene's tables before they are read.
+//! `key=value`: values put into a scene's tables before they are read.
 
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use toml::{Table, Value};
 
 /// Puts `assignment`, `path.to.key=value`, into `root`: `object.0.bevel=0.4`, `camera.eye.2=1.5`. The
@@ -8,14 +8,14 @@ use toml::{Table, Value};
 pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
     let (path, value) = assignment.split_once('=').ok_or_else(|| {
         Error::new(
-            Stage::Usage,
+            ErrorKind::Usage,
             format!("{assignment:?} assigns nothing; write key=value, as in object.0.bevel=0.4"),
         )
-        .at_key("--set")
+        .at_key("sets")
     })?;
     let path = path.trim();
     let steps: Vec<&str> = path.split('.').map(str::trim).collect();
-    let fail = |message: String| Error::new(Stage::Usage, message).at_key(format!("--set {path}"));
+    let fail = |message: String| Error::new(ErrorKind::Usage, message).at_key(path);
     if steps.iter().any(|step| step.is_empty()) {
         return Err(fail(
             "a part of the key is empty; write it as in object.0.bevel".to_owned(),
@@ -134,24 +134,21 @@ mod tests {
     #[test]
     fn wrong_paths_are_usage_errors() {
         for (assignment, wanted) in [
-            ("bevel", "--set: \"bevel\" assigns nothing"),
+            ("bevel", "sets: \"bevel\" assigns nothing"),
             (
                 "object.2.bevel=1",
-                "--set object.2.bevel: there is no object.2: the scene has 2",
+                "object.2.bevel: there is no object.2: the scene has 2",
             ),
             (
                 "object.bevel=1",
-                "--set object.bevel: `object` is a list; say which: object.0.bevel",
+                "object.bevel: `object` is a list; say which: object.0.bevel",
             ),
-            (
-                "camera.fov_y.x=1",
-                "--set camera.fov_y.x: `fov_y` is a value",
-            ),
+            ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),
             ("camera..x=1", "a part of the key is empty"),
             ("=1", "a part of the key is empty"),
         ] {
             let error = apply(&mut scene(), assignment).unwrap_err();
-            assert_eq!(error.stage, Stage::Usage);
+            assert_eq!(error.kind, ErrorKind::Usage);
             assert!(error.to_string().contains(wanted), "{error}");
         }
     }

@@ -1,4 +1,4 @@
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use std::fmt;
 use std::str::FromStr;
 
@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// exact surface. An object takes the coarsest level whose bound, seen at the object's nearest
 /// point, is at most a sixteenth of the tolerance. So a silhouette moves by at most a sixteenth of
 /// it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
-/// 99.9 % of the pixels stay within the tolerance (measured: `revmap bench --budget`).
+/// 99.9 % of the pixels stay within the tolerance (measured).
 ///
 /// Searches on patches ([`Solver::Hull`](super::Solver::Hull),
 /// [`Solver::Quadric`](super::Solver::Quadric)) follow it; all others ignore it.
@@ -26,7 +26,7 @@ impl Tolerance {
     /// A tolerance of so many pixels, 0 to [`Tolerance::MOST`]; 0 is [`Tolerance::EXACT`].
     ///
     /// # Errors
-    /// [`Stage::Usage`] for any other number.
+    /// [`ErrorKind::Usage`] for any other number.
     pub fn new(pixels: f64) -> Result<Self> {
         if (0.0..=Self::MOST).contains(&pixels) {
             // Of both zeros one.
@@ -36,7 +36,7 @@ impl Tolerance {
             "{pixels} is no tolerance in pixels; give 0 to {}, 0 for exact",
             Self::MOST
         );
-        Err(Error::new(Stage::Usage, message).at_key("tolerance"))
+        Err(Error::new(ErrorKind::Usage, message).at_key("tolerance"))
     }
 
     /// In pixels.

@@ -1,14 +1,16 @@
 //! What `build.rs` makes of `shaders-glsl/`, and the variants that pipelines are made for.
 
+mod external;
 mod list;
 mod module;
-mod reachable;
 mod variant;
 
-pub use list::{Dispatch, Module};
-pub use module::{depth_less, listed, words};
+pub use list::{Module, Search};
+#[cfg(feature = "other-shaders")]
+pub use module::listed;
+pub use module::{depth_less, unpacked, words};
 pub(crate) use variant::is_beveled;
-pub use variant::{Kind, Met, Variant};
+pub use variant::{Kind, ShadowCasters, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // Numbers that the shaders alone read are listed, too, and what only tests compare.

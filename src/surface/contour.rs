@@ -3,7 +3,7 @@
 use super::chain::{Chain, Segments};
 use super::offset::{Corner, Layer, Trimmer};
 use super::tree::Tree;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Outline, Segment};
 use crate::scene::Offset;
 use glam::DVec2;
@@ -37,7 +37,7 @@ impl ContourSource {
     /// Prepares an outline.
     ///
     /// # Errors
-    /// [`Stage::Profile`] when no part of it is off the axis, or a point is not finite.
+    /// [`ErrorKind::Content`] when no part of it is off the axis, or a point is not finite.
     pub fn new(outline: &Outline) -> Result<Self> {
         let snap = |p: DVec2| {
             let near = |v: f64| {
@@ -61,13 +61,13 @@ impl ContourSource {
         }
         if !segments.iter().all(|s| s.a.is_finite() && s.b.is_finite()) {
             return Err(Error::new(
-                Stage::Profile,
+                ErrorKind::Content,
                 "a point of the outline is not finite; give numbers",
             ));
         }
         if segments.is_empty() {
             return Err(Error::new(
-                Stage::Profile,
+                ErrorKind::Content,
                 "the profile has no surface; give one with a solid part off the axis",
             ));
         }
@@ -83,8 +83,8 @@ impl ContourSource {
     /// solid within the box.
     ///
     /// # Errors
-    /// [`Stage::Profile`] when the contour cannot be closed: loops that cross, or numbers that are
-    /// not finite.
+    /// [`ErrorKind::Content`] when the contour cannot be closed: loops that cross, or numbers that
+    /// are not finite.
     pub fn contour(&self, offset: &Offset) -> Result<Contour> {
         let Offset {
             extend,
@@ -108,7 +108,7 @@ impl ContourSource {
         };
         found.map(|chains| Contour { chains }).ok_or_else(|| {
             Error::new(
-                Stage::Profile,
+                ErrorKind::Content,
                 "the contour does not close; give loops that do not cross, and finite offsets",
             )
         })

@@ -46,14 +46,12 @@
 //! number, an index buffer repeats them). Of corner `v`: `frustum = v / (6 n)`, `side = v % (6 n) /
 //! 6`, and by `v % 6` the corners `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where
 //! ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth `2 pi s / n`.
-//! Counter-clockwise is front. [`ProxyHull::trace`] does the same on the CPU.
+//! Counter-clockwise is front. `tests/common/walk.rs` does the same on the CPU.
 
+use super::QuadricPatch;
 use super::cavity_culling::CavityCulling;
 use super::frusta::FrustaBuilder;
-use super::rows::GpuPatch;
-use super::walk::entering_root;
-use super::{QuadricPatch, Walk};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::ops::Range;
 
 /// How shells are made.
@@ -110,21 +108,6 @@ pub struct ProxyHull {
     sight: CavityCulling,
 }
 
-/// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less
-/// than what guards tell apart.
-pub const HEIGHT_SLACK: f32 = 1e-3;
-
-impl Frustum {
-    /// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the
-    /// ring.
-    fn place(&self, corner: u32) -> (u32, [f32; 2]) {
-        let (side, which) = (corner / 6, corner % 6);
-        let step = side + u32::from(matches!(which, 1 | 2 | 4));
-        let begins = matches!(which, 0 | 1 | 3);
-        (step, if begins { self.from } else { self.to })
-    }
-}
-
 impl ProxyHull {
     /// The shells around patches that [`fit_patches`](super::fit_patches) made.
     #[must_use]
@@ -153,25 +136,6 @@ impl ProxyHull {
             first += count;
         }
         hull.sight = CavityCulling::new(patches, &cells);
-        hull
-    }
-
-    /// One shell around the convex polygon `points`, counter-clockwise from one end on the axis to
-    /// the other: a cell without patches.
-    #[must_use]
-    pub(crate) fn convex(points: &[DVec2], sides: u32) -> Self {
-        let sides = sides.max(3);
-        let widen = DVec2::new(1.0 / (std::f64::consts::PI / f64::from(sides)).cos(), 1.0);
-        let mut hull = Self {
-            sides,
-            sight: CavityCulling::new(&[], std::slice::from_ref(&(0..0))),
-            ..Self::default()
-        };
-        let lines: Vec<_> = points
-            .windows(2)
-            .map(|w| [w[0] * widen, w[1] * widen])
-            .collect();
-        hull.push(&lines, 0, 0);
         hull
     }
 
@@ -216,12 +180,6 @@ impl ProxyHull {
         // Flat sides lie nearer to the axis than their corners.
         extent[0] *= (std::f64::consts::PI / f64::from(self.sides)).cos();
         self.extents.push(extent);
-    }
-
-    /// Vertices of the whole draw.
-    #[must_use]
-    pub fn vertices(&self) -> u32 {
-        self.frusta.len() as u32 * 6 * self.sides
     }
 
     /// What all shells occupy, as of each [`ProxyHull::extents`]; the least radius is 0.
@@ -269,64 +227,4 @@ impl ProxyHull {
                 || eye.y > e[3] + margin
         })
     }
-
-    /// What rasteriser and fragments make of a ray `o + t v` about the axis, from an eye outside:
-    /// its nearest fragment.
-    #[must_use]
-    pub fn trace(&self, records: &[GpuPatch], o: DVec3, v: DVec3) -> Walk {
-        let mut walk = Walk::default();
-        let circle: Vec<DVec2> = (0..=self.sides)
-            .map(|k| {
-                DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(self.sides))
-            })
-            .collect();
-        for frustum in &self.frusta {
-            for triangle in 0..2 * self.sides {
-                let corner = |k| {
-                    let (step, [r, z]) = frustum.place(3 * triangle + k);
-                    (circle[step as usize] * f64::from(r)).extend(f64::from(z))
-                };
-                if !enters(o, v, [corner(0), corner(1), corner(2)]) {
-                    continue;
-                }
-                walk.nodes += 1;
-                let cell = &records[frustum.first as usize..][..frustum.count as usize];
-                for record in cell {
-                    walk.patches += 1;
-                    // Near the solid, as shaders start their rays at the box.
-                    let near = -o.dot(v) / v.length_squared();
-                    let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
-                    let flat = [
-                        v.x * v.x + v.y * v.y,
-                        o.x * v.x + o.y * v.y,
-                        o.x * o.x + o.y * o.y,
-                    ];
-                    let root = entering_root(record.quadric, 1.0, flat, [o.z, v.z]);
-                    let [cz, cr, low, high] = record.guard;
-                    let square = flat[2] + root * (2.0 * flat[1] + root * flat[0]);
-                    let z = o.z + root * v.z;
-                    let place = cz * z + cr * square;
-                    let t = root + near as f32;
-                    let valid = place >= low
-                        && place <= high
-                        && (-HEIGHT_SLACK..=1.0 + HEIGHT_SLACK).contains(&z);
-                    if valid && walk.hit.is_none_or(|(best, _)| t < best) {
-                        walk.hit = Some((t, *record));
-                    }
-                }
-            }
-        }
-        walk
-    }
-}
-
-/// Whether a ray passes a triangle against its normal.
-fn enters(o: DVec3, v: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let normal = (b - a).cross(c - a);
-    if normal.dot(v) >= 0.0 || normal.dot(a - o) >= 0.0 {
-        return false;
-    }
-    let side = |p: DVec3, q: DVec3| (q - o).cross(p - o).dot(v);
-    let (x, y, z) = (side(a, b), side(b, c), side(c, a));
-    x >= 0.0 && y >= 0.0 && z >= 0.0
 }

@@ -14,8 +14,6 @@
 //! their meeting is one quadratic in `t`, the same for cylinders, cones, spheres, paraboloids,
 //! hyperboloids and planes.
 //!
-//! For solids that are single-valued in z a row of empty cones does as well ([`Cones`]).
-//!
 //! For the rasteriser the patches are wrapped in shells ([`hull`]).
 //!
 //! Data flows one way: outline → contour → patches → rows and hull. All of it is cheap enough to be
@@ -24,8 +22,8 @@
 
 mod cavity_culling;
 mod chain;
-pub mod cones;
 mod contour;
+mod cylinders;
 mod fit;
 mod frusta;
 pub mod hull;
@@ -33,17 +31,15 @@ mod offset;
 pub mod rows;
 mod solid_radii;
 mod tree;
-pub mod walk;
 
 pub use chain::Chain;
-pub use cones::Cones;
 pub use contour::{Contour, ContourSource};
+pub(crate) use cylinders::{CylinderPiece, InnerCylinders, OuterCylinders};
 pub use fit::{FitOptions, fit_patches};
 pub use hull::{Frustum, ProxyHull, ProxyHullOptions};
 pub(crate) use rows::extents;
 pub use rows::{GpuPatch, ROWS, Tables};
-pub(crate) use solid_radii::solid_radii;
-pub use walk::{PatchHit, Walk, entering_root, trace_patches};
+pub(crate) use solid_radii::{SOLID_ROWS, solid_radii};
 
 use glam::DVec2;
 

@@ -16,7 +16,7 @@
 //!   `[+inf, -inf]`. The topmost level has at most 4 nodes.
 //!
 //! All extents are a little too large rather than too small (by a millionth).
-//! [`trace_patches`](super::trace_patches) says how to walk it.
+//! `tests/common/walk.rs` says how to walk it, and walks it as the shader does.
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
@@ -108,12 +108,6 @@ impl Tables {
             records,
             reach: patches.iter().fold(0.0f64, |m, p| m.max(p.r[1])) as f32,
         }
-    }
-
-    /// Bytes that a shader reads: rows, nodes and records.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        4 * self.rows.len() + 8 * self.nodes.len() + size_of::<GpuPatch>() * self.records.len()
     }
 }
 

@@ -7,3 +7,5 @@ pub mod rays;
 pub mod samples;
 #[allow(dead_code)] // some are for real profiles, which are drawings
 pub mod shapes;
+#[allow(dead_code)]
+pub mod walk;

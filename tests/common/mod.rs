@@ -2,45 +2,12 @@
 //! failure.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod drawing;
 pub mod host;
 pub mod passing;
 mod scenes;
 pub mod shapes;
 pub mod ways;
 
-use revmap::frame::Frame;
-use revmap::gpu::{self, Device};
-use revmap::scene::Scene;
-use revmap::settings::Settings;
+pub use drawing::*;
 pub use scenes::*;
-use std::sync::OnceLock;
-
-/// The device of this process's tests. Without a device or without the layers, tests fail.
-pub fn device() -> &'static Device {
-    static DEVICE: OnceLock<Device> = OnceLock::new();
-    DEVICE.get_or_init(|| Device::open_validated(None).unwrap())
-}
-
-/// Draws in a GPU stage.
-pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
-    gpu::draw(device(), scene, settings)
-        .unwrap_or_else(|e| panic!("{e}"))
-        .frame
-}
-
-/// Draws the reference.
-pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
-    revmap_reference::draw(scene, settings, &|_, _| {}).unwrap()
-}
-
-/// No NaN in any channel, and no infinity but the distance of what is not hit.
-pub fn assert_sound(frame: &Frame, what: &str) {
-    for i in 0..frame.pixels() {
-        let values = frame.pixel(i);
-        let names = revmap::frame::CHANNELS;
-        for (name, value) in names.iter().zip(values) {
-            let fine = value.is_finite() || (*name == "Z" && value == f32::INFINITY);
-            assert!(fine, "{what}: {name} of pixel {i} is {value}");
-        }
-    }
-}

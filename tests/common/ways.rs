@@ -1,4 +1,4 @@
-//! How objects are drawn, by hulls, beams or boxes, and how far two frames are apart.
+//! How objects are drawn, by hulls, tiles or boxes, and how far two frames are apart.
 
 use super::device;
 use revmap::frame::Frame;
@@ -12,8 +12,8 @@ pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 pub type Ways<'a> = [&'a [DrawPath]; 2];
 
 /// By what is tested here, and by what it falls back to.
-pub const WRAPPED: Ways<'static> = [&[DrawPath::Hull], &[DrawPath::Beams]];
-pub const BOXED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Rectangle]];
+pub const WRAPPED: Ways<'static> = [&[DrawPath::Hull], &[DrawPath::Tiles]];
+pub const BOXED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Tiles]];
 
 /// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart
 /// than half a texel of 512 rows.
@@ -29,7 +29,7 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     (hits, edge, far)
 }
 
-/// Draws by hulls or beams and wants every object drawn in that way: what falls back to the box
+/// Draws by hulls or tiles and wants every object drawn in that way: what falls back to the box
 /// would be right too, and say nothing.
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {

@@ -3,12 +3,13 @@
 
 use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
+use crate::common::walk::{trace_hull, trace_patches};
 use glam::{DVec2, DVec3};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::Offset;
 use revmap::surface::{
     ContourSource, FitOptions, GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch, ROWS, Tables,
-    fit_patches, trace_patches,
+    fit_patches,
 };
 
 /// A solid's boundary, as searches of tables and as hulls take it.
@@ -52,7 +53,7 @@ impl Boundary {
         direction: DVec3,
     ) -> (Option<f64>, bool, u32) {
         let truth = self.stop(origin, direction);
-        let found = hull.trace(&self.records, origin, direction);
+        let found = trace_hull(hull, &self.records, origin, direction);
         let same = match (truth, found.hit) {
             (Some(a), Some((t, _))) => (a - f64::from(t)).abs() < 2e-4,
             (None, None) => true,
@@ -102,7 +103,7 @@ fn hulls_lose_no_ray() {
                     "{name:8} {:4} patches {:5} bands {:6} triangles, {tests} patches_per_cell: {lost} of {hits} lost, {:.2} layers where hit, {:.2} elsewhere",
                     boundary.patches.len(),
                     hull.frusta.len(),
-                    hull.vertices() / 3,
+                    2 * hull.sides as usize * hull.frusta.len(),
                     f64::from(layers) / hits as f64,
                     f64::from(wasted) / (count - hits) as f64,
                 );

@@ -1,11 +1,12 @@
 //! Quadric patches and their tables against the reference in double precision, ray by ray.
 
 use crate::common::rays::{Random, count, profiles};
+use crate::common::walk::trace_patches;
 use glam::{DVec2, DVec3};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Clip, Object, Offset, Scene};
-use revmap::surface::{ContourSource, FitOptions, ROWS, Tables, fit_patches, trace_patches};
+use revmap::surface::{ContourSource, FitOptions, ROWS, Tables, fit_patches};
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
 
@@ -43,7 +44,7 @@ fn shoot_at(
         "{:4} points {:4} patches {:6} bytes {:4} records",
         contour.chains.iter().map(|c| c.points.len()).sum::<usize>(),
         patches.len(),
-        tables.bytes(),
+        4 * tables.rows.len() + 8 * tables.nodes.len() + 48 * tables.records.len(),
         tables.records.len(),
     );
     (tally, words)

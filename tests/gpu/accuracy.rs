@@ -3,13 +3,14 @@
 use crate::common::{assert_sound, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{DrawStage, Planes, Settings};
+use revmap_searches::CIRCLE;
 
 fn precise() -> Settings {
     Settings {
         width: 320,
         height: 240,
-        solver: Solver::Circle,
+        solver: CIRCLE,
         max_steps: Some(256),
         map_rows: Some(1024),
         map_source: Some(MapSource::Exact),

@@ -79,9 +79,9 @@ fn fragment_and_compute_agree_bit_for_bit() {
     let pairs = all.iter().flat_map(|(n, scene)| {
         // Cone maps hold only some of these solids, and a hull is drawn by two different methods:
         // both have tests of their own.
-        let others: Vec<_> = Solver::ALL
+        let others: Vec<_> = revmap_searches::ALL
             .into_iter()
-            .filter(|s| !s.is_of_cones() && *s != Solver::Hull)
+            .filter(|s| !s.reads_own_table() && *s != Solver::Hull)
             .collect();
         let second = others[n % others.len()];
         [(*n, scene, Solver::Quadric), (*n, scene, second)]
@@ -93,8 +93,9 @@ fn fragment_and_compute_agree_bit_for_bit() {
             map_format: formats[n % 3],
             solver,
             max_steps: Some(48),
-            // Convex hulls and beams start rays at different places, and have tests of their own.
+            // Cells and lists of patches start rays elsewhere, and tiles that are culled count no steps.
             proxy_min_pixels: u32::MAX,
+            occlusion_culling: false,
             ..Settings::exact()
         };
         let mut fragment = draw(scene, &settings);
@@ -115,6 +116,20 @@ fn fragment_and_compute_agree_bit_for_bit() {
         }
         if let Some(difference) = fragment.first_difference(&compute) {
             panic!("{name}, {solver:?}: {difference}");
+        }
+        let mut culled = draw(
+            scene,
+            &Settings {
+                stage: DrawStage::Compute,
+                occlusion_culling: true,
+                ..settings
+            },
+        );
+        fragment.steps.fill(0.0);
+        culled.steps.fill(0.0);
+        culled.exhausted = fragment.exhausted;
+        if let Some(difference) = fragment.first_difference(&culled) {
+            panic!("{name}, {solver:?}, culled: {difference}");
         }
     }
 }

@@ -4,7 +4,8 @@
 use crate::common::{draw, errors, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::profile::{Profile, ProfileAxis};
-use revmap::settings::{Settings, Solver};
+use revmap::settings::Settings;
+use revmap_searches::CIRCLE;
 
 const ROWS: u32 = 512;
 
@@ -62,7 +63,7 @@ fn pictures_are_better_than_by_the_rbm_baseline() {
         ..Settings::exact()
     };
     let papers = Settings {
-        solver: Solver::Circle,
+        solver: CIRCLE,
         max_steps: Some(20),
         map_source: Some(MapSource::Binary),
         map_format: MapFormat::Rgba8,

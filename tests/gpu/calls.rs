@@ -94,7 +94,7 @@ unsafe extern "system" fn call<const N: usize>(
         return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
     }
     let lost = LOST.load(Ordering::SeqCst) == N;
-    if lost && N == SUBMIT {
+    if lost && N != WAIT {
         return vk::Result::ERROR_DEVICE_LOST;
     }
     // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not looked
@@ -198,13 +198,10 @@ impl Layer {
             .map(|name| name.to_str().unwrap())
     }
 
-    /// From now on the device is lost, which `vkQueueSubmit` or `vkWaitForFences` tells.
+    /// From now on the device is lost, which this call tells.
     pub fn lose(&self, told_by: Option<&str>) {
-        let n = match told_by {
-            Some("vkQueueSubmit") => SUBMIT,
-            Some("vkWaitForFences") => WAIT,
-            _ => usize::MAX,
-        };
+        let told = |name: &&CStr| name.to_str().ok() == told_by;
+        let n = CALLS.iter().position(told).unwrap_or(usize::MAX);
         LOST.store(n, Ordering::SeqCst);
     }
 
@@ -237,6 +234,7 @@ impl Layer {
                         features as *const c_void,
                         families as *const c_void,
                         formats as *const c_void,
+                        image_formats as *const c_void,
                     ][n]
                 },
                 handle,
@@ -255,6 +253,10 @@ pub struct Mask {
     pub compute: bool,
     /// Components between vertices and fragments: 64, as many as Vulkan promises.
     pub varyings: bool,
+    /// Corners placed more finely than at sixteenths of a pixel.
+    pub sub_pixels: bool,
+    /// Several samples a pixel.
+    pub samples: bool,
     pub format: Option<vk::Format>,
 }
 
@@ -265,14 +267,17 @@ static MASK: Mutex<Mask> = Mutex::new(Mask {
     timestamps: false,
     compute: false,
     varyings: false,
+    sub_pixels: false,
+    samples: false,
     format: None,
 });
 
-const QUERIES: [&CStr; 4] = [
+const QUERIES: [&CStr; 5] = [
     c"vkGetPhysicalDeviceProperties",
     c"vkGetPhysicalDeviceFeatures",
     c"vkGetPhysicalDeviceQueueFamilyProperties",
     c"vkGetPhysicalDeviceFormatProperties",
+    c"vkGetPhysicalDeviceImageFormatProperties",
 ];
 static REAL_QUERIES: [AtomicUsize; QUERIES.len()] = [const { AtomicUsize::new(0) }; QUERIES.len()];
 
@@ -294,6 +299,12 @@ unsafe extern "system" fn properties(
         real::<vk::PFN_vkGetPhysicalDeviceProperties>(0)(physical, out);
         if mask.version {
             (*out).api_version = vk::API_VERSION_1_1;
+        }
+        if mask.samples {
+            (*out).limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
+        }
+        if mask.sub_pixels {
+            (*out).limits.sub_pixel_precision_bits = 4;
         }
         if mask.varyings {
             (*out).limits.max_fragment_input_components = 64;
@@ -354,5 +365,26 @@ unsafe extern "system" fn formats(
         if mask.format == Some(format) {
             *out = vk::FormatProperties::default();
         }
+    }
+}
+
+unsafe extern "system" fn image_formats(
+    physical: vk::PhysicalDevice,
+    format: vk::Format,
+    kind: vk::ImageType,
+    tiling: vk::ImageTiling,
+    usage: vk::ImageUsageFlags,
+    flags: vk::ImageCreateFlags,
+    out: *mut vk::ImageFormatProperties,
+) -> vk::Result {
+    let mask = *MASK.lock().unwrap();
+    // SAFETY: as above.
+    unsafe {
+        let real = real::<vk::PFN_vkGetPhysicalDeviceImageFormatProperties>(4);
+        let result = real(physical, format, kind, tiling, usage, flags, out);
+        if mask.samples {
+            (*out).sample_counts = vk::SampleCountFlags::TYPE_1;
+        }
+        result
     }
 }

@@ -78,7 +78,7 @@ fn draw(scene: &Scene, settings: &Settings) -> Frame {
     let mut offscreen = Offscreen::new(device(), scene, settings).unwrap();
     offscreen.draw().unwrap();
     let paths = offscreen.draw_paths();
-    assert!(paths.iter().all(|p| *p == DrawPath::Bins), "{paths:?}");
+    assert!(paths.iter().all(|p| *p == DrawPath::Tiles), "{paths:?}");
     offscreen.read().unwrap()
 }
 

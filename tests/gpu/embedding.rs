@@ -79,8 +79,8 @@ pub fn frame(
             meshes,
             // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
             |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
-            // SAFETY: the slot was prepared, the pass is of the output's formats.
-            |cmd, slot| unsafe { renderer.borrow().record(cmd, slot) },
+            // SAFETY: the frame was prepared, the pass is of the output's formats.
+            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
         )
         .unwrap();
 }

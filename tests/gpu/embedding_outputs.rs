@@ -15,10 +15,11 @@ use revmap::gpu::{
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
+use revmap_searches::CIRCLE;
 use std::sync::Arc;
 
 /// Records commands, submits them and waits.
-fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
+pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
     let device = &host.device;
     // SAFETY: everything is made here, waited for, then destroyed.
     unsafe {
@@ -128,7 +129,7 @@ fn depths(
         // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass is of the
         // output's formats.
         unsafe {
-            renderer.prepare(cmd, 0, view).unwrap();
+            let frame = renderer.prepare(cmd, 0, view).unwrap();
             let by_hulls = renderer.draw_paths().iter().all(|p| *p == DrawPath::Hull);
             assert!(by_hulls || settings.proxy_min_pixels > 0, "not by hulls");
             to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
@@ -156,7 +157,7 @@ fn depths(
             };
             raw.cmd_set_viewport(cmd, 0, &[seen]);
             raw.cmd_set_scissor(cmd, 0, &[area]);
-            renderer.record(cmd, 0);
+            renderer.record(cmd, &frame).unwrap();
             raw.cmd_end_rendering(cmd);
             let (from, to) = (
                 Layout::DEPTH_ATTACHMENT_OPTIMAL,
@@ -341,16 +342,19 @@ fn compute_writes_to_a_hosts_buffer() {
     }
     // SAFETY: the buffer is of the host's device, two words a pixel, and outlives the renderer.
     unsafe {
-        renderer.set_compute_target(ComputeTarget {
-            words: buffer.raw,
-            images: Vec::new(),
-        });
+        let (words, images) = (buffer.raw, Vec::new());
+        let target = ComputeTarget {
+            words,
+            images,
+            depths: true,
+        };
+        renderer.set_compute_target(target).unwrap();
     }
     once(&host, |cmd| {
         // SAFETY: `cmd` is recording outside of a pass; nothing was submitted for the slot before.
         unsafe {
-            renderer.prepare(cmd, 0, offscreen.view()).unwrap();
-            renderer.record_compute(cmd, 0);
+            let frame = renderer.prepare(cmd, 0, offscreen.view()).unwrap();
+            renderer.record_compute(cmd, &frame).unwrap();
         }
         barrier(&host, cmd);
     });
@@ -377,7 +381,7 @@ fn depth_alone_takes_exact_searches() {
     let device = crate::common::device();
     let planes = Planes::Depth { parallel: false };
     let circle = SearchSettings {
-        solver: Solver::Circle,
+        solver: CIRCLE,
         ..SearchSettings::exact()
     };
     let refused = |output, settings: &SearchSettings| {

@@ -1,13 +1,15 @@
 //! Rays that run out of steps are counted, in both stages alike.
 
 use crate::common::{draw, eye, placement, scene_of, shapes};
+use revmap::frame::Frame;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_searches::{CIRCLE, LINEAR, SECANT};
 use std::sync::Arc;
 
-/// Solids one behind another, copies, and replicas.
-fn crowd() -> Scene {
-    let mut scene = scene_of(shapes::vase(), eye(15.0, 2.6));
+/// A solid, replicas, and copies beside each other: what is hidden is searched in fragments alone.
+fn scenes() -> [Scene; 3] {
+    let scene = scene_of(shapes::vase(), eye(15.0, 2.6));
     let mut several = Object::new("several", Arc::new(shapes::discs()));
     several.repeat = [2, 2, 1];
     several.placement.position.x = -0.6;
@@ -16,13 +18,16 @@ fn crowd() -> Scene {
         .map(|y| placement([0.4, y, 0.0], [0.0; 3], [0.5; 3]))
         .to_vec()
         .into();
-    scene.objects.extend([several, copies]);
-    scene
+    let of = |object| Scene {
+        objects: vec![object],
+        ..scene.clone()
+    };
+    [of(scene.objects[0].clone()), of(several), of(copies)]
 }
 
 #[test]
 fn rays_out_of_steps_are_counted_alike_in_both_stages() {
-    let scene = crowd();
+    let scenes = scenes();
     let count = |solver, max_steps, planes| {
         let counts = [DrawStage::Fragment, DrawStage::Compute].map(|stage| {
             let settings = Settings {
@@ -32,19 +37,25 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
                 solver,
                 max_steps: Some(max_steps),
                 planes,
-                proxy_min_pixels: u32::MAX, // or rays would begin elsewhere in each stage
+                // Cells and lists of patches start rays elsewhere, and tiles that are culled count no steps.
+                proxy_min_pixels: u32::MAX,
+                occlusion_culling: false,
                 ..Settings::exact()
             };
-            let frame = draw(&scene, &settings);
+            let frames = scenes.each_ref().map(|scene| draw(scene, &settings));
             // The bit that tells is no step.
-            assert!(frame.steps.iter().all(|&s| s < 1e5));
-            let hits = (0..frame.pixels()).filter(|&i| frame.hits(i)).count();
-            (frame.exhausted, hits)
+            assert!(frames.iter().all(|f| f.steps.iter().all(|&s| s < 1e5)));
+            let hits = |f: &Frame| (0..f.pixels()).filter(|&i| f.hits(i)).count();
+            let exhausted = frames.each_ref().map(|f| f.exhausted);
+            (
+                exhausted.iter().sum::<usize>(),
+                frames.iter().map(hits).sum::<usize>(),
+            )
         });
         assert_eq!(counts[0].0, counts[1].0, "{solver:?}, {max_steps} steps");
         counts[0]
     };
-    for solver in [Solver::Live, Solver::Circle] {
+    for solver in [Solver::Live, CIRCLE] {
         let (few, _) = count(solver, 3, Planes::All);
         let (more, _) = count(solver, 20, Planes::All);
         let (enough, hits) = count(solver, 512, Planes::All);
@@ -53,7 +64,7 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
         assert!(hits > 5000 && enough == 0, "{solver:?}: {enough} of {hits}");
     }
     // What has no budget cannot use it up; what is not counted is not told.
-    for solver in [Solver::Quadric, Solver::Linear, Solver::Secant] {
+    for solver in [Solver::Quadric, LINEAR, SECANT] {
         assert_eq!(count(solver, 3, Planes::All).0, 0, "{solver:?}");
     }
     assert_eq!(count(Solver::Live, 3, Planes::Color).0, 0);

@@ -6,6 +6,7 @@ use revmap::gpu::{self, Offscreen};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Object, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_searches::CONE;
 use std::sync::Arc;
 
 /// Two cylinders, one in the other, each by a loop of its own: twice solid in the middle.
@@ -117,7 +118,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
         }
         {
             let settings = Settings {
-                solver: Solver::Cone,
+                solver: CONE,
                 ..settings
             };
             let error = Offscreen::new(device(), &scene, &settings).err().unwrap();

@@ -3,11 +3,12 @@
 
 use crate::common::passing::count;
 use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::gpu::{self, Offscreen};
 use revmap::maps::MapFormat;
 use revmap::scene::{Clip, Offset, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_searches::CIRCLE;
 
 fn settings() -> Settings {
     Settings {
@@ -72,7 +73,7 @@ fn beyond_its_map_a_solid_gets_a_wider_one() {
     let wide = with(&plain, 0.8, 0.0, 1.0);
     let boxed = reference(&wide, &settings());
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        for solver in [Solver::Live, Solver::Circle, Solver::Quadric] {
+        for solver in [Solver::Live, CIRCLE, Solver::Quadric] {
             let wanted = &boxed;
             let settings = Settings {
                 stage,
@@ -115,8 +116,8 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
     let mut refused = |key: &str, scene: &Scene| {
         let error = renderer.update(scene).unwrap_err();
         assert_eq!(
-            (error.stage, error.key.as_deref()),
-            (Stage::Scene, Some(key)),
+            (error.kind, error.key.as_deref()),
+            (ErrorKind::Content, Some(key)),
             "{error}"
         );
     };

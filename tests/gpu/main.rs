@@ -14,7 +14,6 @@ mod bumps;
 #[allow(unsafe_code)]
 mod calls;
 mod clip;
-mod cones;
 mod crowds;
 mod embedding;
 mod embedding_crowds;
@@ -28,8 +27,10 @@ mod gallery;
 mod golden;
 mod hulls;
 mod limits;
+mod memory_types;
 mod offsets;
 mod proxy_hulls;
+mod refusals;
 mod replicas;
 mod shadows;
 #[cfg(all(feature = "drawing", feature = "scene-file"))]

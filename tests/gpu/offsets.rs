@@ -11,6 +11,7 @@ use revmap::maps::MapFormat;
 use revmap::scene::{CameraFrame, Clip, Offset, Scene};
 use revmap::settings::{Settings, Solver};
 use revmap_reference::{Ray, Reference};
+use revmap_searches::CIRCLE;
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write as _;
 
@@ -38,7 +39,7 @@ fn settings() -> [(&'static str, Offset); 6] {
 }
 
 /// The conservative rules, and the papers'.
-const SOLVERS: [Solver; 3] = [Solver::Live, Solver::Quadric, Solver::Circle];
+const SOLVERS: [Solver; 3] = [Solver::Live, Solver::Quadric, CIRCLE];
 
 const VIEWS: [f64; 3] = [4.0, 38.0, -30.0];
 

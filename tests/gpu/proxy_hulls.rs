@@ -49,16 +49,9 @@ fn a_crowd_in_one_depth_buffer() {
         }
         crowd.objects.push(object);
         let [fragment, compute] = [
-            [DrawPath::Hull, DrawPath::Beams],
-            [
-                DrawPath::Hull,
-                if n == 4 {
-                    DrawPath::Bins
-                } else {
-                    DrawPath::Beams
-                },
-            ],
-            [DrawPath::Box, DrawPath::Rectangle],
+            [DrawPath::Hull, DrawPath::Tiles],
+            [DrawPath::Hull, DrawPath::Tiles],
+            [DrawPath::Box, DrawPath::Tiles],
         ][n % 3];
         ways[0].push(fragment);
         ways[1].push(compute);
@@ -67,7 +60,7 @@ fn a_crowd_in_one_depth_buffer() {
 }
 
 /// Copies of the only object of a scene hide one another too, in every frame anew; beyond 64 copies
-/// they share bins.
+/// they share tiles.
 #[test]
 fn copies_of_a_lone_object() {
     let copies = |count: usize, size: f64| {
@@ -87,7 +80,7 @@ fn copies_of_a_lone_object() {
     EXACT.assert_same(
         "65",
         &copies(65, 0.7),
-        [&[DrawPath::Bins], &[DrawPath::Bins]],
+        [&[DrawPath::Tiles], &[DrawPath::Tiles]],
     );
     let mut beside = few.clone();
     beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);

@@ -124,15 +124,15 @@ fn a_memory_budget_is_kept() {
     let settings = settings(DrawStage::Fragment, 0.25);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     offscreen.draw().unwrap();
-    let taken = device.memory_bytes();
+    let taken = device.memory_use().total();
     assert!(taken > offscreen.device_bytes());
     device.set_memory_budget(Some(taken + (1 << 20)));
     let error = Offscreen::new(&device, &scene, &settings).err().unwrap();
     assert!(error.message.contains("memory budget"), "{error}");
-    assert_eq!(device.memory_bytes(), taken);
+    assert_eq!(device.memory_use().total(), taken);
     offscreen.draw().unwrap();
     drop(offscreen);
-    assert_eq!(device.memory_bytes(), 0);
+    assert_eq!(device.memory_use().total(), 0);
     device.check().unwrap();
 }
 

@@ -8,9 +8,9 @@ use crate::common::{device, eye, scene_of, shapes};
 use crate::embedding::{assert_silent, three};
 use ash::vk;
 use glam::DVec3;
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostDevice, Offscreen};
+use revmap::gpu::{Device, DrawPath, HostDevice, Offscreen, Requirements};
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 
@@ -85,7 +85,13 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
             layer.fail_at(n);
             let result = work(&host, &raw, &settings);
             let failed = layer.failed().unwrap();
-            let message = result.expect_err(failed).to_string();
+            let error = result.expect_err(failed);
+            assert_eq!(
+                error.kind,
+                ErrorKind::OutOfDeviceMemory,
+                "{failed}: {error}"
+            );
+            let message = error.to_string();
             // The allocator's own calls are told in its words.
             let named = message.contains(failed) || message.contains("memory");
             assert!(named, "{stage:?}, call {n}, {failed}: {message}");
@@ -151,7 +157,7 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
             for told_by in [told_by, "vkQueueSubmit", "vkQueueSubmit"] {
                 let error = drawn.draw().unwrap_err();
                 let text = error.to_string();
-                assert_eq!(error.stage, Stage::Draw, "{text}");
+                assert_eq!(error.kind, ErrorKind::DeviceLost, "{text}");
                 assert!(
                     text.contains(told_by) && text.contains("the device was lost"),
                     "{text}"
@@ -163,6 +169,26 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
             assert_eq!(layer.alive(), 0, "{told_by}, {stage:?}");
         }
     }
+    assert_silent(&host);
+}
+
+/// What the allocator finds out is a lost device, too, and no lack of memory.
+#[test]
+fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
+    let layer = Layer::take();
+    let host = open();
+    let raw = layer.device(&host.instance, &host.device);
+    let device = borrow(&host, &raw, &host.instance).unwrap();
+    layer.lose(Some("vkAllocateMemory"));
+    let settings = settings(DrawStage::Fragment);
+    let Err(error) = Offscreen::new(&device, &scenes()[0], &settings) else {
+        panic!("made on a lost device");
+    };
+    assert_eq!(error.kind, ErrorKind::DeviceLost, "{error}");
+    assert!(error.to_string().contains("the device was lost"), "{error}");
+    drop(device);
+    layer.lose(None);
+    assert_eq!(layer.alive(), 0);
     assert_silent(&host);
 }
 
@@ -236,11 +262,36 @@ fn a_device_without_what_is_needed_is_refused() {
         let Err(error) = borrow(&host, &host.device, &instance) else {
             panic!("taken without {lack}");
         };
-        assert_eq!(error.stage, Stage::Device, "{error}");
+        assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
         assert!(
             error.to_string().contains(&format!("lacks {lack}")),
             "{error}"
         );
+    }
+    assert_silent(&host);
+}
+
+/// The report says of hulls what is drawn: none where corners are placed coarsely.
+#[test]
+fn the_report_and_the_features_asked_for_agree() {
+    let layer = Layer::take();
+    let host = open();
+    // SAFETY: as above.
+    let entry = unsafe { ash::Entry::load() }.unwrap();
+    for sub_pixels in [false, true] {
+        let mask = Mask {
+            sub_pixels,
+            ..Mask::default()
+        };
+        let instance = layer.instance(&entry, &host.instance, mask);
+        let device = borrow(&host, &host.device, &instance).unwrap();
+        let mut uses = device.report().uses.iter();
+        let hulls = uses.find(|(what, _)| what.starts_with("hulls")).unwrap();
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(&instance, host.physical) }.unwrap();
+        let clips = needs.features.shader_clip_distance == vk::TRUE;
+        assert_eq!(hulls.1, if clips { "yes" } else { "no" });
+        assert!(!(clips && sub_pixels));
     }
     assert_silent(&host);
 }
@@ -303,7 +354,7 @@ fn colour_is_drawn_on_a_device_opened_without_features() {
     let _layer = Layer::take();
     let host = Host::open(true, |instance, physical| {
         // SAFETY: both are live.
-        let needs = unsafe { revmap::gpu::Requirements::of(instance, physical) }?;
+        let needs = unsafe { Requirements::of(instance, physical) }?;
         Ok((needs.queue_family, vk::PhysicalDeviceFeatures::default()))
     })
     .unwrap();

@@ -2,13 +2,14 @@
 //! that has not changed.
 
 use crate::common::{device, draw, eye, placement, scene_of, shapes};
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_searches::{CIRCLE, CONE};
 
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
@@ -47,7 +48,7 @@ fn what_is_refused_changes_nothing() {
             s.objects[1].offset.extend = f64::NAN;
         }),
         // Two more instances, and no cones for any of them.
-        ("single-valued", Solver::Cone, |s| {
+        ("single-valued", CONE, |s| {
             s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3].into();
             s.objects[0].profile = shapes::glass().into();
             s.objects.push(s.objects[0].clone());
@@ -90,7 +91,7 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
         let before = drawn(&mut renderer);
         scene.shadow = Shadow::Soft;
         let error = renderer.update(&scene).unwrap_err();
-        assert_eq!(error.stage, Stage::Map, "{error}");
+        assert_eq!(error.kind, ErrorKind::Content, "{error}");
         let after = drawn(&mut renderer);
         assert_eq!(before.first_difference(&after), None);
         scene.shadow = Shadow::Off;
@@ -162,7 +163,7 @@ fn only_what_has_changed_is_cut() {
         (Solver::Hull, DrawStage::Fragment),
         (Solver::Hull, DrawStage::Compute),
         (Solver::Quadric, DrawStage::Fragment),
-        (Solver::Cone, DrawStage::Fragment),
+        (CONE, DrawStage::Fragment),
         (Solver::Live, DrawStage::Fragment),
     ] {
         let settings = Settings {
@@ -180,8 +181,8 @@ fn only_what_has_changed_is_cut() {
                 "{solver}, {stage:?}: {what}"
             );
             let way = match (solver, stage) {
-                (Solver::Hull | Solver::Live, DrawStage::Fragment) => DrawPath::Hull,
-                (Solver::Hull, _) => DrawPath::Beams,
+                (Solver::Hull, DrawStage::Fragment) => DrawPath::Hull,
+                (_, DrawStage::Compute) => DrawPath::Tiles,
                 _ => DrawPath::Box,
             };
             assert_eq!(renderer.draw_paths(), [way; 3], "{solver}: {what}");
@@ -244,7 +245,7 @@ fn no_update_compiles_a_pipeline() {
         }),
     ];
     for stage in STAGES {
-        for solver in [Solver::Hull, Solver::Quadric, Solver::Live, Solver::Circle] {
+        for solver in [Solver::Hull, Solver::Quadric, Solver::Live, CIRCLE] {
             let settings = Settings {
                 solver,
                 proxy_min_pixels: 150,
@@ -271,7 +272,7 @@ fn no_update_compiles_a_pipeline() {
 #[test]
 fn no_cut_compiles_a_pipeline() {
     let device = Device::open_validated(None).unwrap();
-    for (stage, path) in STAGES.into_iter().zip([DrawPath::Hull, DrawPath::Beams]) {
+    for (stage, path) in STAGES.into_iter().zip([DrawPath::Hull, DrawPath::Tiles]) {
         let mut scene = vase();
         scene.objects[0].clip = Clip::Box;
         let settings = Settings {
@@ -335,7 +336,7 @@ fn pipelines_of_large_tables_are_compiled() {
         renderer.prewarm().unwrap();
         let compiled = device.pipelines_compiled();
         renderer.draw().unwrap();
-        assert_eq!(renderer.draw_paths(), [DrawPath::Bins], "{stage:?}");
+        assert_eq!(renderer.draw_paths(), [DrawPath::Tiles], "{stage:?}");
         assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}, copies");
     }
     device.check().unwrap();

@@ -34,9 +34,8 @@
 #define REVMAP_ABI 1
 
 /**
- * What a function says of itself. Everything but REVMAP_RESULT_OK is a failure, which changes
- * nothing else than the failing function's documentation says, and leaves a text for
- * revmap_last_error_text().
+ * What a function says of itself: done, or the kind of its failure. A failure changes nothing else
+ * than the failing function's documentation says, and leaves a text for revmap_last_error_text().
  */
 enum RevmapResult
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -53,41 +52,49 @@ enum RevmapResult
      */
     REVMAP_RESULT_USAGE = 1,
     /**
-     * A value out of its range; the text begins with its name.
+     * A value of a scene, profile or map that cannot be drawn; the text begins with its name.
      */
-    REVMAP_RESULT_SCENE = 2,
+    REVMAP_RESULT_CONTENT = 2,
     /**
-     * A profile that cannot be read, or is none.
+     * A file that cannot be read or written; the text begins with its name.
      */
-    REVMAP_RESULT_PROFILE = 3,
+    REVMAP_RESULT_FILE = 3,
     /**
-     * A texture that cannot be read.
+     * No Vulkan device, or one that lacks a feature, a format or an extension.
      */
-    REVMAP_RESULT_MAP = 4,
+    REVMAP_RESULT_UNSUPPORTED = 4,
     /**
-     * No Vulkan device, or one that lacks what is needed.
+     * More pixels, texels, copies or tables than the device or the library takes.
      */
-    REVMAP_RESULT_DEVICE = 5,
+    REVMAP_RESULT_TOO_LARGE = 5,
     /**
-     * A Vulkan call, or work on the device.
+     * The host's memory is full.
      */
-    REVMAP_RESULT_DRAW = 6,
+    REVMAP_RESULT_OUT_OF_HOST_MEMORY = 6,
     /**
-     * A picture that cannot be made or written.
+     * The device's memory, or its budget, is full.
      */
-    REVMAP_RESULT_FRAME = 7,
+    REVMAP_RESULT_OUT_OF_DEVICE_MEMORY = 7,
+    /**
+     * The device was lost: destroy all that was made on it, and open it again.
+     */
+    REVMAP_RESULT_DEVICE_LOST = 8,
+    /**
+     * A fault of the driver, or messages of the validation layers.
+     */
+    REVMAP_RESULT_OTHER = 9,
     /**
      * A handle that is null, destroyed or of another kind.
      */
-    REVMAP_RESULT_HANDLE = 8,
+    REVMAP_RESULT_HANDLE = 10,
     /**
      * A handle that another thread uses at this moment.
      */
-    REVMAP_RESULT_BUSY = 9,
+    REVMAP_RESULT_BUSY = 11,
     /**
      * A fault of the library. The handles of the call can only be destroyed.
      */
-    REVMAP_RESULT_INTERNAL = 10,
+    REVMAP_RESULT_INTERNAL = 12,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -1008,7 +1015,7 @@ typedef struct RevmapPass {
 } RevmapPass;
 
 /**
- * What compute shaders write to.
+ * What compute shaders write to, and fragments of REVMAP_PLANES_ALL besides their attachments.
  */
 typedef struct RevmapComputeTarget {
     /**
@@ -1016,7 +1023,7 @@ typedef struct RevmapComputeTarget {
      */
     uint32_t size;
     /**
-     * Number of images: 4 for REVMAP_PLANES_ALL, else 0.
+     * Number of images: 4 for REVMAP_PLANES_ALL in compute, else 0.
      */
     uint32_t image_count;
     /**
@@ -1062,8 +1069,8 @@ typedef struct RevmapView {
 } RevmapView;
 
 /**
- * An object of a renderer; never 0. It stays the same object whatever is set, and is never
- * another's once removed.
+ * An object of one renderer, which refuses those of others; never 0. It stays the same object
+ * whatever is set, and is never another's once removed.
  */
 typedef uint64_t RevmapObject;
 
@@ -1093,7 +1100,7 @@ typedef struct RevmapStatistics {
      */
     uint64_t texture_bytes;
     /**
-     * Objects that the last prepared frame does not draw at all (compute alone).
+     * Objects that the last prepared frame does not draw at all.
      */
     uint32_t drawn_not;
     /**
@@ -1105,17 +1112,9 @@ typedef struct RevmapStatistics {
      */
     uint32_t drawn_by_hull;
     /**
-     * By rectangles of the screen.
+     * By tiles of the screen.
      */
-    uint32_t drawn_by_rectangle;
-    /**
-     * By bins of the screen.
-     */
-    uint32_t drawn_by_bins;
-    /**
-     * By beams.
-     */
-    uint32_t drawn_by_beams;
+    uint32_t drawn_by_tiles;
     /**
      * Notes that revmap_renderer_note() gives.
      */
@@ -1143,7 +1142,7 @@ uint32_t revmap_abi(void);
 /**
  * Tells what a host has to enable on a physical device. The size of requirements must be set.
  *
- * Fails with REVMAP_RESULT_DEVICE for a device that lacks something; the text says what.
+ * Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what.
  *
  * Thread: any.
  */
@@ -1158,7 +1157,7 @@ RevmapResult revmap_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_add
  * validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
  * environment.
  *
- * Fails with REVMAP_RESULT_DEVICE where there is none that has what is needed.
+ * Fails with REVMAP_RESULT_UNSUPPORTED where there is none that has what is needed.
  *
  * Thread: any.
  */
@@ -1170,7 +1169,7 @@ RevmapResult revmap_device_open(const char *choice,
  * Borrows a host's device. All handles belong together. They must stay valid until this handle and
  * all that is made with it are destroyed, and the device is idle.
  *
- * Fails with REVMAP_RESULT_DEVICE for a device that lacks something.
+ * Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something.
  *
  * Thread: any.
  */
@@ -1185,7 +1184,7 @@ RevmapResult revmap_device_borrow(const struct RevmapHostDevice *host,
 RevmapResult revmap_device_info(const struct RevmapDevice *device, struct RevmapDeviceInfo *info);
 
 /**
- * Fails with REVMAP_RESULT_DRAW if the validation layers have had anything to say since the last
+ * Fails with REVMAP_RESULT_OTHER if the validation layers have had anything to say since the last
  * call. A borrowed device's host has its own messenger, and this function always succeeds.
  *
  * Thread: any.
@@ -1221,7 +1220,7 @@ RevmapResult revmap_device_pipeline_cache(const struct RevmapDevice *device,
 RevmapResult revmap_device_destroy(struct RevmapDevice *device);
 
 /**
- * What the last call of this thread that failed has returned; REVMAP_RESULT_OK if none has.
+ * The kind of this thread's last failure; REVMAP_RESULT_OK if there was none.
  *
  * Thread: any.
  */
@@ -1325,7 +1324,7 @@ RevmapResult revmap_offscreen_destroy(struct RevmapOffscreen *offscreen);
  * Makes a profile from a closed polygon: count points, each r and z in object units. The box
  * reaches from z = 0 to z = 1 and to the given radius.
  *
- * Fails with REVMAP_RESULT_PROFILE for fewer than 3 points, a point with r < 0, no area, or
+ * Fails with REVMAP_RESULT_CONTENT for fewer than 3 points, a point with r < 0, no area, or
  * numbers that are not finite.
  *
  * Thread: any.
@@ -1340,7 +1339,8 @@ RevmapResult revmap_profile_from_points(const double (*points)[2],
  * is darker than one half over white is solid; the picture's height is one object unit. axis is a
  * RevmapAxis.
  *
- * Fails with REVMAP_RESULT_PROFILE where that is not possible.
+ * Fails with REVMAP_RESULT_FILE where that is not possible, and with REVMAP_RESULT_CONTENT where
+ * there is nothing to turn.
  *
  * Thread: any.
  */
@@ -1410,6 +1410,8 @@ RevmapResult revmap_renderer_set_lighting(struct RevmapRenderer *renderer,
  * device, large enough for every view's viewport, which begins at 0. They live until another
  * target is set and the frames recorded before are done.
  *
+ * Fails with REVMAP_RESULT_USAGE where the renderer's shaders write to no such target.
+ *
  * Thread: one at a time for a renderer.
  */
 RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
@@ -1439,8 +1441,8 @@ RevmapResult revmap_renderer_destroy(struct RevmapRenderer *renderer);
  * commands recorded for this slot before have run or were never submitted. Commands of other slots
  * that were recorded before are submitted before these.
  *
- * Fails with REVMAP_RESULT_SCENE or REVMAP_RESULT_PROFILE for what cannot be drawn: it stays as it
- * was before it was set. The text begins with the object's number.
+ * Fails with REVMAP_RESULT_CONTENT for what cannot be drawn: it stays as it was before it was set.
+ * The text begins with the object's number.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1473,8 +1475,8 @@ RevmapResult revmap_renderer_prepare_camera(struct RevmapRenderer *renderer,
  * view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
  * the commands have run.
  *
- * Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared, or objects
- * were added or removed since.
+ * Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared. What was set
+ * since then is not drawn yet.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1502,7 +1504,7 @@ RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
 /**
  * Adds an object, which is drawn from the next prepared frame on.
  *
- * Fails with REVMAP_RESULT_SCENE for values out of range.
+ * Fails with REVMAP_RESULT_CONTENT for values out of range.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1523,7 +1525,7 @@ RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObjec
 /**
  * Gives an object other values, all of them. Values that are equal cost nothing.
  *
- * Fails with REVMAP_RESULT_SCENE for values out of range.
+ * Fails with REVMAP_RESULT_CONTENT for values out of range.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1631,7 +1633,7 @@ RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
 /**
  * Makes a colour map from a PNG or JPEG file. The path is UTF-8.
  *
- * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ * Fails with REVMAP_RESULT_FILE where it cannot be read.
  *
  * Thread: any.
  */
@@ -1659,7 +1661,7 @@ RevmapResult revmap_color_map_destroy(struct RevmapColorMap *color_map);
  * Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
  * filter is a RevmapSlopeFilter.
  *
- * Fails with REVMAP_RESULT_MAP where it cannot be read.
+ * Fails with REVMAP_RESULT_FILE where it cannot be read.
  *
  * Thread: any.
  */

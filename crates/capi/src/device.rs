@@ -100,7 +100,7 @@ unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outco
 
 /// Tells what a host has to enable on a physical device. The size of requirements must be set.
 ///
-/// Fails with REVMAP_RESULT_DEVICE for a device that lacks something; the text says what.
+/// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn revmap_requirements(
 /// validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
 /// environment.
 ///
-/// Fails with REVMAP_RESULT_DEVICE where there is none that has what is needed.
+/// Fails with REVMAP_RESULT_UNSUPPORTED where there is none that has what is needed.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn revmap_device_open(
 /// Borrows a host's device. All handles belong together. They must stay valid until this handle and
 /// all that is made with it are destroyed, and the device is idle.
 ///
-/// Fails with REVMAP_RESULT_DEVICE for a device that lacks something.
+/// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -237,7 +237,7 @@ fn short(text: &str) -> [c_char; 256] {
     all
 }
 
-/// Fails with REVMAP_RESULT_DRAW if the validation layers have had anything to say since the last
+/// Fails with REVMAP_RESULT_OTHER if the validation layers have had anything to say since the last
 /// call. A borrowed device's host has its own messenger, and this function always succeeds.
 ///
 /// Thread: any.

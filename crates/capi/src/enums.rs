@@ -7,6 +7,7 @@ use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
 use revmap::profile::ProfileAxis;
 use revmap::scene::{BumpForm, Clip, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
+use revmap_searches::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
 /// Which part of a picture or a drawing is the half-plane that is turned.
 #[repr(u32)]
@@ -208,8 +209,8 @@ macro_rules! numbers {
 numbers! {
     axis: RevmapAxis => ProfileAxis { Center => ProfileAxis::Center, Left => ProfileAxis::Left }
     solver: RevmapSolver => Solver {
-        Default => Solver::DEFAULT, Linear => Solver::Linear, Relief => Solver::Relief, Secant => Solver::Secant,
-        Circle => Solver::Circle, Live => Solver::Live, Cone => Solver::Cone, Relaxed => Solver::Relaxed,
+        Default => Solver::DEFAULT, Linear => LINEAR, Relief => RELIEF, Secant => SECANT,
+        Circle => CIRCLE, Live => Solver::Live, Cone => CONE, Relaxed => RELAXED,
         Quadric => Solver::Quadric, Hull => Solver::Hull,
     }
     map_source: RevmapMapSource => Option<MapSource> {

@@ -1,14 +1,13 @@
 //! Results, and the last failure of each thread.
 
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What a function says of itself. Everything but REVMAP_RESULT_OK is a failure, which changes
-/// nothing else than the failing function's documentation says, and leaves a text for
-/// revmap_last_error_text().
+/// What a function says of itself: done, or the kind of its failure. A failure changes nothing else
+/// than the failing function's documentation says, and leaves a text for revmap_last_error_text().
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RevmapResult {
@@ -17,24 +16,28 @@ pub enum RevmapResult {
     /// Arguments that make no sense: a null pointer, a wrong size, an unknown number, a call out of
     /// order.
     Usage = 1,
-    /// A value out of its range; the text begins with its name.
-    Scene = 2,
-    /// A profile that cannot be read, or is none.
-    Profile = 3,
-    /// A texture that cannot be read.
-    Map = 4,
-    /// No Vulkan device, or one that lacks what is needed.
-    Device = 5,
-    /// A Vulkan call, or work on the device.
-    Draw = 6,
-    /// A picture that cannot be made or written.
-    Frame = 7,
+    /// A value of a scene, profile or map that cannot be drawn; the text begins with its name.
+    Content = 2,
+    /// A file that cannot be read or written; the text begins with its name.
+    File = 3,
+    /// No Vulkan device, or one that lacks a feature, a format or an extension.
+    Unsupported = 4,
+    /// More pixels, texels, copies or tables than the device or the library takes.
+    TooLarge = 5,
+    /// The host's memory is full.
+    OutOfHostMemory = 6,
+    /// The device's memory, or its budget, is full.
+    OutOfDeviceMemory = 7,
+    /// The device was lost: destroy all that was made on it, and open it again.
+    DeviceLost = 8,
+    /// A fault of the driver, or messages of the validation layers.
+    Other = 9,
     /// A handle that is null, destroyed or of another kind.
-    Handle = 8,
+    Handle = 10,
     /// A handle that another thread uses at this moment.
-    Busy = 9,
+    Busy = 11,
     /// A fault of the library. The handles of the call can only be destroyed.
-    Internal = 10,
+    Internal = 12,
 }
 
 /// Why a call fails.
@@ -59,14 +62,16 @@ impl Fault {
 
 impl From<revmap::Error> for Fault {
     fn from(error: revmap::Error) -> Self {
-        let result = match error.stage {
-            Stage::Usage => RevmapResult::Usage,
-            Stage::Scene => RevmapResult::Scene,
-            Stage::Profile => RevmapResult::Profile,
-            Stage::Map => RevmapResult::Map,
-            Stage::Device => RevmapResult::Device,
-            Stage::Draw => RevmapResult::Draw,
-            Stage::Frame | Stage::Report => RevmapResult::Frame,
+        let result = match error.kind {
+            ErrorKind::Usage => RevmapResult::Usage,
+            ErrorKind::Content => RevmapResult::Content,
+            ErrorKind::File => RevmapResult::File,
+            ErrorKind::Unsupported => RevmapResult::Unsupported,
+            ErrorKind::TooLarge => RevmapResult::TooLarge,
+            ErrorKind::OutOfHostMemory => RevmapResult::OutOfHostMemory,
+            ErrorKind::OutOfDeviceMemory => RevmapResult::OutOfDeviceMemory,
+            ErrorKind::DeviceLost => RevmapResult::DeviceLost,
+            ErrorKind::Other => RevmapResult::Other,
         };
         Self::new(result, error.to_string())
     }
@@ -102,7 +107,7 @@ fn panic_text(panic: &(dyn Any + Send)) -> String {
     )
 }
 
-/// What the last call of this thread that failed has returned; REVMAP_RESULT_OK if none has.
+/// The kind of this thread's last failure; REVMAP_RESULT_OK if there was none.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

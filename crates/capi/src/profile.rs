@@ -16,7 +16,7 @@ handle!(RevmapProfile, "profile", Arc<Profile>);
 /// Makes a profile from a closed polygon: count points, each r and z in object units. The box
 /// reaches from z = 0 to z = 1 and to the given radius.
 ///
-/// Fails with REVMAP_RESULT_PROFILE for fewer than 3 points, a point with r < 0, no area, or
+/// Fails with REVMAP_RESULT_CONTENT for fewer than 3 points, a point with r < 0, no area, or
 /// numbers that are not finite.
 ///
 /// Thread: any.
@@ -40,7 +40,8 @@ pub unsafe extern "C" fn revmap_profile_from_points(
 /// is darker than one half over white is solid; the picture's height is one object unit. axis is a
 /// RevmapAxis.
 ///
-/// Fails with REVMAP_RESULT_PROFILE where that is not possible.
+/// Fails with REVMAP_RESULT_FILE where that is not possible, and with REVMAP_RESULT_CONTENT where
+/// there is nothing to turn.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

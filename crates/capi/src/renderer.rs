@@ -7,12 +7,12 @@ pub mod statistics;
 
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
-use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, handle};
 use crate::pointers::{described, list, put, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
-use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, Renderer};
+use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, Renderer};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -21,13 +21,13 @@ use std::sync::{Arc, Mutex};
 pub struct RevmapRenderer;
 handle!(RevmapRenderer, "renderer", Arc<Mutex<Recorder>>);
 
-/// A renderer, and which of its slots may be recorded.
+/// A renderer, and what was prepared in its slots.
 pub(crate) struct Recorder {
     renderer: Renderer,
     /// Whether fragments are drawn, in a pass.
     in_pass: bool,
-    /// Whether each slot was prepared since objects came or went.
-    prepared: Vec<bool>,
+    /// The frame that each slot was prepared for.
+    prepared: Vec<Option<PreparedFrame>>,
     /// The renderer's notes that were asked for.
     notes: Vec<CString>,
 }
@@ -63,13 +63,13 @@ pub struct RevmapPass {
     pub stencil_format: vk::Format,
 }
 
-/// What compute shaders write to.
+/// What compute shaders write to, and fragments of REVMAP_PLANES_ALL besides their attachments.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RevmapComputeTarget {
     /// sizeof(RevmapComputeTarget).
     pub size: u32,
-    /// Number of images: 4 for REVMAP_PLANES_ALL, else 0.
+    /// Number of images: 4 for REVMAP_PLANES_ALL in compute, else 0.
     pub image_count: u32,
     /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
     /// pixels, as bits of floats; then a second word of each, which is the colour, packed as
@@ -104,11 +104,6 @@ impl RevmapPass {
                 stencil: self.stencil_format,
             },
         };
-        if let PassKind::RenderPass { pass, .. } = &begun
-            && *pass == vk::RenderPass::null()
-        {
-            return Err(Fault::usage("the VkRenderPass is null"));
-        }
         Ok(PassFormats {
             begun,
             samples: self.samples,
@@ -139,7 +134,7 @@ fn create(
     Ok(Handle::create(Arc::new(Mutex::new(Recorder {
         renderer,
         in_pass,
-        prepared: vec![false; frames as usize],
+        prepared: (0..frames).map(|_| None).collect(),
         notes: Vec::new(),
     }))))
 }
@@ -206,6 +201,8 @@ pub unsafe extern "C" fn revmap_renderer_set_lighting(
 /// device, large enough for every view's viewport, which begins at 0. They live until another
 /// target is set and the frames recorded before are done.
 ///
+/// Fails with REVMAP_RESULT_USAGE where the renderer's shaders write to no such target.
+///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_compute_target(
@@ -216,19 +213,14 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
     enter(|| unsafe {
         let target = read(target)?;
         let images = list(target.images, target.image_count as usize, "images")?.to_vec();
-        if target.words == vk::Buffer::null() {
-            return Err(Fault::usage("the VkBuffer of words is null"));
-        }
         let words = target.words;
         with(renderer, |r| {
-            if r.in_pass {
-                return Err(Fault::usage(
-                    "this renderer draws in a pass; make one with revmap_renderer_create_compute",
-                ));
-            }
-            r.renderer
-                .set_compute_target(ComputeTarget { words, images });
-            Ok(())
+            let target = ComputeTarget {
+                words,
+                images,
+                depths: true,
+            };
+            Ok(r.renderer.set_compute_target(target)?)
         })
     })
 }

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::samples::Samples;
 use clap::Args;
 use glam::{DQuat, DVec3};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
@@ -87,7 +87,7 @@ impl Animate {
         if let Some(folder) = &self.output {
             std::fs::create_dir_all(folder).map_err(|e| {
                 let message = format!("cannot be made ({e}); choose another folder");
-                Error::new(Stage::Frame, message).in_file(folder)
+                Error::new(ErrorKind::File, message).in_file(folder)
             })?;
         }
         let varied = self
@@ -297,11 +297,11 @@ fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
             row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
         );
     }
-    frame::atomic_file::write_bytes(Stage::Frame, path, text.as_bytes())
+    frame::atomic_file::write_bytes(path, text.as_bytes())
 }
 
 fn usage(option: &str, message: &str) -> Error {
-    Error::new(Stage::Usage, message).at_key(option)
+    Error::new(ErrorKind::Usage, message).at_key(option)
 }
 
 #[cfg(test)]
@@ -316,7 +316,11 @@ mod tests {
         let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
         assert_eq!(three.at(0.0), "camera.eye=[1.0, 2.0, -3.0]");
         for bad in ["a", "a=1", "a=1:b", "a=[1,2]:3", "a=nan:1"] {
-            assert_eq!(Vary::parse(bad).err().unwrap().stage, Stage::Usage, "{bad}");
+            assert_eq!(
+                Vary::parse(bad).err().unwrap().kind,
+                ErrorKind::Usage,
+                "{bad}"
+            );
         }
     }
 }

@@ -4,7 +4,7 @@ use super::options::named;
 use super::output;
 use super::progress::Progress;
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{BakeOptions, DisplacementMap, MapSource, Projection, ShapeMap};
 use revmap::profile::{Profile, ProfileAxis, ProfileOptions};
 use revmap::scene::Object;
@@ -134,7 +134,7 @@ impl Bake {
 fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
     match Projection::of_file(file) {
         Some(other) if other != projection => Err(Error::new(
-            Stage::Usage,
+            ErrorKind::Usage,
             format!(
                 "is named {}; give it the name or the option of the other",
                 other.name()
@@ -173,8 +173,8 @@ mod tests {
             Path::new("a/vase.arc.exr")
         );
         assert_eq!(
-            name(Projection::Arc, "vase.planar.png").unwrap_err().stage,
-            Stage::Usage
+            name(Projection::Arc, "vase.planar.png").unwrap_err().kind,
+            ErrorKind::Usage
         );
         assert_eq!(
             beside(Path::new("a/vase.png")),

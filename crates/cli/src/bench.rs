@@ -6,7 +6,7 @@ use super::options::named;
 use super::output;
 use super::progress::Progress;
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::DrawStage;
 use revmap_lab::method::{Method, MethodSettings};
@@ -358,7 +358,7 @@ impl Session {
         ));
         if measured.interrupted {
             return Err(Error::new(
-                Stage::Report,
+                ErrorKind::Other,
                 "interrupted; it holds what was measured until then, run the command again for the rest",
             )
             .in_file(&self.out));

@@ -2,7 +2,7 @@
 
 use super::output;
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame;
 use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
 use serde_json::json;
@@ -39,7 +39,7 @@ impl Compare {
         for file in [&self.a, &self.b] {
             if !output::has_ending(file, "exr") {
                 return Err(Error::new(
-                    Stage::Usage,
+                    ErrorKind::Usage,
                     "holds no depth and no normals; give an .exr file that `revmap render` wrote",
                 )
                 .in_file(file));
@@ -64,7 +64,7 @@ impl Compare {
         }
         match difference {
             Some(difference) if self.exact => Err(Error::new(
-                Stage::Frame,
+                ErrorKind::Other,
                 format!(
                     "the frames differ, first in {difference}; draw them again or leave out --exact"
                 ),

@@ -1,6 +1,6 @@
 //! Ctrl-C: the first ends long work early and in order, the second at once.
 
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -23,7 +23,7 @@ pub fn flag() -> Result<&'static AtomicBool> {
     match set {
         Ok(()) => Ok(&STOP),
         Err(why) => Err(Error::new(
-            Stage::Report,
+            ErrorKind::Other,
             format!("interrupts cannot be watched for ({why}); run it again"),
         )),
     }

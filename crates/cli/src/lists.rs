@@ -2,7 +2,7 @@
 
 use super::options::{MethodParser, STAGES, Tracing, named, size, tolerance};
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::file::{self, SceneFile};
 use revmap::settings::{DrawStage, Tolerance, name_of};
@@ -226,11 +226,11 @@ impl Lists {
     /// Refuses the reference as a stage beside a picture that it would be compared with.
     ///
     /// # Errors
-    /// [`Stage::Usage`].
+    /// [`ErrorKind::Usage`].
     pub fn check(&self) -> Result<()> {
         if self.stage.contains(&Tracing::Reference) {
             return Err(Error::new(
-                Stage::Usage,
+                ErrorKind::Usage,
                 format!(
                     "{} is what all others are compared with; give fragment or compute",
                     name_of(&STAGES, &Tracing::Reference)

@@ -9,6 +9,7 @@ mod bench;
 mod chart;
 mod compare;
 mod devices;
+mod failure;
 mod interrupt;
 mod levels;
 mod lists;
@@ -95,10 +96,7 @@ fn main() -> ExitCode {
     }
     match catch_unwind(AssertUnwindSafe(|| program.command.run())) {
         Ok(Ok(())) => ExitCode::SUCCESS,
-        Ok(Err(error)) => {
-            output::complain(&error.to_string());
-            ExitCode::from(error.exit_code())
-        }
+        Ok(Err(error)) => failure::report(error),
         Err(cause) => {
             let text = cause.downcast_ref::<String>().map(String::as_str);
             let text = text

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
+use revmap::settings::{DrawStage, Planes, Tolerance};
 use revmap_lab::method::{Method, MethodSettings};
 
 /// The largest width and height of a picture.
@@ -150,8 +150,10 @@ fn read_by(method: Method) -> &'static [&'static str] {
             "--map-source",
             "--map-format",
         ],
-        Method::Search(Solver::Relaxed) => &["--solver", "--device", "--max-steps", "--map-rows"],
-        Method::Search(Solver::Cone) => &["--solver", "--device", "--map-rows"],
+        _ if method.reads_own_table() && method.default_steps(false) > 1 => {
+            &["--solver", "--device", "--max-steps", "--map-rows"]
+        }
+        _ if method.reads_own_table() => &["--solver", "--device", "--map-rows"],
         Method::Search(_) => &["--solver", "--device", "--tolerance"],
         Method::Floor => &["--solver", "--device", "--tolerance"],
         Method::Mesh { .. } | Method::MeshLevels => &["--solver", "--device"],

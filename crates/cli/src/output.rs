@@ -1,6 +1,6 @@
 //! What the program says and where it writes.
 
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,11 +40,11 @@ fn flat(text: &str) -> String {
 /// `endings`, none is named twice, none is one of the `inputs`, and each can be written.
 ///
 /// # Errors
-/// [`Stage::Usage`] for the names, [`Stage::Frame`] for what cannot be written.
+/// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for what cannot be written.
 pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]) -> Result<()> {
     for (i, file) in files.iter().enumerate() {
         let usage = |message: String| {
-            Error::new(Stage::Usage, message)
+            Error::new(ErrorKind::Usage, message)
                 .in_file(file)
                 .at_key(option)
         };
@@ -69,7 +69,7 @@ pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]
 /// Refuses to write any of `files` over what was read.
 ///
 /// # Errors
-/// [`Stage::Usage`], naming the file.
+/// [`ErrorKind::Usage`], naming the file.
 pub fn spare<'a>(
     inputs: impl Iterator<Item = &'a Path>,
     files: &[PathBuf],
@@ -82,7 +82,7 @@ pub fn spare<'a>(
     match files.iter().find(over) {
         None => Ok(()),
         Some(file) => Err(
-            Error::new(Stage::Usage, "is read as well; write to another file")
+            Error::new(ErrorKind::Usage, "is read as well; write to another file")
                 .in_file(file)
                 .at_key(option),
         ),
@@ -102,7 +102,7 @@ fn same(a: &Path, b: &Path) -> bool {
 /// Tries to make a file beside `file`, as writing will.
 fn writable(file: &Path, option: &str) -> Result<()> {
     let fail = |message: String| {
-        Error::new(Stage::Frame, message)
+        Error::new(ErrorKind::File, message)
             .in_file(file)
             .at_key(option)
     };

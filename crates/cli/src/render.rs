@@ -6,7 +6,7 @@ use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
 use revmap::antialias;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::{self, Frame};
 use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
 use revmap::scene::file::SceneFile;
@@ -356,7 +356,8 @@ fn write(frame: &Frame, file: &Path) -> Result<()> {
 
 /// A failure while drawing, with the device's name, which may be the reason.
 fn on(device: &str, mut error: Error) -> Error {
-    if error.stage == Stage::Draw {
+    use ErrorKind::{DeviceLost, Other, OutOfDeviceMemory, Unsupported};
+    if [DeviceLost, Other, OutOfDeviceMemory, Unsupported].contains(&error.kind) {
         error.message = format!("{} (on {device})", error.message);
     }
     error

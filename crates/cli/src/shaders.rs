@@ -1,18 +1,22 @@
 //! `revmap shaders`: what the driver's compiler says of each pipeline.
 
+mod techniques;
+
 use super::options::named;
 use super::output;
 use clap::Args;
-use revmap::gpu::{CompiledShader, DeviceReport, compiled_shaders};
+use revmap::gpu::DeviceReport;
+use revmap::gpu::compiler::{Executable, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
 use serde_json::{Map, Value, json};
+use techniques::techniques;
 
 /// Names of the searches.
-const SOLVERS: [(&str, Solver); Solver::ALL.len() + 1] = {
-    let mut all = [("default", Solver::DEFAULT); Solver::ALL.len() + 1];
+const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 1] = {
+    let mut all = [("default", Solver::DEFAULT); revmap_searches::ALL.len() + 1];
     let mut i = 0;
-    while i < Solver::ALL.len() {
-        all[i + 1] = (Solver::ALL[i].name(), Solver::ALL[i]);
+    while i < revmap_searches::ALL.len() {
+        all[i + 1] = (revmap_searches::ALL[i].name(), revmap_searches::ALL[i]);
         i += 1;
     }
     all
@@ -65,17 +69,19 @@ const SHOWN: [&str; 9] = [
 impl Shaders {
     pub fn run(self) -> revmap::Result<()> {
         let solvers = if self.solver.is_empty() {
-            Solver::ALL.to_vec()
+            revmap_searches::ALL.to_vec()
         } else {
             self.solver
         };
-        let (device, shaders) = compiled_shaders(self.device.as_deref(), &self.stage, &solvers)?;
+        let compiler = PipelineCompiler::open(self.device.as_deref())?;
+        let shaders = compiled(&compiler, &self.stage, &solvers)?;
+        let device = &compiler.report;
         if self.json {
-            output::json(&as_json(&device, &shaders));
+            output::json(&as_json(device, &shaders));
             return Ok(());
         }
         let mut said: Vec<&str> = Vec::new();
-        for (name, _) in shaders.iter().flat_map(|s| &s.statistics) {
+        for (name, _) in shaders.iter().flat_map(|s| &s.executable.statistics) {
             if !said.contains(&name.as_str()) {
                 said.push(name);
             }
@@ -118,20 +124,67 @@ impl Shaders {
     }
 }
 
+/// A shader, and the first technique, stage and search that it is compiled for.
+struct CompiledShader {
+    technique: &'static str,
+    stage: DrawStage,
+    solver: Solver,
+    path: String,
+    executable: Executable,
+}
+
+/// The shaders of every technique, by these stages and searches; those of a pipeline that several use
+/// once, where it is used first.
+fn compiled(
+    compiler: &PipelineCompiler,
+    stages: &[DrawStage],
+    solvers: &[Solver],
+) -> revmap::Result<Vec<CompiledShader>> {
+    let mut shaders = Vec::new();
+    let mut known = Vec::new();
+    for (technique, look) in techniques()? {
+        for &stage in stages {
+            for &solver in solvers {
+                for choice in compiler.pipelines(&look, stage, solver) {
+                    if known.contains(&choice) {
+                        continue;
+                    }
+                    known.push(choice);
+                    let executables = compiler.compile(choice, stage, look.planes)?;
+                    shaders.extend(executables.into_iter().map(|executable| CompiledShader {
+                        technique,
+                        stage,
+                        solver,
+                        path: choice.path(),
+                        executable,
+                    }));
+                }
+            }
+        }
+    }
+    Ok(shaders)
+}
+
 fn words(shader: &CompiledShader) -> [&str; 6] {
     [
         shader.technique,
         shader.stage.name(),
         shader.solver.name(),
         &shader.path,
-        &shader.shader,
-        &shader.module,
+        &shader.executable.shader,
+        &shader.executable.module,
     ]
 }
 
 /// The statistics of these names; empty where one is not said.
 fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
-    let value = |name: &&str| shader.statistics.iter().find(|(known, _)| known == name);
+    let value = |name: &&str| {
+        shader
+            .executable
+            .statistics
+            .iter()
+            .find(|(known, _)| known == name)
+    };
     let text = |name| value(name).map_or(String::new(), |(_, value)| value.to_string());
     names.iter().map(text).collect()
 }
@@ -168,7 +221,7 @@ fn table(head: &[String], rows: &[Vec<String>]) {
 fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {
     let shader = |shader: &CompiledShader| {
         let [technique, stage, solver, path, name, module] = words(shader);
-        let said = shader.statistics.iter();
+        let said = shader.executable.statistics.iter();
         let said = said.map(|(name, value)| (name.clone(), json!(value)));
         json!({
             "technique": technique,
@@ -177,7 +230,7 @@ fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {
             "path": path,
             "shader": name,
             "module": module,
-            "subgroup_size": shader.subgroup_size,
+            "subgroup_size": shader.executable.subgroup_size,
             "statistics": said.collect::<Map<_, _>>(),
         })
     };

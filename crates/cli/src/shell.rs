@@ -3,7 +3,7 @@
 use super::output;
 use clap::{Args, Command};
 use clap_complete::Shell;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -43,7 +43,7 @@ impl Man {
         let Some(folder) = self.output else {
             let mut page = Vec::new();
             let rendered = clap_mangen::Man::new(program).render(&mut page);
-            rendered.map_err(|e| Error::new(Stage::Frame, format!("no manual page: {e}")))?;
+            rendered.map_err(|e| Error::new(ErrorKind::File, format!("no manual page: {e}")))?;
             print(&page);
             return Ok(());
         };
@@ -51,7 +51,7 @@ impl Man {
             .and_then(|()| clap_mangen::generate_to(program, &folder))
             .map_err(|e| {
                 let message = format!("cannot be written ({e}); choose another folder");
-                Error::new(Stage::Frame, message).in_file(&folder)
+                Error::new(ErrorKind::File, message).in_file(&folder)
             })?;
         output::result(&format!(
             "{}: revmap.1 and a page of each command",

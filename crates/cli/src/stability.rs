@@ -5,7 +5,7 @@ use super::options::{MethodParser, SOLVERS};
 use super::output;
 use super::progress::Progress;
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::{Solver, name_of};
 use revmap_lab::method::Method;
@@ -14,6 +14,7 @@ use revmap_lab::report::machine::Machine;
 use revmap_lab::stability::case::SOLVERS as USUAL;
 use revmap_lab::stability::run::{Plan, run};
 use revmap_lab::stability::{cases, random, report};
+use revmap_searches::CIRCLE;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -111,14 +112,14 @@ impl Stability {
         }
         if stop.load(Ordering::Relaxed) {
             let message = "interrupted; it holds what was drawn until then, run the command again for the rest";
-            return Err(Error::new(Stage::Report, message).in_file(out));
+            return Err(Error::new(ErrorKind::Other, message).in_file(out));
         }
         if !failures.is_empty() {
             let message = format!(
                 "the default search failed {} pictures that are not known to fail; see report.html",
                 failures.len()
             );
-            return Err(Error::new(Stage::Report, message).in_file(out));
+            return Err(Error::new(ErrorKind::Other, message).in_file(out));
         }
         Ok(())
     }
@@ -152,12 +153,12 @@ impl Stability {
             return Ok(());
         }
         let message = format!("{} of {drawn} random scenes failed", failures.len());
-        Err(Error::new(Stage::Report, message).in_file(out))
+        Err(Error::new(ErrorKind::Other, message).in_file(out))
     }
 
     fn solvers(&self) -> Result<Vec<Solver>> {
         if self.solver.is_empty() {
-            let quick = [Solver::Circle, Solver::DEFAULT];
+            let quick = [CIRCLE, Solver::DEFAULT];
             return Ok(if self.quick {
                 quick.to_vec()
             } else {
@@ -167,7 +168,7 @@ impl Stability {
         let search = |method: &Method| {
             method.solver().ok_or_else(|| {
                 Error::new(
-                    Stage::Usage,
+                    ErrorKind::Usage,
                     format!("{method} is no search; give searches"),
                 )
                 .at_key("--solver")

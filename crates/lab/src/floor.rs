@@ -6,7 +6,7 @@
 //! Its shaders are compiled with the feature `shaderc`: the renderer's own, with what stands in
 //! `shaders/floor/` in place of the search. The renderer holds nothing of them.
 
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::scene::{Scene, Shadow};
 
@@ -21,7 +21,7 @@ pub fn is_available() -> bool {
 /// The device with the floor's shaders in place of the search's.
 ///
 /// # Errors
-/// [`Stage::Usage`] where the program was built without `shaderc`; of Vulkan.
+/// [`ErrorKind::Usage`] where the program was built without `shaderc`; of Vulkan.
 pub fn device(device: &Device) -> Result<Device> {
     if !is_available() {
         return refused("this program was built without the feature `shaderc`, which compiles it");
@@ -37,7 +37,7 @@ pub fn device(device: &Device) -> Result<Device> {
 /// What the floor is not made for.
 ///
 /// # Errors
-/// [`Stage::Usage`] for shadows and for replicas.
+/// [`ErrorKind::Usage`] for shadows and for replicas.
 pub fn check(scene: &Scene) -> Result<()> {
     if scene.shadow == Shadow::Off && scene.objects.iter().all(|o| o.repeat == [1; 3]) {
         return Ok(());
@@ -46,28 +46,28 @@ pub fn check(scene: &Scene) -> Result<()> {
 }
 
 fn refused<T>(why: &str) -> Result<T> {
-    Err(Error::new(Stage::Usage, format!("no floor: {why}")).at_key("--solver"))
+    Err(Error::new(ErrorKind::Usage, format!("no floor: {why}")).at_key("solver"))
 }
 
 /// The floor's module in place of a search's; `None` of boxes' vertices and of lists of tiles.
 fn words(file: &str, macros: &[(&str, &str)]) -> Result<Option<Vec<u32>>> {
     let of = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
-    if file != "hull.vert" && (file.ends_with(".vert") || of("SEARCH").is_none()) {
+    let cells = file == "proxy_cells.vert" && of("CLIPPED").is_none();
+    if !cells && (file.ends_with(".vert") || of("SEARCH").is_none()) {
         return Ok(None);
     }
-    // Contours that do not close are drawn by another search, whose vertices hand over other things.
+    // Contours that do not close are drawn by another search, whose vertices pass other values.
     if of("SEARCH").is_some_and(|search| search != "SEARCH_QUADRIC") {
         return refused("the default search cannot draw an object, and another takes its place");
     }
     let output = of("OUTPUT").unwrap_or("OUTPUT_COLOR");
-    let dispatch = of("DISPATCH").unwrap_or("DISPATCH_RECTANGLE");
     // Every plane is stored by one module, which shades textures or not.
     let textured = if output == "OUTPUT_PLANES" {
         "1"
     } else {
         of("TEXTURED").unwrap_or("0")
     };
-    let name = format!("{file} {output} {dispatch} {textured}");
+    let name = format!("{file} {output} {textured}");
     match MODULES.iter().find(|(known, _)| *known == name) {
         Some((_, words)) => Ok(Some(words.to_vec())),
         None => refused(&format!("there is no {name}")),

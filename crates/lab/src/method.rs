@@ -1,6 +1,6 @@
 //! What is measured: a search of [`revmap`], the mesh baseline, or the floor.
 
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
 use std::fmt;
@@ -32,11 +32,11 @@ impl Method {
 
     /// Every search, in the order in which reports list them. Meshes are as many as there are
     /// numbers of segments and rings, and not among them.
-    pub const ALL: [Self; Solver::ALL.len()] = {
-        let mut all = [Self::DEFAULT; Solver::ALL.len()];
+    pub const ALL: [Self; revmap_searches::ALL.len()] = {
+        let mut all = [Self::DEFAULT; revmap_searches::ALL.len()];
         let mut i = 0;
         while i < all.len() {
-            all[i] = Self::Search(Solver::ALL[i]);
+            all[i] = Self::Search(revmap_searches::ALL[i]);
             i += 1;
         }
         all
@@ -51,12 +51,12 @@ impl Method {
     /// A mesh of so many segments around the axis and rings along the meridian.
     ///
     /// # Errors
-    /// [`Stage::Usage`] below 3 segments or 2 rings, or beyond [`Method::MOST_QUADS`].
+    /// [`ErrorKind::Usage`] below 3 segments or 2 rings, or beyond [`Method::MOST_QUADS`].
     pub fn mesh(segments: u32, rings: u32) -> Result<Self> {
         let quads = u64::from(segments) * u64::from(rings);
         if segments < 3 || rings < 2 || quads > Self::MOST_QUADS {
             return Err(Error::new(
-                Stage::Usage,
+                ErrorKind::Usage,
                 format!(
                     "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 \
                      rings, and at most {} of both together",
@@ -104,10 +104,10 @@ impl Method {
         }
     }
 
-    /// As [`Solver::is_of_cones`]; a mesh is not.
+    /// As [`Solver::reads_own_table`]; a mesh does not.
     #[must_use]
-    pub const fn is_of_cones(self) -> bool {
-        matches!(self, Self::Search(solver) if solver.is_of_cones())
+    pub const fn reads_own_table(self) -> bool {
+        matches!(self, Self::Search(solver) if solver.reads_own_table())
     }
 
     /// As [`Solver::reads_map`]; a mesh is made from the boundary itself.
@@ -128,7 +128,7 @@ impl Method {
 
     /// As [`Solver::may_run_out`]; a mesh makes no steps.
     #[must_use]
-    pub const fn may_run_out(self) -> bool {
+    pub fn may_run_out(self) -> bool {
         matches!(self, Self::Search(solver) if solver.may_run_out())
     }
 
@@ -179,7 +179,7 @@ impl FromStr for Method {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if let Ok(solver) = text.parse() {
+        if let Ok(solver) = revmap_searches::named(text) {
             return Ok(Self::Search(solver));
         }
         match text {
@@ -194,10 +194,10 @@ impl FromStr for Method {
         match numbers {
             Some((segments, rings)) => Self::mesh(segments, rings),
             None => Err(Error::new(
-                Stage::Usage,
+                ErrorKind::Usage,
                 format!(
                     "{text:?} is no search; give one of {}, a mesh as mesh:64x128, or floor",
-                    Solver::ALL.map(Solver::name).join(", ")
+                    revmap_searches::ALL.map(Solver::name).join(", ")
                 ),
             )),
         }
@@ -307,7 +307,7 @@ mod tests {
             "",
         ] {
             let error = bad.parse::<Method>().unwrap_err();
-            assert_eq!(error.stage, Stage::Usage, "{bad}");
+            assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
             assert!(!error.message.contains('\n'), "{error}");
         }
     }
@@ -325,6 +325,9 @@ mod tests {
             ..Settings::exact()
         };
         assert_eq!(Settings::from(&settings), wanted);
-        assert_eq!(Method::ALL.map(|m| m.solver().unwrap()), Solver::ALL);
+        assert_eq!(
+            Method::ALL.map(|m| m.solver().unwrap()),
+            revmap_searches::ALL
+        );
     }
 }

@@ -53,7 +53,7 @@ pub use solid::Surface;
 use field::Field;
 use glam::DVec3;
 use parts::{Part, Parts};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::profile::Profile;
 use revmap::scene::{Placement, Scene};
 use solid::{LocalHit, Solid};
@@ -116,9 +116,8 @@ impl Reference {
     /// Prepares all objects of a scene.
     ///
     /// # Errors
-    /// [`Stage::Profile`] when a profile has no surface; [`Stage::Scene`] when a placement is no
-    /// placement (a scale that is not positive, a rotation that is zero, a number that is not
-    /// finite).
+    /// [`ErrorKind::Content`] when a profile has no surface, or a placement is no placement (a
+    /// scale that is not positive, a rotation that is zero, a number that is not finite).
     pub fn new(scene: &Scene) -> Result<Self> {
         let mut fields: Vec<(*const Profile, Arc<Field>)> = Vec::new();
         let mut parts = Vec::new();
@@ -267,7 +266,7 @@ fn within(part: [f64; 2]) -> [f64; 2] {
 fn prepare(profile: &Profile) -> Result<Field> {
     Field::new(&profile.outline).ok_or_else(|| {
         Error::new(
-            Stage::Profile,
+            ErrorKind::Content,
             "the profile has no surface; give one with a solid part off the axis",
         )
     })
@@ -279,7 +278,7 @@ fn checked(placement: &Placement) -> Result<Placement> {
         rotation,
         scale,
     } = *placement;
-    let wrong = |what: &str| Err(Error::new(Stage::Scene, what));
+    let wrong = |what: &str| Err(Error::new(ErrorKind::Content, what));
     if !(position.is_finite() && rotation.is_finite() && scale.is_finite()) {
         return wrong("its placement is not finite; give numbers");
     }

@@ -399,7 +399,7 @@ fn impossible_scenes_are_refused() {
         &|_, _| {},
     )
     .unwrap_err();
-    assert_eq!(error.stage, Stage::Frame);
+    assert_eq!(error.kind, ErrorKind::TooLarge);
 }
 
 mod crowds;

@@ -1,11 +1,17 @@
-//! [`shaderc`], re-exported, and how revmap compiles its GLSL. This crate's build script adds the
-//! archives that Debian's and Ubuntu's `libshaderc-dev` leave out of `libshaderc_combined.a`; where
-//! shaderc is whole it adds nothing.
+//! [`shaderc`](https://docs.rs/shaderc), re-exported, and how revmap compiles its GLSL. This crate's
+//! build script adds the archives that Debian's and Ubuntu's `libshaderc-dev` leave out of
+//! `libshaderc_combined.a`; where shaderc is whole it adds nothing.
+//!
+//! Without the feature `shaderc` nothing is compiled, and [`modules`] reads what is kept.
 
+pub mod modules;
+
+#[cfg(feature = "shaderc")]
 pub use shaderc::*;
 
 /// SPIR-V of the GLSL `text` of an entry file; the end of the file's name says which stage it is.
 /// Warnings are errors. `include` gives the path and the text of what a directive names.
+#[cfg(feature = "shaderc")]
 pub fn spirv(
     compiler: &Compiler,
     (file, text): (&str, &str),

@@ -98,15 +98,15 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Draws one frame: `before` records outside of the pass, `within` after the host's meshes.
-    /// Waits for the frame before the last alone.
-    pub fn frame(
+    /// Draws one frame: `before` records outside of the pass, `within` after the host's meshes, with
+    /// what `before` returned. Waits for the frame before the last alone.
+    pub fn frame<T>(
         &mut self,
         clip_from_world: DMat4,
         towards_light: Vec3,
         meshes: &[Mesh<'_>],
-        before: impl FnOnce(vk::CommandBuffer, usize) -> Fallible<()>,
-        within: impl FnOnce(vk::CommandBuffer, usize),
+        before: impl FnOnce(vk::CommandBuffer, usize) -> Fallible<T>,
+        within: impl FnOnce(vk::CommandBuffer, &T) -> Fallible<()>,
     ) -> Fallible<()> {
         let device = &self.host.device;
         let slot = self.next;
@@ -119,7 +119,7 @@ impl<'a> Stage<'a> {
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
             device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
-            before(cmd, slot)?;
+            let prepared = before(cmd, slot)?;
             self.begin_pass(cmd);
             device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.pipeline);
             for mesh in meshes {
@@ -134,7 +134,7 @@ impl<'a> Stage<'a> {
                 device.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
                 device.cmd_draw(cmd, mesh.count, 1, 0, 0);
             }
-            within(cmd, slot);
+            within(cmd, &prepared)?;
             if self.options.dynamic {
                 device.cmd_end_rendering(cmd);
             } else {

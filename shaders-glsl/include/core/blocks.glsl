@@ -1,4 +1,4 @@
-// What the CPU tells the GPU: once a frame, once a batch, once an instance. Mirrored by src/gpu/blocks.rs;
+// What the CPU gives the GPU for each frame, object and instance. Mirrored by src/gpu/blocks.rs;
 // a test compares the offsets.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
@@ -39,9 +39,10 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; its clip x
     vec4 origin;      // of the ray of pixel (0, 0) (pixel_ray.glsl), object space, from the axis at z = 0; w: clip y of the box's middle
+    uvec4 solid;      // x: number of its solid
 };
 
-// A batch: instances that share shape, look and variant.
+// An object: what its instances share.
 struct Solid {
     vec4 map;        // columns, rows, texel h in object units, factor from stored to object units
     vec4 bounds;     // R; clip radius about the axis; clip z, low and high
@@ -53,20 +54,30 @@ struct Solid {
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
     uvec4 instances; // first, number, index of the shape map among those of shadows
     uvec4 patches;    // of the quadric search's tables (patch_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
-                     // of the cone search's: where they begin, rows, bits of the largest radius
-    uvec4 hull;      // first frustum; first vector of the nodes that beams are asked against, of the listed patches, of the rows of sides
-    Instance single; // the batch's instance, where it has but one, or one of a few that beams are sent to
+                     // of another search's: where they begin, three words of its own
+    uvec4 hull;      // first frustum; unused; first vector of the listed patches, of the rows of sides
 };
 
-layout(set = 0, binding = 1, std140) uniform BatchBlock {
-    Solid batch_solid;
+// As far apart as places in a uniform buffer are on any device.
+struct SolidPlace {
+    Solid solid;
+    uvec4 padding[5];
+};
+
+layout(set = 0, binding = 1, std430) readonly buffer SolidBlock {
+    SolidPlace solids[];
+};
+
+// The only one that a draw or dispatch has.
+layout(set = 0, binding = 6, std140) uniform OwnSolid {
+    Solid own_solid;
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
-// The batch's, or one that may throw a shadow on it.
+// The instance's, or one that may throw a shadow on it.
 Solid solid;
 
 void take_frame()
@@ -82,23 +93,30 @@ void take_frame()
     frame.pixels = frame_block.pixels;
 }
 
-void take_solid()
+// The same way from either buffer.
+#define TAKE_SOLID(from) \
+    solid.map = from.map; \
+    solid.bounds = from.bounds; \
+    solid.offset = from.offset; \
+    solid.axis = from.axis; \
+    solid.albedo = from.albedo; \
+    solid.specular = from.specular; \
+    solid.texturing = from.texturing; \
+    solid.cells = from.cells; \
+    solid.instances = from.instances; \
+    solid.patches = from.patches; \
+    solid.hull = from.hull
+
+void take_solid(uint number)
 {
-    solid.map = batch_solid.map;
-    solid.bounds = batch_solid.bounds;
-    solid.offset = batch_solid.offset;
-    solid.axis = batch_solid.axis;
-    solid.albedo = batch_solid.albedo;
-    solid.specular = batch_solid.specular;
-    solid.texturing = batch_solid.texturing;
-    solid.cells = batch_solid.cells;
-    solid.instances = batch_solid.instances;
-    solid.patches = batch_solid.patches;
-    solid.hull = batch_solid.hull;
-    solid.single.position_sx = batch_solid.single.position_sx;
-    solid.single.rotation = batch_solid.single.rotation;
-    solid.single.scale_depth = batch_solid.single.scale_depth;
-    solid.single.origin = batch_solid.single.origin;
+    if (ONE_SOLID != 0u) {
+        TAKE_SOLID(own_solid);
+        // Lengths of loops: lavapipe 22 takes uniforms that loops depend on for constants, and crashes over it.
+        solid.offset.w = solids[number].solid.offset.w;
+        solid.cells = solids[number].solid.cells;
+    } else {
+        TAKE_SOLID(solids[number].solid);
+    }
 }
 
 #endif

@@ -99,25 +99,6 @@ vec4 sides_of_box()
     return vec4(-solid.bounds.xx, solid.bounds.xx) - solid.axis.xyxy;
 }
 
-const vec2 EVERYWHERE = vec2(-1e30, 1e30);
-
-// Takes the ray from span.x to span.y where that is less. False: nothing is left of it.
-bool narrow(inout Meridian m, vec2 span)
-{
-    m.s_end = min(m.s_end, span.y - m.t_start);
-    float later = span.x - m.t_start;
-    if (later > 0.0) {
-        m.o += later * m.v;
-        m.b = dot(m.o.xy, m.v.xy);
-        m.c = dot(m.o.xy, m.o.xy);
-        m.t_start = span.x;
-        m.s_end -= later;
-        m.face_in = FACE_NONE;
-        m.from_eye = false;
-    }
-    return m.s_end >= 0.0;
-}
-
 vec3 face_normal(uint face, vec3 v, float sense)
 {
     return sense * sign(v) * vec3(face == FACE_X, face == FACE_Y, face != FACE_X && face != FACE_Y);

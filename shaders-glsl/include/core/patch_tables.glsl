@@ -4,7 +4,7 @@
 //   count;
 // - records, two vectors each, from solid.patches.y on: a patch's quadric, its guard;
 // - from solid.patches.z on, two records a vector: their ranges of z.
-// Of the envelope of a map BEAM_NODES nodes alone. Frusta of hulls stand by themselves (frusta.glsl).
+// Frusta of cells stand by themselves (proxy_cells.vert).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
 #include "core/shape_map.glsl"
@@ -13,7 +13,8 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
 
-// The batch's own tables alone: software drivers gather from uniform buffers several times as fast.
+// The only tables that a draw or dispatch reads; of listed patches these. Software drivers gather from uniform buffers
+// several times as fast.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[OWN_VECTORS];
 };
@@ -23,9 +24,9 @@ const uint RUN_BITS = 12u;
 bool takes_own_tables()
 {
 #if SHADOWED
-    return OWN_TABLES != 0 && !casts;
+    return OWN_TABLES != 0u && !casts;
 #else
-    return OWN_TABLES != 0;
+    return OWN_TABLES != 0u;
 #endif
 }
 
@@ -43,6 +44,12 @@ vec4 patch_vector(uint at)
         return uintBitsToFloat(own_patch_tables[at]);
     }
     return uintBitsToFloat(patch_tables[solid.patches.x + at]);
+}
+
+// A vector of the patches that lists are made from.
+uvec4 listed_table(uint at)
+{
+    return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[solid.hull.z + at];
 }
 
 // Least and largest r^2.

@@ -66,7 +66,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
 #if TEXTURED || OUTPUT == OUTPUT_PLANES
     // In the replica's own space: reflected and shrunk to its cell.
     vec3 count = vec3(solid.cells.xyz);
-    vec3 n = unit(CELLS == 0u ? hit.normal : hit.normal * hit.sense / count);
+    vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
 #endif
@@ -75,7 +75,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
         vec3 normal = unit(hit.normal);
         vec3 right = footprint(v, rays.dir_x, normal, t) * profile_units();
         vec3 down = footprint(v, rays.dir_y, normal, t) * profile_units();
-        if (CELLS != 0u) {
+        if (REPLICAS != 0u) {
             right *= hit.sense * count;
             down *= hit.sense * count;
         }
@@ -84,7 +84,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
         }
         if (BUMP != BUMP_OFF) {
             vec3 tilted = bumped(n, hit.point, c, right, down);
-            tilted = normalize((CELLS == 0u ? tilted : tilted * hit.sense * count) / scale);
+            tilted = normalize((REPLICAS == 0u ? tilted : tilted * hit.sense * count) / scale);
             shaded = solid.texturing.z == 0.0 ? turned : tilted;
         }
     }

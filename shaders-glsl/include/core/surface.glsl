@@ -7,7 +7,7 @@
 
 float offset_width(float z)
 {
-    if (BEVELED == 0) {
+    if (!bool(BEVELED)) {
         return solid.offset.x;
     }
     return solid.offset.x + solid.offset.y * min(1.0 - z, solid.offset.z);
@@ -16,7 +16,7 @@ float offset_width(float z)
 // dw/dz
 float offset_slope(float z)
 {
-    return BEVELED != 0 && 1.0 - z < solid.offset.z ? -solid.offset.y : 0.0;
+    return bool(BEVELED) && 1.0 - z < solid.offset.z ? -solid.offset.y : 0.0;
 }
 
 float field(vec2 rz)

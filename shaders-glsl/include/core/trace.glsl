@@ -3,60 +3,12 @@
 #define TRACE_GLSL
 #include "core/hit.glsl"
 #include "core/pixel_ray.glsl"
-#if SEARCH == SEARCH_CIRCLE
-#include "search/circle.glsl"
-#elif SEARCH == SEARCH_LIVE
+#if SEARCH == SEARCH_LIVE
 #include "search/live.glsl"
-#elif SEARCH == SEARCH_LINEAR
-#include "search/linear.glsl"
 #elif SEARCH == SEARCH_QUADRIC
 #include "search/quadric.glsl"
-#elif SEARCH == SEARCH_CONE
-#include "search/cone.glsl"
-#elif SEARCH == SEARCH_RELAXED
-#include "search/relaxed.glsl"
-#endif
-
-// Whether rays are known to meet nothing before and after some t. A stage that knows says so before it includes this
-// file.
-#ifndef SPANS
-#define SPANS false
-#endif
-
-#if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_BEAMS
-// Of a ray that is known to begin outside of the solid, none of which the box cuts: patches alone, between two t.
-bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
-{
-    float t_in = span.x;
-    float t_out = span.y;
-    // Above the ceiling and below the floor another sheet of a quadric may pass the guard.
-    float per_z = 1.0 / (abs(v.z) > 1e-20 ? v.z : 1e-20);
-    float low = (solid.bounds.z - eye.z) * per_z;
-    float high = (solid.bounds.w - eye.z) * per_z;
-    t_in = max(t_in, min(low, high));
-    t_out = min(t_out, max(low, high));
-    Meridian m;
-    m.v = v;
-    m.o = eye + t_in * v;
-    m.a = dot(v.xy, v.xy);
-    m.b = dot(m.o.xy, v.xy);
-    m.c = dot(m.o.xy, m.o.xy);
-    m.inverse_speed = inversesqrt(dot(v, v));
-    m.base = 0.0;
-    m.t_start = t_in;
-    m.s_end = t_out - t_in;
-    float s = 0.0;
-    vec4 quadric;
-    hit.steps = 0u;
-    uint end = search_quadric(m, 1.0, s, hit.steps, quadric);
-    hit.t = t_in + s;
-    hit.normal = quadric_normal(m, s, quadric);
-    hit.point = m.o + s * v;
-    hit.sense = vec3(1.0);
-    hit.exhausted = false;
-    hit.at_border = false;
-    return end == FOUND;
-}
+#elif SEARCH == SEARCH_EXTERNAL
+#include "search/external.glsl"
 #endif
 
 // Whether rays begin outside of the solid and the box cuts nothing of it. Those towards lights may begin anywhere.
@@ -77,7 +29,7 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
     bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
     return inside || (m.from_eye || open_side) && starts_within(m);
 #elif READS_TABLES
-    return inside || starts_within_cones(m);
+    return inside || starts_in_table(m);
 #else
     f = field(point_rz(m, 0.0));
     ++steps;
@@ -91,22 +43,8 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
     quadric = vec4(0.0);
 #if SEARCH == SEARCH_QUADRIC
     return search_quadric(m, side, s, steps, quadric);
-#elif SEARCH == SEARCH_CONE
-    return search_cone(m, side, s, steps, quadric);
-#elif SEARCH == SEARCH_RELAXED
-    // Relaxed cones are for rays from outside. Rays towards lights take the others, which pass nothing.
-#if SHADOWED
-    bool relaxed = side > 0.0 && !casts;
-#else
-    bool relaxed = side > 0.0;
-#endif
-    uint end;
-    if (relaxed) {
-        end = search_relaxed(m, s, steps, quadric);
-    } else {
-        end = search_cone(m, side, s, steps, quadric);
-    }
-    return end;
+#elif READS_TABLES
+    return search(m, side, s, steps, quadric);
 #else
     return search(m, side, max(side * f, 0.0), pixel_width(m.base + m.t_start), s, steps);
 #endif
@@ -115,14 +53,11 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 // Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
 //
 // Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid
-// where it enters. `span`: two t, before and after which nothing of the solid is.
-bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
+// where it enters.
+bool trace_solid(vec3 eye, vec3 v, float base, bool inside, inout Hit hit)
 {
     Meridian m;
     if (!clip_ray(eye, v, base, m)) {
-        return false;
-    }
-    if (SPANS && !narrow(m, span)) {
         return false;
     }
     float s = 0.0;
@@ -146,7 +81,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
 #if REPEATED && SEARCH == SEARCH_QUADRIC
     // A floor or ceiling that lies in a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
-    end = CELLS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;
+    end = REPLICAS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;
 #endif
     if (end == LEFT && side < 0.0 && m.face_out != FACE_NONE) {
         hit.t = m.t_start + m.s_end;

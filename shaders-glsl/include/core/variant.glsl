@@ -3,39 +3,31 @@
 #ifndef VARIANT_GLSL
 #define VARIANT_GLSL
 
-#define SEARCH_NONE 0    // vertices, lists of tiles
-#define SEARCH_CIRCLE 1  // the papers' loop
+#define SEARCH_NONE 0    // vertices, lists of patches
+#define SEARCH_EXTERNAL 1 // one of another crate: search/external.glsl
 #define SEARCH_LIVE 2    // steps that are safe to a texel and a last secant, on the map alone
 #define SEARCH_QUADRIC 3 // exact patches of quadrics, rebuilt when parameters change
-#define SEARCH_LINEAR 4  // equal steps, then nothing, halvings or secants
-#define SEARCH_CONE 5    // empty cones on each row, for solids that are single-valued in z
-#define SEARCH_RELAXED 6 // the same, relaxed, and halvings
 
-#define READS_MAP (SEARCH == SEARCH_CIRCLE || SEARCH == SEARCH_LIVE || SEARCH == SEARCH_LINEAR)
-#define READS_TABLES (SEARCH == SEARCH_QUADRIC || SEARCH == SEARCH_CONE || SEARCH == SEARCH_RELAXED)
-#define TAKES_STEPS (READS_MAP || SEARCH == SEARCH_RELAXED) // so many of them at most
+#define READS_MAP (SEARCH == SEARCH_LIVE || SEARCH == SEARCH_EXTERNAL && !SEARCH_TABLE)
+#define READS_TABLES (SEARCH == SEARCH_QUADRIC || SEARCH == SEARCH_EXTERNAL && SEARCH_TABLE)
+#define TAKES_STEPS (READS_MAP || SEARCH_BOUNDED) // so many of them at most
 
 #define OUTPUT_COLOR 0
 #define OUTPUT_PLANES 1 // every plane of a frame
 #define OUTPUT_DEPTH 2  // no shading at all
 
-#define DISPATCH_RECTANGLE 0 // compute: one instance, every pixel of its rectangle
-#define DISPATCH_BINS 1      // several instances, listed for each square of the screen
-#define DISPATCH_BEAMS 2     // one instance; tiles, and where their rays begin and end, come from beam.comp
-#define DISPATCH_LISTS 3     // one instance; tiles, and the patches that their rays may meet, come from list.comp
-
 // What build.rs leaves out is 0.
 #ifndef SEARCH
 #define SEARCH SEARCH_NONE
 #endif
+#ifndef SEARCH_TABLE
+#define SEARCH_TABLE 0 // 1: the external search reads a table of its own; else the map
+#endif
+#ifndef SEARCH_BOUNDED
+#define SEARCH_BOUNDED 0 // 1: though it reads a table there is a bound on its steps
+#endif
 #ifndef RGBA8
 #define RGBA8 0 // 1: the papers' texture of unsigned distance; else one channel of signed distance
-#endif
-#ifndef BEVELED
-#define BEVELED 0 // 1: there may be a bevel
-#endif
-#ifndef OWN_TABLES
-#define OWN_TABLES 0 // 1: the batch's tables fit into a uniform buffer
 #endif
 #ifndef TEXTURED
 #define TEXTURED 0 // 1: colours or bumps may come from maps
@@ -49,8 +41,8 @@
 #ifndef OUTPUT
 #define OUTPUT OUTPUT_COLOR
 #endif
-#ifndef DISPATCH
-#define DISPATCH DISPATCH_RECTANGLE
+#ifndef CLIPPED
+#define CLIPPED 0 // 1: the box's sides clip triangles of cells
 #endif
 #ifndef ORTHO
 #define ORTHO 0 // 1: rays are parallel
@@ -58,9 +50,9 @@
 
 // Small differences remain specialisation constants.
 #if REPEATED
-layout(constant_id = 0) const uint CELLS = 0u; // 1: the box holds several replicas
+layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
 #else
-const uint CELLS = 0u;
+const uint REPLICAS = 0u;
 #endif
 #if SHADOWED
 layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
@@ -74,39 +66,25 @@ layout(constant_id = 3) const uint BUMP = 0u; // one of BUMP_*
 #if TEXTURED || OUTPUT == OUTPUT_PLANES
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
 #endif
-layout(constant_id = 5) const uint REFINEMENT = 0u; // of the linear search: one of REFINEMENT_*
+#if SEARCH == SEARCH_EXTERNAL
+layout(constant_id = 5) const uint SEARCH_FORM = 0u; // tells searches apart that share their modules
+layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // bound on steps; 0: what the solid's block says
+#endif
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
 layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
-#if SEARCH == SEARCH_QUADRIC && DISPATCH != DISPATCH_BEAMS || SEARCH == SEARCH_NONE
-// 1: the box cuts nothing of the solid, and the eye is outside of it, as that of hulls and tiles always is.
+// 1: the box cuts nothing of the solid, and the eye is outside of it. Of cells and listed patches, whose eye is always
+// outside: the first alone.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
-#else
-const uint OUTSIDE = 0u;
-#endif
-#if SEARCH == SEARCH_QUADRIC && DISPATCH == DISPATCH_RECTANGLE
-layout(constant_id = 12) const uint CUT = 0u; // which part of a solid that its box cuts: one of CUT_*
-#else
-const uint CUT = 0u;
-#endif
-// Of one solid's tables: most that the device's uniform buffers hold.
-layout(constant_id = 13) const uint OWN_VECTORS = 1024u;
+layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids have one table, which a uniform buffer holds
+layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
+layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // of one solid's tables: most that the device's uniform buffers hold
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
-#if SEARCH == SEARCH_CIRCLE
-layout(constant_id = 10) const uint PAPERS_STEPS = 0u; // bound of the papers' loop; 0: what the solid's block says
+layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
+#ifndef BEVELED
+#define BEVELED (MAY_BEVEL != 0u) // or what the module is compiled for
 #endif
-#if DISPATCH == DISPATCH_LISTS
-layout(constant_id = 9) const uint LIST_LENGTH = 8u; // of DISPATCH_LISTS: patches that a pixel tests
-layout(constant_id = 14) const uint ALONE = 0u; // 1: tiles are bins of one copy, each of any of the batch's instances
-#endif
-
-const uint CUT_ANY = 0u; // any part of any solid
-const uint CUT_TILES = 1u; // compute: tiles that beams have listed
-const uint CUT_SOLID = 2u; // rays that enter box and solid at once: of the sides, or of tiles that beams have listed
-
-const uint REFINEMENT_NONE = 0u;
-const uint REFINEMENT_HALVINGS = 1u;
-const uint REFINEMENT_SECANTS = 2u;
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches that a pixel of a tile tests; 0: tiles are taken in their order, not from a list
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;
@@ -128,24 +106,23 @@ const uint PATCH_VECTORS = 1024u; // least OWN_VECTORS: what every device's unif
 const uint MOST_OWN_VECTORS = 4096u;
 const uint PATCH_ROWS = 256u; // of a solid's tables: a power of 4
 const uint PATCH_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
-const uint BEAM_NODES = 64u; // of one of its levels
-const uint BEAM_FIRST_NODE = 256u; // where that begins
 const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
 const uint SIDE_ROWS = 32u; // strips of each of the box's sides that cut a hull
 const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made, three vectors each
 const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches
-const uint TILE_LISTS = 5u; // lists of tiles: one for each, and one of tiles whose rays enter box and solid at once
-const uint SOLID_ROWS = 64u; // rows of equal height of which it is known within which radius all is solid
+const uint TILE_LISTS = 5u; // lists of tiles: one for each length, and one of tiles that walk the tree
 const uint SHORT_LIST = 8u; // the first of them
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;
 const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
-const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a bin
-const uint SQUARE_BITS = 15u; // of either coordinate of a square's corner
-const uint BIN_SPLIT = 2147483648u; // in place of a bin's count: each of its pixels has a list of its own
+const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
+const uint QUAD_BITS = 15u; // of either coordinate of a quad's corner
+const uint TILE_SPLIT = 2147483648u; // in place of a tile's count of copies: each of its pixels has a list of its own
+const uint BOX_INDICES = 36u; // of a shape box, before those of the strips of its sides
+const uint STRIP_INDICES = 768u; // of all strips: 6 each, 4 sides, SIDE_ROWS rows
 
 #endif

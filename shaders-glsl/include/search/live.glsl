@@ -24,7 +24,7 @@ float safe_step(Meridian m, RayConstants ray, float side, float s, vec2 rz, floa
     float r = max(rz.x, 1e-6);
     float closest = max(moment >= 0.0 ? r : ray.nearest, r - f);
     float cube = closest * closest * closest;
-    if (BEVELED == 0) {
+    if (!bool(BEVELED)) {
         // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the
         // sample, swept around the axis, f / sqrt(sigma^2 + kappa f), with one division for all.
         float rr = r * r;

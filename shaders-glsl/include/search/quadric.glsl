@@ -1,6 +1,6 @@
 // The quadric search: the solid's boundary as patches of quadrics of revolution, dealt out to rows of equal height,
 // under a 4-ary tree of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a patch; rows are met in the
-// order of t. Layout and walk are those of src/surface/rows.rs and walk.rs, which is this file's twin on the CPU.
+// order of t. The layout is that of src/surface/rows.rs; tests/common/walk.rs is this file's twin on the CPU.
 //
 // Exact but for rounding: no step, no threshold, nothing to run out of.
 #ifndef SEARCH_QUADRIC_GLSL
@@ -67,7 +67,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     // must not be passed there.
     float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
-    int level = DISPATCH == DISPATCH_BEAMS ? 1 : top;
+    int level = top;
     int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
     float t = 0.0;
     float most = square_at(m, 0.0);

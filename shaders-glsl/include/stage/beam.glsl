@@ -49,7 +49,7 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
 // Whether a ray of the beam may enter the solid through patch `k`, and between which t.
 bool may_meet(Beam beam, uint k, out vec2 span)
 {
-    uvec4 words = own_patch_tables[3u + 3u * k];
+    uvec4 words = listed_table(3u + 3u * k);
     vec2 z = vec2(words.x & 0x7fffu, words.x >> 15 & 0x7fffu) / 32767.0;
     vec2 r = vec2(words.y & 0xffffu, words.y >> 16) * beam.unit;
     float k1 = uintBitsToFloat(words.z);

@@ -7,8 +7,10 @@
 void take_over()
 {
     take_frame();
-    take_solid();
-    frame.dir_00.w = abs(ray_dir_00.w);
+#if OUTPUT != OUTPUT_DEPTH
+    take_solid(instances[uint(look_ambient.w)].solid.x);
+#endif
+    frame.dir_00.w = ray_dir_00.w;
     frame.dir_x.w = ray_dir_x.w;
     frame.dir_y.w = ray_dir_y.w;
 }

@@ -1,7 +1,11 @@
 // The runs of patches that a tile's rays may meet, and the list that they make.
+//
+// Tables, in vectors: the number of patches and the bits of the unit of radii; three vectors a patch: its quadric, its
+// guard, what beam.glsl reads of it; then a record that nothing passes.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
-#include "stage/patch_lists.glsl"
+#define LIST_WORDS
+#include "stage/compute.glsl"
 
 // The first and the last patch, and the widest gap between two that follow.
 struct PatchRuns {
@@ -30,20 +34,30 @@ uvec2 lengths_of(PatchRuns runs)
                  : uvec2(runs.last + 1u - runs.first, 0u);
 }
 
-// `n`: which of the lists; `tile`: its first word there.
-void append(uint n, uint tile, uint runs)
+// Adds a record to list number `n`. The first makes a whole dispatch of the head, which begins as zeros.
+void append(uint n, uint record, uint runs)
 {
-    uint at = list_tiles(n) + 2u * atomicAdd(bin_words[list_heads() + 4u * n], 1u);
-    bin_words[at] = tile;
-    bin_words[at + 1u] = runs;
+    uint head = list_head(n);
+    uint place = atomicAdd(list_words[head], 1u);
+    if (place == 0u) {
+        list_words[head + 1u] = 1u;
+        list_words[head + 2u] = 1u;
+    }
+    uint at = list_tiles(n) + 2u * place;
+    list_words[at] = record;
+    list_words[at + 1u] = runs;
 }
 
-// `lengths` are those of the runs, together LONGEST_LIST at most.
-void append_patches(uint tile, PatchRuns runs, uvec2 lengths)
+void append_runs(uint record, PatchRuns runs)
 {
+    uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;
+    if (listed > LONGEST_LIST) {
+        append(LIST_LENGTHS, record, 0u);
+        return;
+    }
     uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
-    append(n, tile, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24);
+    append(n, record, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24);
 }
 
 #endif

@@ -1,7 +1,8 @@
 // What a compute invocation stores of a hit: its colour, packed sRGB, or every plane.
 #ifndef STORES_GLSL
 #define STORES_GLSL
-#include "stage/bins.glsl"
+#include "stage/nearest.glsl"
+#include "core/shade.glsl"
 #include "stage/srgb.glsl"
 #if OUTPUT == OUTPUT_PLANES
 layout(set = 2, binding = 2, rgba32f) uniform writeonly image2D color;

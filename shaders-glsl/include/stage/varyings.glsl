@@ -1,5 +1,5 @@
-// What the vertices of boxes and hulls hand their fragments, the same for a whole instance. Vertex shaders define
-// VARYING as `out`, and are compiled so that they hand over nothing that no fragment takes.
+// Flat varyings of every proxy and tile, the same for a whole instance. Vertex shaders define
+// VARYING as `out`, and are compiled so that they pass nothing that no fragment reads.
 #ifndef VARYINGS_GLSL
 #define VARYINGS_GLSL
 #include "core/look.glsl"
@@ -10,7 +10,7 @@
 #endif
 
 layout(location = 1) flat VARYING vec4 ray_origin_base;
-layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block, of convex hulls its negative; of hulls the sense of depth
+layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block; of cells the sense of depth
 layout(location = 3) flat VARYING vec4 ray_dir_x;  // this and the next: w as in the frame's block
 layout(location = 4) flat VARYING vec4 ray_dir_y;
 #if OUTPUT != OUTPUT_DEPTH

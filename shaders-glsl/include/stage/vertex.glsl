@@ -11,10 +11,11 @@ uint instance_number;
 Instance begin(uint number)
 {
     take_frame();
-    take_solid();
     take_lights();
     instance_number = number;
-    return instances[number];
+    Instance i = instances[number];
+    take_solid(i.solid.x);
+    return i;
 }
 
 // A twentieth of a pixel, no matter where in the box, along the axes of object space.

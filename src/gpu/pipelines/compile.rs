@@ -1,11 +1,12 @@
 //! One pipeline: its modules, constants and fixed state.
 
 use super::Pipelines;
-use crate::error::{Error, Result, Stage};
+use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::call::Call;
-use crate::gpu::output::{DepthOrder, Output, PassFormats, PassKind};
+use crate::gpu::output::{Output, PassFormats, PassKind};
 use crate::gpu::render_pass::color_formats;
-use crate::shader::{Kind, Module, Variant, depth_less, words};
+use crate::plan::DepthOrder;
+use crate::shader::{Kind, Module, Search, Variant, depth_less, words};
 use ash::vk;
 
 impl Pipelines {
@@ -32,18 +33,23 @@ impl Pipelines {
             .data(bytemuck::cast_slice(&values));
         let module = variant.module(kind);
         match (variant.vertices(kind), output) {
-            (None, _) => self.compute(&module, &specialization),
+            (None, _) => self.compute(variant, &module, &specialization),
             (Some(vertices), Output::Pass(pass)) => {
-                self.graphics(kind, pass, [&vertices, &module], &specialization)
+                self.graphics((variant, kind), pass, [&vertices, &module], &specialization)
             }
             (Some(_), Output::Compute(_)) => Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Other,
                 "fragments are drawn in a pass, not in compute",
             )),
         }
     }
 
-    fn words(&self, module: &Module) -> Result<Vec<u32>> {
+    fn words(&self, variant: &Variant, module: &Module) -> Result<Vec<u32>> {
+        if let (Some(external), Search::External) = (variant.external, module.search)
+            && module.entry.searches()
+        {
+            return external.words(module);
+        }
         #[cfg(feature = "other-shaders")]
         if let Some(source) = &self.source {
             let module = crate::shader::listed(module).unwrap_or(*module);
@@ -51,17 +57,22 @@ impl Pipelines {
                 return Ok(words);
             }
         }
-        let none = || Error::new(Stage::Draw, format!("no shader is {}", module.name()));
+        let none = || Error::new(ErrorKind::Other, format!("no shader is {}", module.name()));
         words(module).ok_or_else(none)
     }
 
-    fn module(&self, module: &Module, order: DepthOrder) -> Result<ShaderModule<'_>> {
-        let mut words = self.words(module)?;
+    fn module(
+        &self,
+        variant: &Variant,
+        module: &Module,
+        order: DepthOrder,
+    ) -> Result<ShaderModule<'_>> {
+        let mut words = self.words(variant, module)?;
         if order == DepthOrder::Reversed {
             words = depth_less(&words);
         }
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V made by build.rs, or those that the host promised.
+        // SAFETY: the words are SPIR-V made by build.rs, those that the host promised, or a search's.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
         Ok(ShaderModule {
@@ -72,10 +83,11 @@ impl Pipelines {
 
     fn compute(
         &self,
+        variant: &Variant,
         module: &Module,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let module = self.module(module, DepthOrder::Normal)?;
+        let module = self.module(variant, module, DepthOrder::Normal)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .flags(self.flags)
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
@@ -87,25 +99,25 @@ impl Pipelines {
 
     fn graphics(
         &self,
-        kind: Kind,
+        (variant, kind): (&Variant, Kind),
         pass: &PassFormats,
         modules: [&Module; 2],
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
-        let vertex = self.module(vertex, DepthOrder::Normal)?;
-        let fragment = self.module(fragment, pass.depth)?;
+        let vertex = self.module(variant, vertex, DepthOrder::Normal)?;
+        let fragment = self.module(variant, fragment, pass.depth)?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
-        // Boxes and hulls have no vertices: their corners are made from numbers.
+        // Proxies and quads have no vertices: their corners are made from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let is_squares = matches!(kind, Kind::Spots | Kind::Bins);
-        let topology = match kind {
-            Kind::Box => vk::PrimitiveTopology::TRIANGLE_STRIP,
-            _ if is_squares && self.constants.large_points => vk::PrimitiveTopology::POINT_LIST,
-            _ => vk::PrimitiveTopology::TRIANGLE_LIST,
+        let is_quads = kind == Kind::Quads;
+        let topology = if is_quads && self.constants.large_points {
+            vk::PrimitiveTopology::POINT_LIST
+        } else {
+            vk::PrimitiveTopology::TRIANGLE_LIST
         };
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
@@ -113,7 +125,7 @@ impl Pipelines {
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(if is_squares {
+            .cull_mode(if is_quads {
                 vk::CullModeFlags::NONE
             } else {
                 vk::CullModeFlags::BACK

@@ -6,7 +6,7 @@ use crate::pointers::read;
 use crate::values::{RevmapCamera, RevmapView};
 use ash::vk;
 use ash::vk::Handle as _;
-use revmap::gpu::View;
+use revmap::gpu::{PreparedFrame, View};
 
 impl Recorder {
     unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, slot: u32, view: &View) -> Outcome<()> {
@@ -14,28 +14,29 @@ impl Recorder {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
         let slot = slot as usize;
-        if let Some(prepared) = self.prepared.get_mut(slot) {
-            *prepared = false;
-        }
         // SAFETY: the caller of the entry point has promised it.
-        unsafe { self.renderer.prepare(cmd, slot, view) }?;
+        let frame = unsafe { self.renderer.prepare(cmd, slot, view) };
         if let Some(prepared) = self.prepared.get_mut(slot) {
-            *prepared = true;
+            *prepared = None;
+        }
+        let frame = frame?;
+        if let Some(prepared) = self.prepared.get_mut(slot) {
+            *prepared = Some(frame);
         }
         Ok(())
     }
 
-    /// Fails unless `slot` can be recorded in a pass, or outside.
-    pub(super) fn check(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<()> {
+    /// The frame of a slot.
+    pub(super) fn frame(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<&PreparedFrame> {
         if cmd.is_null() {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
-        if self.prepared.get(slot as usize) == Some(&true) {
-            return Ok(());
-        }
-        Err(Fault::usage(format!(
-            "slot {slot} is not prepared; call revmap_renderer_prepare first, after objects were added or removed, too"
-        )))
+        let prepared = self.prepared.get(slot as usize);
+        prepared.and_then(Option::as_ref).ok_or_else(|| {
+            Fault::usage(format!(
+                "slot {slot} is not prepared; call revmap_renderer_prepare first"
+            ))
+        })
     }
 }
 
@@ -47,8 +48,8 @@ impl Recorder {
 /// commands recorded for this slot before have run or were never submitted. Commands of other slots
 /// that were recorded before are submitted before these.
 ///
-/// Fails with REVMAP_RESULT_SCENE or REVMAP_RESULT_PROFILE for what cannot be drawn: it stays as it
-/// was before it was set. The text begins with the object's number.
+/// Fails with REVMAP_RESULT_CONTENT for what cannot be drawn: it stays as it was before it was set.
+/// The text begins with the object's number.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -95,8 +96,8 @@ pub unsafe extern "C" fn revmap_renderer_prepare_camera(
 /// view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
 /// the commands have run.
 ///
-/// Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared, or objects
-/// were added or removed since.
+/// Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared. What was set
+/// since then is not drawn yet.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -107,15 +108,14 @@ pub unsafe extern "C" fn revmap_renderer_record(
 ) -> RevmapResult {
     enter(|| {
         with(renderer, |r| {
-            r.check(command_buffer, slot)?;
+            let frame = r.frame(command_buffer, slot)?;
             if !r.in_pass {
                 return Err(Fault::usage(
                     "this renderer computes; call revmap_renderer_record_compute",
                 ));
             }
             // SAFETY: the slot was prepared; the rest the caller has promised.
-            unsafe { r.renderer.record(command_buffer, slot as usize) };
-            Ok(())
+            Ok(unsafe { r.renderer.record(command_buffer, frame) }?)
         })
     })
 }
@@ -139,15 +139,14 @@ pub unsafe extern "C" fn revmap_renderer_record_compute(
 ) -> RevmapResult {
     enter(|| {
         with(renderer, |r| {
-            r.check(command_buffer, slot)?;
+            let frame = r.frame(command_buffer, slot)?;
             if r.in_pass {
                 return Err(Fault::usage(
                     "this renderer draws in a pass; call revmap_renderer_record",
                 ));
             }
             // SAFETY: the slot was prepared; the rest the caller has promised.
-            unsafe { r.renderer.record_compute(command_buffer, slot as usize) };
-            Ok(())
+            Ok(unsafe { r.renderer.record_compute(command_buffer, frame) }?)
         })
     })
 }

@@ -7,8 +7,8 @@ use crate::pointers::{list, put, read, take};
 use crate::values::{RevmapOffset, RevmapPlacement};
 use revmap::gpu::{ObjectId, Renderer};
 
-/// An object of a renderer; never 0. It stays the same object whatever is set, and is never
-/// another's once removed.
+/// An object of one renderer, which refuses those of others; never 0. It stays the same object
+/// whatever is set, and is never another's once removed.
 pub type RevmapObject = u64;
 
 /// Calls `change` with a renderer and one of its objects.
@@ -23,7 +23,7 @@ fn with_object(
 
 /// Adds an object, which is drawn from the next prepared frame on.
 ///
-/// Fails with REVMAP_RESULT_SCENE for values out of range.
+/// Fails with REVMAP_RESULT_CONTENT for values out of range.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -36,10 +36,7 @@ pub unsafe extern "C" fn revmap_renderer_add(
     enter(|| unsafe {
         put(object, "object", || {
             let added = read(info)?.object()?;
-            with(renderer, |r| {
-                r.prepared.fill(false);
-                Ok(r.renderer.add(added)?.to_bits())
-            })
+            with(renderer, |r| Ok(r.renderer.add(added)?.to_bits()))
         })
     })
 }
@@ -57,7 +54,6 @@ pub extern "C" fn revmap_renderer_remove(
 ) -> RevmapResult {
     enter(|| {
         with(renderer, |r| {
-            r.prepared.fill(false);
             Ok(r.renderer.remove(ObjectId::from_bits(object))?)
         })
     })
@@ -65,7 +61,7 @@ pub extern "C" fn revmap_renderer_remove(
 
 /// Gives an object other values, all of them. Values that are equal cost nothing.
 ///
-/// Fails with REVMAP_RESULT_SCENE for values out of range.
+/// Fails with REVMAP_RESULT_CONTENT for values out of range.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]

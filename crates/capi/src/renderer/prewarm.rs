@@ -75,9 +75,9 @@ pub unsafe extern "C" fn revmap_renderer_record_prewarm(
 ) -> RevmapResult {
     enter(|| {
         with(renderer, |r| {
-            r.check(command_buffer, slot)?;
+            let frame = r.frame(command_buffer, slot)?;
             // SAFETY: the slot was prepared; the rest the caller has promised.
-            Ok(unsafe { r.renderer.record_prewarm(command_buffer, slot as usize) }?)
+            Ok(unsafe { r.renderer.record_prewarm(command_buffer, frame) }?)
         })
     })
 }

@@ -22,18 +22,14 @@ pub struct RevmapStatistics {
     pub shape_map_bytes: u64,
     /// Bytes of colour and height maps, on the device.
     pub texture_bytes: u64,
-    /// Objects that the last prepared frame does not draw at all (compute alone).
+    /// Objects that the last prepared frame does not draw at all.
     pub drawn_not: u32,
     /// Objects that it draws by their boxes.
     pub drawn_by_box: u32,
     /// By hulls.
     pub drawn_by_hull: u32,
-    /// By rectangles of the screen.
-    pub drawn_by_rectangle: u32,
-    /// By bins of the screen.
-    pub drawn_by_bins: u32,
-    /// By beams.
-    pub drawn_by_beams: u32,
+    /// By tiles of the screen.
+    pub drawn_by_tiles: u32,
     /// Notes that revmap_renderer_note() gives.
     pub notes: u32,
 }
@@ -48,16 +44,14 @@ impl Recorder {
         let [shape_map_bytes, texture_bytes] = self.renderer.map_bytes();
         RevmapStatistics {
             size: size(size_of::<RevmapStatistics>()),
-            objects: number(paths.len()),
+            objects: number(self.renderer.object_count()),
             surfaces_made: self.renderer.rebuild_count(),
             shape_map_bytes,
             texture_bytes,
             drawn_not: drawn(DrawPath::Nothing),
             drawn_by_box: drawn(DrawPath::Box),
             drawn_by_hull: drawn(DrawPath::Hull),
-            drawn_by_rectangle: drawn(DrawPath::Rectangle),
-            drawn_by_bins: drawn(DrawPath::Bins),
-            drawn_by_beams: drawn(DrawPath::Beams),
+            drawn_by_tiles: drawn(DrawPath::Tiles),
             notes: number(self.renderer.notes().len()),
         }
     }

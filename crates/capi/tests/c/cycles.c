@@ -48,7 +48,7 @@ static void cycle(const RevmapHostDevice *lent, const RevmapPass *pass, const ch
     RM(revmap_renderer_add(compute, &info, &object));
     RM(revmap_renderer_prewarm(renderer, &prewarm));
     /* What fails must not keep anything either. */
-    if (revmap_profile_from_points(points, 2, 0.5, &spindle) != REVMAP_RESULT_PROFILE) {
+    if (revmap_profile_from_points(points, 2, 0.5, &spindle) != REVMAP_RESULT_CONTENT) {
         fail("cycle", "two points made a profile");
     }
     RM(revmap_prewarm_destroy(prewarm));

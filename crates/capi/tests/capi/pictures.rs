@@ -106,8 +106,8 @@ fn drawn() -> Vec<u8> {
             &[],
             // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
             |cmd, slot| Ok(unsafe { cell.borrow_mut().prepare(cmd, slot, &view) }?),
-            // SAFETY: the slot was prepared, the pass is of the output's formats.
-            |cmd, slot| unsafe { cell.borrow().record(cmd, slot) },
+            // SAFETY: the frame was prepared, the pass is of the output's formats.
+            |cmd, frame| Ok(unsafe { cell.borrow().record(cmd, frame) }?),
         )
         .unwrap();
     let (rgba, _) = stage.read().unwrap();

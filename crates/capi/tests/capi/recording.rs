@@ -158,8 +158,8 @@ fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
             &[],
             // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
             |cmd, slot| Ok(unsafe { cell.borrow_mut().prepare(cmd, slot, &view) }?),
-            // SAFETY: the slot was prepared, the pass is of the output's formats.
-            |cmd, slot| unsafe { cell.borrow().record(cmd, slot) },
+            // SAFETY: the frame was prepared, the pass is of the output's formats.
+            |cmd, frame| Ok(unsafe { cell.borrow().record(cmd, frame) }?),
         )
         .unwrap();
     stage.read().unwrap().0
@@ -211,9 +211,9 @@ fn a_render_pass_shows_what_rust_draws() {
                     near,
                     far,
                 ));
-                Ok(())
+                Ok(slot)
             };
-            let record = |cmd, slot: usize| {
+            let record = |cmd, &slot: &usize| {
                 if warms {
                     ok(revmap_renderer_record_prewarm(renderer, cmd, slot as u32));
                 } else {
@@ -223,6 +223,7 @@ fn a_render_pass_shows_what_rust_draws() {
                     revmap_renderer_record_compute(renderer, cmd, slot as u32),
                     RevmapResult::Usage
                 );
+                Ok(())
             };
             stage
                 .frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record)

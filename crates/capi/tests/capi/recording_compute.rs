@@ -170,7 +170,7 @@ fn compute_writes_what_rust_draws() {
                 Ok(())
             };
             stage
-                .frame(DMat4::IDENTITY, Vec3::Z, &[], before, |_, _| {})
+                .frame(DMat4::IDENTITY, Vec3::Z, &[], before, |_, _| Ok(()))
                 .unwrap();
         }
         stage.wait().unwrap();
@@ -178,8 +178,7 @@ fn compute_writes_what_rust_draws() {
         statistics.size = size_of::<RevmapStatistics>() as u32;
         ok(revmap_renderer_statistics(renderer, &mut statistics));
         assert_eq!((statistics.objects, statistics.drawn_by_hull), (2, 0));
-        let drawn =
-            statistics.drawn_by_beams + statistics.drawn_by_rectangle + statistics.drawn_by_bins;
+        let drawn = statistics.drawn_by_tiles;
         assert_eq!(drawn, 2);
         ok(revmap_renderer_destroy(renderer));
         ok(revmap_device_destroy(device));

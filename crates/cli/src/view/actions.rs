@@ -71,7 +71,7 @@ impl App {
         let folder = saved::beside(&self.source, "-turntable");
         std::fs::create_dir(&folder).map_err(|e| {
             let message = format!("cannot be made ({e}); move the scene to another folder");
-            Error::new(error::Stage::Frame, message).in_file(&folder)
+            Error::new(error::ErrorKind::File, message).in_file(&folder)
         })?;
         match self.write_turned(&folder) {
             Ok(()) => Ok(folder),

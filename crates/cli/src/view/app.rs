@@ -108,8 +108,8 @@ impl App {
             .with_title(title(&self.source))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = events.create_window(attributes);
-        let window =
-            window.map_err(|e| Error::new(error::Stage::Device, format!("no window: {e}")))?;
+        let window = window
+            .map_err(|e| Error::new(error::ErrorKind::Unsupported, format!("no window: {e}")))?;
         let stage = Stage::new(&window, self.options.device.as_deref(), &self.shown)?;
         let scale = window.scale_factor() as f32;
         let id = egui::ViewportId::ROOT;

@@ -6,7 +6,7 @@ use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::{MapSource, Projection};
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
-use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
+use revmap::settings::{DrawStage, SearchSettings, Tolerance};
 
 /// What the controls say besides values.
 pub struct Told<'a> {
@@ -183,7 +183,7 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
 }
 
 fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
-    let solvers = Solver::ALL.map(|s| (s.name(), s));
+    let solvers = revmap_searches::ALL.map(|s| (s.name(), s));
     let mut changed = choice(ui, "solver", &mut search.solver, &solvers);
     let [a, b, c] = MapSource::NAMES.map(|(name, source)| (name, Some(source)));
     let sources = [("best", None), a, b, c];

@@ -141,7 +141,7 @@ impl Inspector {
             let drawn = match check.drawn.try_recv() {
                 Err(TryRecvError::Empty) => return Ok(None),
                 Err(TryRecvError::Disconnected) => Err(Error::new(
-                    error::Stage::Draw,
+                    error::ErrorKind::Other,
                     "the reference's thread has died; change the view to try again",
                 )),
                 Ok(drawn) => drawn,

@@ -6,7 +6,8 @@ use super::vulkan::{Vulkan, vulkan};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::gpu::allocation_error;
 use std::rc::Rc;
 
 /// An image of one level. Whoever drops it knows that the device is done with it.
@@ -155,7 +156,12 @@ fn allocate(
     requirements: vk::MemoryRequirements,
     location: MemoryLocation,
 ) -> Result<Allocation> {
-    let gone = || Error::new(Stage::Draw, "the device's allocator is gone after a panic");
+    let gone = || {
+        Error::new(
+            ErrorKind::Other,
+            "the device's allocator is gone after a panic",
+        )
+    };
     let allocator = host.allocator()?;
     let mut allocator = allocator.lock().map_err(|_| gone())?;
     let made = allocator.allocate(&AllocationCreateDesc {
@@ -165,10 +171,7 @@ fn allocate(
         linear: location != MemoryLocation::GpuOnly,
         allocation_scheme: AllocationScheme::GpuAllocatorManaged,
     });
-    made.map_err(|e| {
-        let message = format!("{name}: no device memory ({e}); make the window smaller");
-        Error::new(Stage::Draw, message)
-    })
+    made.map_err(|e| allocation_error(name, requirements.size, &e))
 }
 
 fn free(host: &Vulkan, memory: Option<Allocation>) {

@@ -23,7 +23,7 @@ mod vulkan;
 
 use super::output;
 use clap::Args;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::file::SceneFile;
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use std::path::PathBuf;
@@ -42,7 +42,7 @@ pub struct View {
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&DrawStage::NAMES))]
     stage: DrawStage,
     /// How the first hit along a ray is found
-    #[arg(long, value_name = "NAME", default_value = "hull")]
+    #[arg(long, value_name = "NAME", default_value = "hull", value_parser = revmap_searches::named)]
     solver: Solver,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact
     #[arg(long, value_name = "PIXELS", default_value = "0.25", value_parser = super::options::tolerance)]
@@ -89,7 +89,7 @@ impl View {
         };
         let screen = |e| {
             Error::new(
-                Stage::Device,
+                ErrorKind::Unsupported,
                 format!("no screen ({e}); set DISPLAY or WAYLAND_DISPLAY"),
             )
         };

@@ -7,7 +7,7 @@ use super::shown::Shown;
 use super::vulkan::Vulkan;
 use crate::output;
 use ash::vk;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::{Device, ShaderSource};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -218,7 +218,7 @@ impl Sources {
 }
 
 fn failed(message: impl Into<String>) -> Error {
-    Error::new(Stage::Draw, message)
+    Error::new(ErrorKind::Other, message)
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Error {

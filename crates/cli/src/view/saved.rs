@@ -3,7 +3,7 @@
 use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
-use revmap::error::{Result, Stage};
+use revmap::error::Result;
 use revmap::frame::atomic_file::write_bytes;
 use revmap::scene::file::SceneFile;
 use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
@@ -36,7 +36,7 @@ pub fn write_scene(
     // What was not touched stays as the scene has it, or has it not.
     let changed = after.into_iter().filter(|one| !before.contains(one));
     let text = file.text(&changed.collect::<Vec<_>>())?;
-    write_bytes(Stage::Frame, &path, text.as_bytes())?;
+    write_bytes(&path, text.as_bytes())?;
     Ok(path)
 }
 
@@ -62,7 +62,7 @@ pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
         } = cost;
         text += &format!("{n},{prepare:.4},{device:.4},{present:.4},{compiled}\n");
     }
-    write_bytes(Stage::Frame, path, text.as_bytes())
+    write_bytes(path, text.as_bytes())
 }
 
 /// Every value that the controls change, as `--set` takes it.

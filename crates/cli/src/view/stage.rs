@@ -47,7 +47,7 @@ pub struct Frame {
 
 fn gui_error(error: impl std::fmt::Display) -> Error {
     Error::new(
-        error::Stage::Draw,
+        error::ErrorKind::Other,
         format!("the controls cannot be drawn: {error}"),
     )
 }
@@ -135,7 +135,7 @@ impl Stage {
             let traced = Traced::new(&self.host, extent)?;
             // SAFETY: it is of the host's device and has the size of every view, and lives until
             // another one is set, for which the device is waited for.
-            unsafe { self.drawn.renderer.set_compute_target(traced.target()) };
+            unsafe { self.drawn.renderer.set_compute_target(traced.target()) }?;
             self.traced = Some(traced);
         }
         Ok(())
@@ -179,28 +179,29 @@ impl Stage {
         let draws = match prepared {
             Some(Err(error)) => {
                 *problem = Some(error.to_string());
-                false
+                None
             }
-            other => other.is_some(),
+            Some(Ok(prepared)) => Some(prepared),
+            None => None,
         };
         let background = scene.map_or([0.0; 4], |scene| scene.background);
         let (renderer, commands) = (&self.drawn.renderer, frame.commands);
-        match &self.traced {
-            Some(traced) if draws => {
+        match (&self.traced, &draws) {
+            (Some(traced), Some(prepared)) => {
                 // SAFETY: the slot was prepared, the commands are recording outside of a pass; what
                 // is drawn into has the window's size.
                 unsafe {
                     traced.clear(commands, background);
-                    renderer.record_compute(commands, frame.slot);
+                    renderer.record_compute(commands, prepared)?;
                     traced.show(commands, self.screen.picture(frame));
                 }
                 self.screen.begin_pass(frame, Before::Kept);
             }
             _ => {
                 self.screen.begin_pass(frame, Before::Cleared(background));
-                if draws {
+                if let Some(prepared) = &draws {
                     // SAFETY: the slot was prepared, the pass is of the output's formats.
-                    unsafe { renderer.record(commands, frame.slot) };
+                    unsafe { renderer.record(commands, prepared) }?;
                 }
             }
         }

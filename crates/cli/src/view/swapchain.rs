@@ -4,7 +4,7 @@
 use super::memory::view;
 use super::vulkan::{Vulkan, vulkan};
 use ash::{khr, vk};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::rc::Rc;
 
 /// One picture.
@@ -45,7 +45,12 @@ impl Swapchain {
         let srgb = |f: &&vk::SurfaceFormatKHR| {
             [vk::Format::B8G8R8A8_SRGB, vk::Format::R8G8B8A8_SRGB].contains(&f.format)
         };
-        let none = || Error::new(Stage::Device, "the window takes no sRGB pictures of 8 bits");
+        let none = || {
+            Error::new(
+                ErrorKind::Unsupported,
+                "the window takes no sRGB pictures of 8 bits",
+            )
+        };
         Ok(Self {
             functions: khr::swapchain::Device::new(&host.instance, &host.device),
             chain: vk::SwapchainKHR::null(),
@@ -64,7 +69,7 @@ impl Swapchain {
             let can = self.capabilities()?;
             if !can.supported_usage_flags.contains(Self::USAGE) {
                 let message = "the window's pictures cannot be copied; choose another device";
-                return Err(Error::new(Stage::Device, message));
+                return Err(Error::new(ErrorKind::Unsupported, message));
             }
             let (low, high) = (can.min_image_extent, can.max_image_extent);
             self.extent = if can.current_extent.width == u32::MAX {

@@ -6,7 +6,7 @@ use super::memory::{Buffer, Image};
 use super::vulkan::Vulkan;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::ComputeTarget;
 use std::rc::Rc;
 
@@ -56,7 +56,7 @@ impl Traced {
                 "the compute stage takes {} pixels on this device; make the window smaller",
                 most / 8
             );
-            return Err(Error::new(Stage::Draw, message));
+            return Err(Error::new(ErrorKind::TooLarge, message));
         }
         use vk::{BufferUsageFlags as B, ImageUsageFlags as I};
         let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
@@ -74,6 +74,7 @@ impl Traced {
         ComputeTarget {
             words: self.words.raw,
             images: Vec::new(),
+            depths: true,
         }
     }
 

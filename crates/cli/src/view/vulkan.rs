@@ -3,8 +3,10 @@
 
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::Allocator;
-use revmap::error::{Error, Result, Stage};
-use revmap::gpu::{Device, HostDevice, Requirements, ShaderSource, VALIDATION_VARIABLE};
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::gpu::{
+    Device, HostDevice, Requirements, ShaderSource, VALIDATION_VARIABLE, vulkan_error,
+};
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
@@ -13,11 +15,11 @@ use winit::window::Window;
 
 /// A Vulkan call's failure, with its name.
 pub fn vulkan<T>(result: std::result::Result<T, vk::Result>, call: &str) -> Result<T> {
-    result.map_err(|code| Error::new(Stage::Draw, format!("{call} failed: {code:?}")))
+    result.map_err(|code| vulkan_error(call, code))
 }
 
 fn device_error(message: impl std::fmt::Display) -> Error {
-    Error::new(Stage::Device, message.to_string())
+    Error::new(ErrorKind::Unsupported, message.to_string())
 }
 
 /// A device that draws into a window. What is made on it goes before.
@@ -93,8 +95,7 @@ impl Vulkan {
             if validate {
                 info = info.enabled_layer_names(&layers).push_next(&mut checked);
             }
-            let instance = vulkan(entry.create_instance(&info, None), "vkCreateInstance")
-                .map_err(into_device)?;
+            let instance = vulkan(entry.create_instance(&info, None), "vkCreateInstance")?;
             let messages = Box::<AtomicU32>::default();
             let messenger = if validate {
                 let functions = ext::debug_utils::Instance::new(&entry, &instance);
@@ -129,8 +130,7 @@ impl Vulkan {
             let device = vulkan(
                 instance.create_device(physical, &info, None),
                 "vkCreateDevice",
-            )
-            .map_err(into_device)?;
+            )?;
             let queue = device.get_device_queue(family, 0);
             let families = instance.get_physical_device_queue_family_properties(physical);
             let limits = instance.get_physical_device_properties(physical).limits;
@@ -187,7 +187,7 @@ impl Vulkan {
 
     /// Where device memory comes from.
     pub fn allocator(&self) -> Result<&Arc<Mutex<Allocator>>> {
-        let closed = || Error::new(Stage::Draw, "the device is being closed");
+        let closed = || Error::new(ErrorKind::Other, "the device is being closed");
         self.allocator.as_ref().ok_or_else(closed)
     }
 
@@ -201,7 +201,7 @@ impl Vulkan {
         match self.messages.load(Ordering::Relaxed) {
             0 => Ok(()),
             n => Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Other,
                 format!("{n} messages of the validation layers"),
             )),
         }
@@ -222,11 +222,6 @@ impl Drop for Vulkan {
             self.instance.destroy_instance(None);
         }
     }
-}
-
-fn into_device(mut error: Error) -> Error {
-    error.stage = Stage::Device;
-    error
 }
 
 /// The device that is named, or the best by kind, of those that draw and show.
@@ -252,8 +247,7 @@ unsafe fn choose(
         let all = vulkan(
             instance.enumerate_physical_devices(),
             "vkEnumeratePhysicalDevices",
-        )
-        .map_err(into_device)?;
+        )?;
         // A number is an index, unless there are fewer.
         let number = choice.as_ref().and_then(|c| c.parse::<usize>().ok());
         let number = number.filter(|n| *n < all.len());

@@ -101,8 +101,8 @@ pub fn heat_map(
 /// below.
 ///
 /// # Errors
-/// Those of [`compare`](super::compare()), and [`Stage::Frame`](revmap::error::Stage::Frame) when
-/// the sheet, six times the frame, is too large for a picture.
+/// Those of [`compare`](super::compare()), and [`ErrorKind::TooLarge`](revmap::error::ErrorKind)
+/// when the sheet, six times the frame, is too large for a picture.
 pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Picture> {
     check(reference, frame, options)?;
     let (w, h) = (frame.width, frame.height);

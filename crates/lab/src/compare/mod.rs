@@ -13,7 +13,7 @@ pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
 use rayon::prelude::*;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 
 /// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels,
@@ -129,7 +129,8 @@ impl std::fmt::Display for Comparison {
 /// ```
 ///
 /// # Errors
-/// [`Stage::Frame`] when the frames differ in size, or an option is not a positive number.
+/// [`ErrorKind::Content`] when the frames differ in size; [`ErrorKind::Usage`] when an option is
+/// not a positive number.
 pub fn compare(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Comparison> {
     check(reference, frame, options)?;
     Reference::new(reference, options)?.compare(frame)
@@ -146,7 +147,7 @@ impl<'a> Reference<'a> {
     /// Makes ready to compare with `frame`.
     ///
     /// # Errors
-    /// [`Stage::Frame`] when an option is not a positive number.
+    /// [`ErrorKind::Usage`] when an option is not a positive number.
     pub fn new(frame: &'a Frame, options: &CompareOptions) -> Result<Self> {
         check(frame, frame, options)?;
         Ok(Self {
@@ -159,7 +160,7 @@ impl<'a> Reference<'a> {
     /// Compares a drawn frame, as [`compare`] does.
     ///
     /// # Errors
-    /// [`Stage::Frame`] when the frames differ in size.
+    /// [`ErrorKind::Content`] when the frames differ in size.
     pub fn compare(&self, frame: &Frame) -> Result<Comparison> {
         check(self.frame, frame, &self.options)?;
         Ok(measured(
@@ -199,12 +200,13 @@ fn measured(
 
 /// What every comparison needs: one size, and options that make sense.
 pub(super) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<()> {
-    let wrong = |message: String| Err(Error::new(Stage::Frame, message));
+    let wrong = |kind, message: String| Err(Error::new(kind, message));
     if (reference.width, reference.height) != (frame.width, frame.height) {
-        return wrong(format!(
+        let message = format!(
             "the frames differ in size ({}x{} and {}x{}); draw them at one size",
             reference.width, reference.height, frame.width, frame.height
-        ));
+        );
+        return wrong(ErrorKind::Content, message);
     }
     for (name, value) in [
         ("texel", options.texel),
@@ -214,7 +216,8 @@ pub(super) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) 
         ),
     ] {
         if !(value.is_finite() && value > 0.0) {
-            return wrong(format!("{name} is {value}; give a positive number"));
+            let message = format!("{name} is {value}; give a positive number");
+            return wrong(ErrorKind::Usage, message);
         }
     }
     Ok(())

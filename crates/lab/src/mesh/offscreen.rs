@@ -5,7 +5,7 @@ use super::drawer::{DrawnPass, MeshDrawer, MeshPipelines, SAMPLES};
 use super::placed::SceneMeshes;
 use crate::method::{Method, MethodSettings};
 use ash::vk;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::{Guest, Offscreen, Times};
 use revmap::scene::{CameraFrame, Scene};
@@ -24,8 +24,8 @@ impl MeshOffscreen {
     /// Tessellates the scene's objects and makes a target of the settings' size.
     ///
     /// # Errors
-    /// [`Stage::Usage`] for a search, for a mesh that [`Method::mesh`] refuses, and for the compute
-    /// stage; of the scene, of profiles, and of Vulkan as [`Offscreen::new`].
+    /// [`ErrorKind::Usage`] for a search, for a mesh that [`Method::mesh`] refuses, and for the
+    /// compute stage; of the scene, of profiles, and of Vulkan as [`Offscreen::new`].
     pub fn new(
         pipelines: &Arc<MeshPipelines>,
         scene: &Scene,
@@ -51,14 +51,14 @@ impl MeshOffscreen {
             Method::MeshLevels => Method::MESH_LEVELS.to_vec(),
             Method::Search(_) | Method::Floor => {
                 let message = format!("{method} is no mesh; give a mesh as mesh:64x128");
-                return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+                return Err(Error::new(ErrorKind::Usage, message).at_key("solver"));
             }
         };
         if settings.stage == DrawStage::Compute {
             let message = format!(
                 "{method} is rasterised, which a compute shader does not; give the stage fragment"
             );
-            return Err(Error::new(Stage::Usage, message).at_key("--solver"));
+            return Err(Error::new(ErrorKind::Usage, message).at_key("solver"));
         }
         let own = Settings::from(settings);
         let offscreen = Offscreen::for_guests(pipelines.device(), scene, &own)?;
@@ -100,7 +100,7 @@ impl MeshOffscreen {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]).
+    /// Of Vulkan.
     pub fn draw(&mut self) -> Result<Times> {
         let times = self.offscreen.draw_with(Some(&self.drawer))?;
         self.drop_staging();
@@ -115,7 +115,7 @@ impl MeshOffscreen {
     /// The frame that was drawn last.
     ///
     /// # Errors
-    /// Of Vulkan ([`Stage::Draw`]).
+    /// Of Vulkan.
     pub fn read(&mut self) -> Result<Frame> {
         self.offscreen.read()
     }

@@ -3,7 +3,7 @@
 use super::blocks::{InstanceBlock, ObjectBlock};
 use super::tessellation::Mesh;
 use glam::DVec3;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::Projection;
 use revmap::profile::Profile;
 use revmap::scene::{CameraFrame, GrownProfiles, Growth, Object, Offset, Placement, Scene, Shadow};
@@ -69,8 +69,7 @@ impl SceneMeshes {
     /// are made.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for what meshes do not draw; [`Stage::Profile`] for a profile without a
-    /// contour.
+    /// [`ErrorKind::Content`] for what meshes do not draw, and for a profile without a contour.
     pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Vec<PlacedMesh>> {
         if scene.shadow != Shadow::Off {
             return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
@@ -220,7 +219,10 @@ fn place(
 type KeyError = (&'static str, Error);
 
 fn refused(what: &str) -> Error {
-    Error::new(Stage::Scene, format!("a mesh {what}, or take a search"))
+    Error::new(
+        ErrorKind::Content,
+        format!("a mesh {what}, or take a search"),
+    )
 }
 
 /// Refuses what the baseline does not draw.

@@ -7,7 +7,7 @@ use super::names::number;
 use super::row::COLUMNS;
 use super::stats::{self, Interval};
 use super::table::Table;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
 use std::collections::HashMap;
 use std::path::Path;
@@ -78,8 +78,8 @@ pub struct Against {
 /// Reads two folders that `revmap bench` or `revmap chart` wrote.
 ///
 /// # Errors
-/// [`Stage::Report`], naming the file: missing, damaged, of other columns, or with nothing in
-/// common.
+/// [`ErrorKind::File`], naming the file: missing, damaged or of other columns;
+/// [`ErrorKind::Content`] with nothing in common.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
     let key = |record: &[String]| record[..KEY.len()].to_vec();
@@ -116,7 +116,7 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
         });
     }
     if pairs.is_empty() {
-        return Err(Error::new(Stage::Report, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
+        return Err(Error::new(ErrorKind::Content, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
     }
     Ok(Against {
         alone: (

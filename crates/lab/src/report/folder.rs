@@ -12,16 +12,16 @@ use super::plan::Plan;
 use super::ratios::above_floor;
 use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
 use super::table::Table;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Picture;
-use revmap::frame::atomic_file;
+pub use revmap::frame::atomic_file::write_bytes;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
 /// never overwritten.
 ///
 /// # Errors
-/// [`Stage::Report`] when it cannot be made.
+/// [`ErrorKind::File`] when it cannot be made.
 pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
     let mut folder = base.join(name);
     let mut count = 1;
@@ -48,17 +48,17 @@ const FOLDERS: [&str; 2] = ["charts", "pictures"];
 /// then that run's files are removed. None of the `inputs` may be a file that the run writes.
 ///
 /// # Errors
-/// [`Stage::Usage`] for a folder that holds an earlier run or an input; [`Stage::Report`] when it
-/// cannot be made or cleared.
+/// [`ErrorKind::Usage`] for a folder that holds an earlier run or an input; [`ErrorKind::File`]
+/// when it cannot be made or cleared.
 pub fn claim<'a>(
     folder: &Path,
     overwrite: bool,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
     let usage = |message: &str| {
-        Error::new(Stage::Usage, message)
+        Error::new(ErrorKind::Usage, message)
             .in_file(folder)
-            .at_key("--out")
+            .at_key("out")
     };
     let written = |file: &Path| {
         let within = folder.canonicalize().ok()?;
@@ -82,7 +82,7 @@ pub fn claim<'a>(
     if taken {
         clear(folder).map_err(|e| {
             let message = format!("the earlier run cannot be removed ({e}); choose another folder");
-            Error::new(Stage::Report, message).in_file(folder)
+            Error::new(ErrorKind::File, message).in_file(folder)
         })?;
     }
     Ok(())
@@ -116,12 +116,12 @@ fn clear(folder: &Path) -> std::io::Result<()> {
 /// Makes a folder and those above it.
 ///
 /// # Errors
-/// [`Stage::Report`] when it cannot be made.
+/// [`ErrorKind::File`] when it cannot be made.
 pub fn make(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| {
         Error::new(
-            Stage::Report,
-            format!("cannot be made ({e}); choose another folder with --out"),
+            ErrorKind::File,
+            format!("cannot be made ({e}); choose another folder"),
         )
         .in_file(folder)
     })
@@ -130,17 +130,9 @@ pub fn make(folder: &Path) -> Result<()> {
 /// Writes a text file, whole or not at all.
 ///
 /// # Errors
-/// [`Stage::Report`], naming the file.
+/// [`ErrorKind::File`], naming the file.
 pub fn write_text(file: &Path, text: &str) -> Result<()> {
     write_bytes(file, text.as_bytes())
-}
-
-/// Writes a file, whole or not at all.
-///
-/// # Errors
-/// [`Stage::Report`], naming the file.
-pub fn write_bytes(file: &Path, bytes: &[u8]) -> Result<()> {
-    atomic_file::write_bytes(Stage::Report, file, bytes)
 }
 
 /// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
@@ -162,13 +154,10 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
 /// A picture as a PNG file.
 ///
 /// # Errors
-/// [`Stage::Report`] when it cannot be encoded.
+/// [`ErrorKind::File`] when it cannot be encoded.
 pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    picture.encode_png(&mut bytes).map_err(|mut e| {
-        e.stage = Stage::Report;
-        e
-    })?;
+    picture.encode_png(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -251,7 +240,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
 /// Writes `results.csv` and `raw.csv`.
 ///
 /// # Errors
-/// [`Stage::Report`], naming the file.
+/// [`ErrorKind::File`], naming the file.
 pub fn write_rows(folder: &Path, rows: &[Row], machine: &Machine) -> Result<()> {
     write_text(&folder.join("results.csv"), &results(rows, machine).csv())?;
     write_text(&folder.join("raw.csv"), &raw(rows).csv())
@@ -260,7 +249,7 @@ pub fn write_rows(folder: &Path, rows: &[Row], machine: &Machine) -> Result<()> 
 /// Writes the four files that every run has.
 ///
 /// # Errors
-/// [`Stage::Report`], naming the file.
+/// [`ErrorKind::File`], naming the file.
 pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine) -> Result<()> {
     make(folder)?;
     write_rows(folder, &measured.rows, machine)?;
@@ -295,7 +284,7 @@ mod tests {
             write_text(&out.join(name), "earlier").unwrap();
         }
         let error = claimed(false).unwrap_err();
-        assert_eq!(error.stage, Stage::Usage);
+        assert_eq!(error.kind, ErrorKind::Usage);
         assert!(error.to_string().contains("--overwrite"), "{error}");
         assert!(out.join("results.csv").exists() && out.join("pictures/a.png").exists());
         claimed(true).unwrap();

@@ -11,18 +11,7 @@ use revmap::settings::Solver;
 #[must_use]
 pub fn meaning(method: Method) -> &'static str {
     match method {
-        Method::Search(Solver::Linear) => "equal steps along the ray, through the map of distances",
-        Method::Search(Solver::Relief) => "equal steps, then halvings (relief mapping)",
-        Method::Search(Solver::Secant) => "equal steps, then secants (interval mapping)",
-        Method::Search(Solver::Circle) => {
-            "circle tracing: steps as long as the map's distance, as the RBM baseline takes them, over exact distances in 32-bit floats in place of those of a binary image in 8 bits"
-        }
-        Method::Search(Solver::Cone) => {
-            "steps by a row of cones along the axis; for solids single-valued in height"
-        }
-        Method::Search(Solver::Relaxed) => {
-            "the same with relaxed cones, which a step may leave inside the solid, and halvings back"
-        }
+        Method::Search(Solver::Other(search)) => search.about,
         Method::Search(Solver::Live) => {
             "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame"
         }

@@ -11,7 +11,7 @@ pub use super::time_budget::TimeBudget;
 use super::view::View;
 use crate::compare::{self, CompareOptions, Comparison};
 use crate::method::MethodSettings;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::settings::Planes;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,7 +34,7 @@ pub trait Bench {
     ///
     /// # Errors
     /// Where this way of drawing does not apply to the view; a failure of the device itself is
-    /// [`Stage::Device`] and ends the run.
+    /// [`ErrorKind::DeviceLost`] and ends the run.
     fn timed_renderer(
         &mut self,
         view: &View,
@@ -99,8 +99,8 @@ type Compared = (Frame, Result<Comparison>);
 /// Measures a plan.
 ///
 /// # Errors
-/// [`Stage::Report`] when nothing could be measured (with the first reason); [`Stage::Device`] when
-/// the device fails; those of the picture callback.
+/// [`ErrorKind::Other`] when nothing could be measured (with the first reason);
+/// [`ErrorKind::DeviceLost`]; those of the picture callback.
 pub fn measure(
     plan: &Plan,
     bench: &mut dyn Bench,
@@ -157,7 +157,7 @@ pub fn measure(
             None => "the plan is empty; name a scene, a stage and a solver".into(),
         };
         return Err(Error::new(
-            Stage::Report,
+            ErrorKind::Other,
             format!("nothing was measured: {why}"),
         ));
     }
@@ -185,9 +185,9 @@ impl Run<'_> {
         (observer.progress)(what, gone.as_millis() as u64, all.as_millis() as u64);
     }
 
-    /// Leaves a case out for good; a device that fails ends the run.
+    /// Leaves a case out for good; a lost device ends the run.
     fn leave_out(&mut self, index: usize, error: Error) -> Result<()> {
-        if error.stage == Stage::Device {
+        if error.kind == ErrorKind::DeviceLost {
             return Err(error);
         }
         self.rows[index] = None;
@@ -278,7 +278,7 @@ impl Run<'_> {
     ) -> Result<()> {
         let (frame, comparison) = work
             .join()
-            .map_err(|_| Error::new(Stage::Report, "a comparison was given up; report this"))?;
+            .map_err(|_| Error::new(ErrorKind::Other, "a comparison was given up; report this"))?;
         let comparison = comparison?;
         let case = &self.plan.cases[index];
         (observer.picture)(&RenderedCase {

@@ -219,7 +219,8 @@ mod tests {
     use super::*;
     use crate::compare::Spread;
     use crate::method::{Method, MethodSettings};
-    use revmap::settings::{DrawStage, Solver};
+    use revmap::settings::DrawStage;
+    use revmap_searches::CIRCLE;
 
     /// As much as one picture can hold: every search in both stages, five meshes, the RBM baseline.
     fn crowded() -> Vec<Row> {
@@ -241,7 +242,7 @@ mod tests {
                     max: p99,
                 });
                 rows.push(one.clone());
-                if method == Solver::Circle {
+                if method == CIRCLE {
                     one.settings = rbm_baseline(&spindle(), &one.settings);
                     rows.push(one);
                 }

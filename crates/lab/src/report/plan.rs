@@ -5,6 +5,7 @@ use crate::floor;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
+use revmap_searches::{CIRCLE, CONE};
 
 /// Lists of values; a plan takes every combination of them. `None` leaves a choice to the solver or
 /// the scene.
@@ -218,8 +219,8 @@ pub fn together(a: &Case, b: &Case) -> bool {
 /// between. Equal steps are left to the whole sweep: they cost two to five times as much as the
 /// rest and are beaten in time and error at once.
 pub const USUAL: [Method; 5] = [
-    Method::Search(Solver::Circle),
-    Method::Search(Solver::Cone),
+    Method::Search(CIRCLE),
+    Method::Search(CONE),
     Method::Search(Solver::Live),
     Method::Search(Solver::Quadric),
     Method::Search(Solver::Hull),
@@ -258,7 +259,7 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
 #[must_use]
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
     MethodSettings {
-        method: Method::Search(Solver::Circle),
+        method: Method::Search(CIRCLE),
         max_steps: Some(if view.technique().is_beveled() {
             25
         } else {
@@ -353,7 +354,7 @@ pub const RBM_BASELINE: &str = "RBM baseline";
 /// Whether settings are those of [`rbm_baseline`].
 #[must_use]
 pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
-    s.method == Solver::Circle
+    s.method == CIRCLE
         && matches!(s.max_steps, Some(20 | 25))
         && s.map_source == Some(MapSource::Binary)
         && s.map_format == MapFormat::Rgba8
@@ -372,7 +373,7 @@ mod tests {
             sizes: vec![(64, 48), (32, 24)],
             sources: vec![Some(MapSource::Binary), Some(MapSource::Exact)],
             formats: vec![MapFormat::R16, MapFormat::Rgba8],
-            methods: vec![Method::Search(Solver::Circle)],
+            methods: vec![Method::Search(CIRCLE)],
             ..Axes::default()
         }
     }

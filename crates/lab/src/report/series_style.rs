@@ -14,12 +14,15 @@ use revmap::settings::{DrawStage, Solver};
 /// colour.
 fn search(method: Method) -> Style {
     let (color, marker, dash) = match method {
-        Method::Search(Solver::Linear) => (color::RED, Marker::Left, Dash::Dots),
-        Method::Search(Solver::Relief) => (color::PURPLE, Marker::Right, Dash::Short),
-        Method::Search(Solver::Secant) => (color::WINE, Marker::Star, Dash::DashDot),
-        Method::Search(Solver::Circle) => (color::GREY, Marker::Plus, Dash::Dots),
-        Method::Search(Solver::Cone) => (color::TAN, Marker::Cross, Dash::Short),
-        Method::Search(Solver::Relaxed) => (color::TAN, Marker::Hexagram, Dash::Dots),
+        Method::Search(Solver::Other(search)) => match search.name {
+            "linear" => (color::RED, Marker::Left, Dash::Dots),
+            "relief" => (color::PURPLE, Marker::Right, Dash::Short),
+            "secant" => (color::WINE, Marker::Star, Dash::DashDot),
+            "circle" => (color::GREY, Marker::Plus, Dash::Dots),
+            "cone" => (color::TAN, Marker::Cross, Dash::Short),
+            "relaxed" => (color::TAN, Marker::Hexagram, Dash::Dots),
+            _ => (color::TAN, Marker::Diamond, Dash::Long),
+        },
         Method::Search(Solver::Live) => (color::NAVY, Marker::Up, Dash::DashDot),
         Method::Search(Solver::Quadric) => (color::VIOLET, Marker::Down, Dash::Long),
         Method::Search(Solver::Hull) => (color::ORANGE, Marker::Disk, Dash::Solid),
@@ -158,6 +161,7 @@ mod tests {
     use super::super::plan::{ALL_MESHES, rbm_baseline};
     use super::super::view::tests::spindle;
     use super::*;
+    use revmap_searches::CIRCLE;
 
     /// All that a chart can hold: every search, the RBM baseline, meshes of seven finenesses.
     fn all() -> Vec<MethodSettings> {
@@ -181,7 +185,7 @@ mod tests {
         for (i, a) in searches.iter().enumerate() {
             for b in &searches[..i] {
                 // As many colours as there are searches cannot be told apart by all eyes.
-                let cones = a.method.is_of_cones() && b.method.is_of_cones();
+                let cones = a.method.reads_own_table() && b.method.reads_own_table();
                 let (a, b) = (style(a), style(b));
                 assert_eq!(a.color == b.color, cones, "{a:?} {b:?}");
                 assert!(
@@ -228,7 +232,7 @@ mod tests {
     #[test]
     fn one_search_in_several_ways_takes_several_markers() {
         let steps = |n| MethodSettings {
-            method: Method::Search(Solver::Circle),
+            method: Method::Search(CIRCLE),
             max_steps: Some(n),
             ..MethodSettings::default()
         };

@@ -3,7 +3,7 @@
 
 use super::view::View;
 use glam::DVec3;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::ColorMap;
 use revmap::profile::{Profile, ProfileAxis};
 use revmap::scene::{Camera, Object, Offset, Scene};
@@ -204,7 +204,7 @@ pub(super) fn one() -> Result<View> {
         .next()
         .ok_or_else(|| {
             Error::new(
-                Stage::Report,
+                ErrorKind::Other,
                 "the program carries no solid; build it with the feature `scene-file`",
             )
         })

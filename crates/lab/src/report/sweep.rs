@@ -5,6 +5,7 @@ use super::view::View;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Solver};
+use revmap_searches::CIRCLE;
 
 /// The values that are swept, one axis at a time, the others staying at what drawing takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,14 +180,14 @@ pub fn has_budget(method: Method) -> bool {
 /// rows are its budget.
 #[must_use]
 pub fn has_rows(method: Method) -> bool {
-    method.is_of_cones()
+    method.reads_own_table()
 }
 
 /// Maps are swept with `circle` and with `live`, the most exact of those that read them, or with
 /// what is named in place of both: the others read the same maps in the same way. The default reads
 /// none.
 fn sweeps_maps(method: Method, all: &[Method]) -> bool {
-    let usual = [Method::Search(Solver::Circle), Method::Search(Solver::Live)];
+    let usual = [Method::Search(CIRCLE), Method::Search(Solver::Live)];
     method.reads_map() && (usual.contains(&method) || !all.iter().any(|s| usual.contains(s)))
 }
 
@@ -205,14 +206,12 @@ mod tests {
     use super::super::plan::is_rbm_baseline;
     use super::super::view::tests::spindle;
     use super::*;
+    use revmap_searches::CONE;
 
     #[test]
     fn a_sweep_moves_one_axis_at_a_time() {
         let sweep = Sweep {
-            methods: vec![
-                Method::Search(Solver::Circle),
-                Method::Search(Solver::Quadric),
-            ],
+            methods: vec![Method::Search(CIRCLE), Method::Search(Solver::Quadric)],
             ..Sweep::new()
         };
         let plan = sweep.plan(vec![spindle()]);
@@ -223,7 +222,7 @@ mod tests {
         };
         // Steps in both stages, rows x sources and formats in one; a format that is the default is
         // there already.
-        let circle = of(Method::Search(Solver::Circle)).count();
+        let circle = of(Method::Search(CIRCLE)).count();
         assert_eq!(circle, 6 * 2 + 5 * 3 + 2);
         assert!(of(Method::Search(Solver::Quadric)).all(|c| c.settings.max_steps.is_none()));
         assert_eq!(
@@ -246,12 +245,12 @@ mod tests {
     #[test]
     fn rows_of_cones_are_swept_in_every_stage() {
         let sweep = Sweep {
-            methods: vec![Method::Search(Solver::Cone)],
+            methods: vec![Method::Search(CONE)],
             ..Sweep::new()
         };
         let plan = sweep.plan(vec![spindle()]);
         let cones = plan.cases.iter().map(|c| c.settings);
-        let cones: Vec<_> = cones.filter(|s| s.method == Solver::Cone).collect();
+        let cones: Vec<_> = cones.filter(|s| s.method == CONE).collect();
         assert_eq!(cones.len(), 2 * sweep.rows.len());
         assert!(
             cones

@@ -1,7 +1,7 @@
 //! The table of all outputs: comma-separated values in files, aligned columns on standard output,
 //! rows of a page ([`Page::table`](super::page::Page::table)).
 
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;
 
 /// A table of text.
@@ -66,12 +66,12 @@ impl Table {
     /// Reads comma-separated values.
     ///
     /// # Errors
-    /// [`Stage::Report`]: no header, a quote that is not closed, a record of another length than
+    /// [`ErrorKind::File`]: no header, a quote that is not closed, a record of another length than
     /// the header.
     pub fn parse(text: &str) -> Result<Self> {
         let fault = |message: String| {
             let message = format!("{message}; write the file again with `revmap bench`");
-            Err(Error::new(Stage::Report, message))
+            Err(Error::new(ErrorKind::File, message))
         };
         if text.matches('"').count() % 2 == 1 {
             return fault("a quoted field has no end".into());
@@ -100,7 +100,7 @@ impl Table {
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
             Error::new(
-                Stage::Report,
+                ErrorKind::File,
                 format!("cannot be read ({e}); give a folder that `revmap bench` wrote"),
             )
             .in_file(file)
@@ -111,11 +111,11 @@ impl Table {
     /// The place of a column.
     ///
     /// # Errors
-    /// [`Stage::Report`] when there is none of this name.
+    /// [`ErrorKind::File`] when there is none of this name.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.header.iter().position(|n| n == name).ok_or_else(|| {
             Error::new(
-                Stage::Report,
+                ErrorKind::File,
                 format!("has no column `{name}`; write it again with `revmap bench`"),
             )
         })

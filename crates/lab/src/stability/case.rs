@@ -4,6 +4,7 @@ use revmap::error::Result;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::{Scene, file};
 use revmap::settings::{DrawStage, Solver};
+use revmap_searches::CIRCLE;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -161,9 +162,4 @@ impl Text {
 
 /// The searches that the catalogue compares: the RBM baseline, the map search, the exact search,
 /// the default.
-pub const SOLVERS: [Solver; 4] = [
-    Solver::Circle,
-    Solver::Live,
-    Solver::Quadric,
-    Solver::DEFAULT,
-];
+pub const SOLVERS: [Solver; 4] = [CIRCLE, Solver::Live, Solver::Quadric, Solver::DEFAULT];

@@ -3,7 +3,7 @@
 use crate::scenes::{eye, scene_of};
 use crate::shapes;
 use glam::DVec3;
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::{Placement, Scene, Shadow};
@@ -91,6 +91,6 @@ fn what_has_no_floor_is_refused() {
         ..MethodSettings::default()
     };
     let error = device.draw(&scene, &settings).err().unwrap();
-    assert_eq!(error.stage, Stage::Usage);
+    assert_eq!(error.kind, ErrorKind::Usage);
     assert!(error.to_string().contains("shadows"), "{error}");
 }

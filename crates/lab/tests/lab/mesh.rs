@@ -5,7 +5,7 @@ use crate::mesh_shading::wrong_planes;
 use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
 use glam::DVec3;
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{ColorMap, DisplacementMap, Projection};
@@ -283,49 +283,51 @@ fn asset(name: &str) -> std::path::PathBuf {
 #[test]
 fn what_a_mesh_cannot_draw_is_refused() {
     #[track_caller]
-    fn refused(stage: Stage, key: &str, spoil: impl Fn(&mut Scene, &mut MethodSettings)) {
+    fn refused(kind: ErrorKind, key: &str, spoil: impl Fn(&mut Scene, &mut MethodSettings)) {
         let mut scene = crowd();
         let mut settings = settings(16, 32);
         spoil(&mut scene, &mut settings);
         let made = MeshOffscreen::new(pipelines(), &scene, &settings);
         let error = made.err().unwrap();
         assert_eq!(
-            (error.stage, error.key.as_deref()),
-            (stage, Some(key).filter(|k| !k.is_empty())),
+            (error.kind, error.key.as_deref()),
+            (kind, Some(key).filter(|k| !k.is_empty())),
             "{error}"
         );
         pipelines().device().check().unwrap();
     }
-    refused(Stage::Usage, "--solver", |_, s| {
+    refused(ErrorKind::Usage, "solver", |_, s| {
         s.stage = DrawStage::Compute
     });
-    refused(Stage::Scene, "shadow", |s, _| s.shadow = Shadow::Hard);
-    refused(Stage::Scene, "object.1.repeat", |s, _| {
+    refused(ErrorKind::Content, "shadow", |s, _| s.shadow = Shadow::Hard);
+    refused(ErrorKind::Content, "object.1.repeat", |s, _| {
         s.objects[1].repeat = [2, 1, 1]
     });
-    refused(Stage::Scene, "object.2.color_map", |s, _| {
+    refused(ErrorKind::Content, "object.2.color_map", |s, _| {
         let file = asset("colors/natural-earth.png");
         s.objects[2].texturing.color_map = Some(Arc::new(ColorMap::load(file).unwrap()));
     });
-    refused(Stage::Scene, "object.0.height_map", |s, _| {
+    refused(ErrorKind::Content, "object.0.height_map", |s, _| {
         let map = DisplacementMap::from_image(asset("heights/brick.png")).unwrap();
         s.objects[0].texturing.displacement_map = Some(Arc::new(map));
     });
-    refused(Stage::Scene, "object.0.projection", |s, _| {
+    refused(ErrorKind::Content, "object.0.projection", |s, _| {
         s.objects[0].texturing.projection = Projection::Arc
     });
-    refused(Stage::Usage, "--solver", |_, s| s.method = Method::DEFAULT);
-    refused(Stage::Scene, "object.2.axis", |s, _| {
+    refused(ErrorKind::Usage, "solver", |_, s| {
+        s.method = Method::DEFAULT
+    });
+    refused(ErrorKind::Content, "object.2.axis", |s, _| {
         s.objects[2].axis = [0.9, 0.5]
     });
-    refused(Stage::Scene, "object.0.extend", |s, _| {
+    refused(ErrorKind::Content, "object.0.extend", |s, _| {
         (s.objects[0].offset.extend, s.objects[0].clip) = (0.3, Clip::Box);
     });
-    refused(Stage::Scene, "object.0.bevel", |s, _| {
+    refused(ErrorKind::Content, "object.0.bevel", |s, _| {
         (s.objects[0].offset.bevel, s.objects[0].clip) = (0.8, Clip::Box);
     });
     for (segments, rings) in [(2, 1), (0, 0), (99_999_999, 9), (u32::MAX, u32::MAX)] {
-        refused(Stage::Usage, "", |_, s| {
+        refused(ErrorKind::Usage, "", |_, s| {
             s.method = Method::Mesh { segments, rings }
         });
     }

@@ -1,7 +1,7 @@
 //! The benchmark itself on trial: planted faults that it must find, with a stand-in for the device.
 
 use crate::stand_in::{Fault, StandIn, measured, plan, run};
-use revmap::error::Stage;
+use revmap::error::ErrorKind;
 use revmap::settings::Solver;
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::chart::front::front;
@@ -11,6 +11,7 @@ use revmap_lab::report::machine::Machine;
 use revmap_lab::report::plan::is_rbm_baseline;
 use revmap_lab::report::ratios::{Ratio, over_rbm_baseline};
 use revmap_lab::report::row::{Clocks, Row};
+use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 
 fn of(rows: &[Row], method: Method) -> Vec<&Row> {
@@ -74,7 +75,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     );
     let (slept, other) = (
         of(&outcome.rows, Method::Search(Solver::Live)),
-        of(&outcome.rows, Method::Search(Solver::Circle)),
+        of(&outcome.rows, Method::Search(CIRCLE)),
     );
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
@@ -102,7 +103,7 @@ fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
     }
     assert_eq!(
         on_front(&outcome.rows),
-        [Method::Search(Solver::Circle)],
+        [Method::Search(CIRCLE)],
         "it must not stand on the front"
     );
     let ratio = &over_rbm_baseline(&outcome.rows)[0];
@@ -155,5 +156,5 @@ fn what_does_not_apply_is_left_out_with_its_reason() {
         &AtomicBool::new(false),
     )
     .unwrap_err();
-    assert_eq!((error.stage, error.exit_code()), (Stage::Device, 3));
+    assert_eq!(error.kind, ErrorKind::DeviceLost);
 }

@@ -9,6 +9,7 @@ use revmap_lab::stability::case::{Step, Text};
 use revmap_lab::stability::judge::{Limits, Truth};
 use revmap_lab::stability::run::{Plan, Verdict, run};
 use revmap_lab::stability::{cases, random, report};
+use revmap_searches::CIRCLE;
 
 const BALL: &str = "polygon = [[0.0, 0.1], [0.3, 0.1], [0.4, 0.5], [0.3, 0.9], [0.0, 0.9]]";
 
@@ -44,7 +45,7 @@ fn the_default_fails_what_is_known_and_nothing_else() {
     }
     // A catalogue that the RBM baseline passes is too easy.
     let hard = ["thin-discs", "grazing-face", "budget"].map(str::to_owned);
-    let outcome = tried(&cases::named(&hard).unwrap(), Solver::Circle);
+    let outcome = tried(&cases::named(&hard).unwrap(), CIRCLE);
     for (case, name) in hard.iter().enumerate() {
         let mut trials = outcome.trials.iter().filter(|t| t.case == case);
         assert!(trials.any(|t| t.verdict == Verdict::Failed), "{name}");

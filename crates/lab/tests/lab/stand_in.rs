@@ -1,7 +1,7 @@
 //! A stand-in for the device of a benchmark, with a fault in it if one is wanted.
 
 use glam::DVec3;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
@@ -12,6 +12,7 @@ use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
 use revmap_lab::report::row::Sample;
 use revmap_lab::report::view::View;
 use revmap_reference as reference;
+use revmap_searches::CIRCLE;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -85,10 +86,10 @@ impl StandIn {
     fn refusal(&self, settings: &MethodSettings) -> Result<()> {
         match self.fault {
             Fault::Refuses if settings.method == Solver::Live => Err(Error::new(
-                Stage::Draw,
+                ErrorKind::Other,
                 "this search does not apply to this profile",
             )),
-            Fault::DeviceLost => Err(Error::new(Stage::Device, "the device is gone")),
+            Fault::DeviceLost => Err(Error::new(ErrorKind::DeviceLost, "the device is gone")),
             _ => Ok(()),
         }
     }
@@ -171,7 +172,7 @@ fn views() -> Vec<View> {
 pub fn plan() -> Plan {
     let axes = Axes {
         stages: vec![DrawStage::Fragment],
-        methods: vec![Method::Search(Solver::Live), Method::Search(Solver::Circle)],
+        methods: vec![Method::Search(Solver::Live), Method::Search(CIRCLE)],
         sizes: vec![(48, 36)],
         ..Axes::default()
     };

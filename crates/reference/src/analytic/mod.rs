@@ -16,7 +16,7 @@ mod roots;
 use super::{Hit, Ray, Surface, Trace, is_ray};
 use glam::{DAffine3, DVec2, DVec3};
 use path::{Curve, Path};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::profile::Outline;
 use revmap::scene::{Growth, Object, Offset, Scene};
 
@@ -52,7 +52,8 @@ impl Analytic {
     /// Prepares a scene.
     ///
     /// # Errors
-    /// [`Stage::Scene`] for what this method does not know: replicas, and profiles that are images.
+    /// [`ErrorKind::Content`] for what this method does not know: replicas, and profiles that are
+    /// images.
     pub fn new(scene: &Scene) -> Result<Self> {
         let mut parts = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
@@ -98,7 +99,7 @@ impl Analytic {
 
 impl Solid {
     fn new(object: &Object) -> Result<Self> {
-        let refuse = |what: &str| Err(Error::new(Stage::Scene, what));
+        let refuse = |what: &str| Err(Error::new(ErrorKind::Content, what));
         if object.repeat != [1; 3] {
             return refuse("the analytic reference knows no replicas; use the bracketing one");
         }

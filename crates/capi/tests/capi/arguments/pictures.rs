@@ -31,7 +31,7 @@ fn off_screen_pictures() {
             ..picture
         };
         fail! {
-            Frame, "pixels": revmap_offscreen_create(device, &empty, &scene, &mut offscreen);
+            Usage, "pixels": revmap_offscreen_create(device, &empty, &scene, &mut offscreen);
         }
         ok(revmap_offscreen_create(
             device,
@@ -58,7 +58,7 @@ fn off_screen_pictures() {
         let distance = RevmapPlane::Distance as u32;
         fail! {
             Usage, "colours alone": revmap_offscreen_read(offscreen, distance, at, bytes);
-            Frame, "/missing/a.png": revmap_offscreen_write_png(offscreen, c"/missing/a.png".as_ptr());
+            File, "/missing/a.png": revmap_offscreen_write_png(offscreen, c"/missing/a.png".as_ptr());
         }
         ok(revmap_offscreen_read(offscreen, 0, at, bytes));
         let hit = pixels.iter().filter(|p| p[3] == 255).count();
@@ -67,7 +67,7 @@ fn off_screen_pictures() {
         // An update that fails leaves what was there.
         scene.camera.target = scene.camera.eye;
         fail! {
-            Scene, "camera.target": revmap_offscreen_update(offscreen, &scene);
+            Content, "camera.target": revmap_offscreen_update(offscreen, &scene);
         }
         ok(revmap_offscreen_draw(offscreen, null_mut()));
         let before = pixels.clone();

@@ -32,8 +32,10 @@ fn renderers_and_objects() {
         fail! {
             Usage, "frames in flight": make(&pass, 0);
             Usage, "3 samples": make(&RevmapPass { samples: 3, ..pass }, 2);
+            Usage, "1 attachments": make(&RevmapPass { planes: 1, ..pass }, 2);
+            Usage, "stencil": make(&RevmapPass { stencil_format: color, ..pass }, 2);
             Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
-            Usage, "VkRenderPass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
+            Usage, "pass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
         }
         ok(make(&pass, 2));
         search.solver = 99;
@@ -55,7 +57,7 @@ fn renderers_and_objects() {
         info.profile = profile;
         info.placement.scale = [0.0; 3];
         fail! {
-            Scene, "scale": revmap_renderer_add(renderer, &info, &mut object);
+            Content, "scale": revmap_renderer_add(renderer, &info, &mut object);
         }
         info.placement.scale = [1.0; 3];
         info.instance_count = 3;
@@ -73,7 +75,7 @@ fn renderers_and_objects() {
         ok(revmap_renderer_set_offset(renderer, object, &moved));
         fail! {
             Usage, "null": revmap_renderer_set_offset(renderer, object, null());
-            Scene, "extend": revmap_renderer_set_offset(renderer, object, &RevmapOffset { extend: f64::NAN, ..moved });
+            Content, "extend": revmap_renderer_set_offset(renderer, object, &RevmapOffset { extend: f64::NAN, ..moved });
         }
         for unknown in [0, object + 1, u64::MAX] {
             fail! {
@@ -82,6 +84,8 @@ fn renderers_and_objects() {
             }
         }
         fail! {
+            Usage, "another renderer": revmap_renderer_set_offset(other, object, &moved);
+            Usage, "another renderer": revmap_renderer_remove(other, object);
             Usage, "null": revmap_renderer_set_instances(renderer, object, null(), 2);
         }
 
@@ -103,16 +107,16 @@ fn renderers_and_objects() {
         }
         view.size = size_of::<RevmapView>() as u32;
         fail! {
-            Scene, "view": revmap_renderer_prepare(renderer, some, 0, &view);
+            Content, "view": revmap_renderer_prepare(renderer, some, 0, &view);
         }
         let mut target: RevmapComputeTarget = zeroed();
         target.size = size_of::<RevmapComputeTarget>() as u32;
         fail! {
-            Usage, "VkBuffer": revmap_renderer_set_compute_target(other, &target);
+            Usage, "words": revmap_renderer_set_compute_target(other, &target);
         }
         target.words = <ash::vk::Buffer as ash::vk::Handle>::from_raw(16);
         fail! {
-            Usage, "draws in a pass": revmap_renderer_set_compute_target(renderer, &target);
+            Usage, "only attachments": revmap_renderer_set_compute_target(renderer, &target);
             Usage, "no note 0": revmap_renderer_note(renderer, 0, &mut null());
         }
 

@@ -20,9 +20,9 @@ const MACROS: [(&str, &str); 1] = [("SEARCH", "SEARCH_LIVE")];
 #[test]
 fn sources_compile_as_they_stand() {
     let source = sources().compiled(Arc::default()).unwrap();
-    let words = source("box.frag", &MACROS).unwrap().unwrap();
+    let words = source("tree.frag", &MACROS).unwrap().unwrap();
     assert_eq!(words[0], 0x0723_0203, "SPIR-V's first word");
-    assert_eq!(source("box.frag", &MACROS).unwrap(), Some(words));
+    assert_eq!(source("tree.frag", &MACROS).unwrap(), Some(words));
 }
 
 #[test]
@@ -33,7 +33,7 @@ fn an_error_names_file_and_line() {
     let line = text.lines().count() + 1;
     text.push_str("this is no GLSL\n");
     let source = broken.compiled(Arc::default()).unwrap();
-    let error = source("box.frag", &MACROS).unwrap_err().to_string();
+    let error = source("tree.frag", &MACROS).unwrap_err().to_string();
     assert!(error.contains(&format!("{file}:{line}: error")), "{error}");
     assert!(
         source("no.frag", &MACROS)

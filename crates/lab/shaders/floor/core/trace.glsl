@@ -1,5 +1,5 @@
 // What takes the place of the renderer's searches: a ray hits where it enters the box, the height range and the
-// bounding cylinder of a solid, and between two t, where these begin.
+// bounding cylinder of a solid.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "core/hit.glsl"
@@ -18,14 +18,7 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
     return true;
 }
 
-bool trace_between(vec3 eye, vec3 v, vec2 span, out Hit hit)
-{
-    // Vertices of squares hand over what follows, and fragments must take it.
-    bool takes_all = solid.patches.z != 0u && solid.bounds.z <= solid.bounds.w;
-    return hit_at(eye, v, span.x, hit) && span.x <= span.y && takes_all;
-}
-
-bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
+bool trace_solid(vec3 eye, vec3 v, float base, bool inside, inout Hit hit)
 {
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.

@@ -16,8 +16,8 @@ use super::tessellation::Mesh;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use pipelines::PipelineKey;
-use revmap::error::{Error, Result, Stage};
-use revmap::gpu::{Buffer, Device, Guest};
+use revmap::error::Result;
+use revmap::gpu::{Buffer, Device, Guest, vulkan_error as vulkan};
 use revmap::settings::Planes;
 use std::ops::Range;
 use std::sync::Arc;
@@ -344,9 +344,4 @@ fn instance_buffer(device: &Device, count: usize) -> Result<Buffer> {
 fn write(buffer: &mut Buffer, bytes: &[u8]) -> Result<()> {
     buffer.mapped()?[..bytes.len()].copy_from_slice(bytes);
     Ok(())
-}
-
-/// A failed Vulkan call.
-fn vulkan(name: &str, code: vk::Result) -> Error {
-    Error::new(Stage::Draw, format!("{name} failed: {code:?}"))
 }

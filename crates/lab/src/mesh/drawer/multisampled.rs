@@ -1,11 +1,11 @@
 //! What a multisampled picture (MSAA) is drawn into: a pass of four samples a pixel that is resolved.
 
-use super::{MeshPipelines, vulkan};
+use super::MeshPipelines;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
-use revmap::error::{Error, Result, Stage};
-use revmap::gpu::{Buffer, Device, Guest};
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::gpu::{Buffer, Device, Guest, allocation_error, vulkan_error as vulkan};
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -228,10 +228,10 @@ impl Image {
                 linear: false,
                 allocation_scheme: AllocationScheme::GpuAllocatorManaged,
             };
-            let none = |e: String| Error::new(Stage::Draw, format!("no memory for samples: {e}"));
             let allocator = device.allocator()?;
-            let mut allocator = allocator.lock().map_err(|e| none(e.to_string()))?;
-            let made = (allocator.allocate(&made)).map_err(|e| none(e.to_string()))?;
+            let gone = |_| Error::new(ErrorKind::Other, "the allocator is gone after a panic");
+            let made = (allocator.lock().map_err(gone)?.allocate(&made))
+                .map_err(|e| allocation_error("samples", made.requirements.size, &e))?;
             let made = self.allocation.insert(made);
             raw.bind_image_memory(self.raw, made.memory(), made.offset())
                 .map_err(|c| vulkan("vkBindImageMemory", c))?;

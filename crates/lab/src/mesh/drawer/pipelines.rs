@@ -2,10 +2,10 @@
 
 use super::super::blocks::ObjectBlock;
 use super::super::tessellation::Vertex;
-use super::{multisampled, vulkan};
+use super::multisampled;
 use ash::vk;
-use revmap::error::{Error, Result, Stage};
-use revmap::gpu::Device;
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::gpu::{Device, vulkan_error as vulkan};
 use revmap::maps::Projection;
 use revmap::settings::Planes;
 use std::collections::HashMap;
@@ -45,7 +45,7 @@ impl MeshPipelines {
     /// Pipelines on this device; none is compiled yet.
     ///
     /// # Errors
-    /// [`Stage::Draw`] of Vulkan.
+    /// Of Vulkan.
     pub fn new(device: &Device) -> Result<Arc<Self>> {
         let mut all = Self {
             set_layout: vk::DescriptorSetLayout::null(),
@@ -202,7 +202,12 @@ impl MeshPipelines {
     }
 
     fn module(&self, spirv: &[u8]) -> Result<Module<'_>> {
-        let broken = |e| Error::new(Stage::Draw, format!("the mesh shaders are broken: {e}"));
+        let broken = |e| {
+            Error::new(
+                ErrorKind::Other,
+                format!("the mesh shaders are broken: {e}"),
+            )
+        };
         let words = ash::util::read_spv(&mut std::io::Cursor::new(spirv)).map_err(broken)?;
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V that the repository keeps.
@@ -236,7 +241,10 @@ impl Drop for MeshPipelines {
 }
 
 fn gone() -> Error {
-    Error::new(Stage::Draw, "the mesh pipelines are gone after a panic")
+    Error::new(
+        ErrorKind::Other,
+        "the mesh pipelines are gone after a panic",
+    )
 }
 
 struct Module<'a> {

@@ -3,8 +3,10 @@
 use super::{MeshPipelines, SAMPLES};
 use crate::method::MethodSettings;
 use ash::vk;
-use revmap::error::{Error, Result};
-use revmap::gpu::{DepthOrder, Guest, Offscreen, Output, PassFormats, PassKind, Renderer, View};
+use revmap::error::Result;
+use revmap::gpu::{
+    DepthOrder, Guest, Offscreen, Output, PassFormats, PassKind, PreparedFrame, Renderer, View,
+};
 use revmap::scene::Scene;
 use revmap::settings::{SearchSettings, Settings};
 use std::cell::RefCell;
@@ -13,8 +15,8 @@ use std::cell::RefCell;
 pub(in super::super) struct SearchGuest {
     renderer: RefCell<Renderer>,
     view: View,
-    /// Why the last frame was not prepared.
-    failed: RefCell<Option<Error>>,
+    /// The last frame, or why it was not prepared.
+    prepared: RefCell<Option<Result<PreparedFrame>>>,
 }
 
 impl SearchGuest {
@@ -40,13 +42,13 @@ impl SearchGuest {
         Ok(Self {
             renderer: RefCell::new(renderer),
             view: *Offscreen::for_guests(device, scene, &settings)?.view(),
-            failed: RefCell::default(),
+            prepared: RefCell::default(),
         })
     }
 
-    /// What hindered the last frame.
+    /// Fails where the last frame could not be drawn.
     pub fn take_error(&self) -> Result<()> {
-        self.failed.take().map_or(Ok(()), Err)
+        self.prepared.take().map_or(Ok(()), |last| last.map(|_| ()))
     }
 }
 
@@ -54,13 +56,16 @@ impl Guest for SearchGuest {
     unsafe fn prepare(&self, cmd: vk::CommandBuffer) {
         // SAFETY: `cmd` is recording outside of a pass, and the last frame was waited for.
         let prepared = unsafe { self.renderer.borrow_mut().prepare(cmd, 0, &self.view) };
-        *self.failed.borrow_mut() = prepared.err();
+        *self.prepared.borrow_mut() = Some(prepared);
     }
 
     unsafe fn record(&self, cmd: vk::CommandBuffer) {
-        if self.failed.borrow().is_none() {
+        let mut prepared = self.prepared.borrow_mut();
+        if let Some(Ok(frame)) = prepared.as_ref() {
             // SAFETY: the frame was prepared; the caller has begun the pass.
-            unsafe { self.renderer.borrow().record(cmd, 0) };
+            if let Err(error) = unsafe { self.renderer.borrow().record(cmd, frame) } {
+                *prepared = Some(Err(error));
+            }
         }
     }
 }

@@ -6,19 +6,19 @@ use super::letters::FONT;
 use super::svg::svg;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Picture;
 
 /// A figure at `scale` pixels per CSS pixel, on white.
 ///
 /// # Errors
-/// [`Stage::Report`] when the figure has no size, or one too large for a picture.
+/// [`ErrorKind::TooLarge`] when the figure has no size, or one too large for a picture.
 pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
     let side = |v: f64| (v.ceil() * f64::from(scale)).clamp(0.0, 32_768.0) as u32;
     let (width, height) = (side(figure.width), side(figure.height));
     let refuse = |why: &str| {
         let message = format!("a chart of {width}x{height} pixels cannot be drawn; {why}");
-        Error::new(Stage::Report, message)
+        Error::new(ErrorKind::TooLarge, message)
     };
     let mut map = Pixmap::new(width, height).ok_or_else(|| refuse("make it smaller"))?;
     let mut options = Options::default();

@@ -3,7 +3,7 @@
 use crate::report::row::{COLUMNS, CONTRACT};
 use crate::report::stats;
 use crate::report::table::Table;
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -30,7 +30,7 @@ impl Run {
         // Later versions may add columns.
         if !results.header.starts_with(&CONTRACT.map(str::to_owned)) {
             return Err(Error::new(
-                Stage::Report,
+                ErrorKind::File,
                 "has other columns than this version writes; measure again",
             )
             .in_file(folder.join("results.csv")));
@@ -50,7 +50,7 @@ impl Run {
             let whole = |at: usize| {
                 record[at].parse::<usize>().map_err(|_| {
                     Error::new(
-                        Stage::Report,
+                        ErrorKind::File,
                         format!("{:?} is no number; measure again", record[at]),
                     )
                     .in_file(&raw_file)

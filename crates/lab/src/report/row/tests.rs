@@ -3,7 +3,7 @@ use super::super::view::tests::spindle;
 use super::*;
 use crate::compare::{CompareOptions, compare};
 use crate::method::Method;
-use revmap::settings::Solver;
+use revmap_searches::CIRCLE;
 
 /// A row without errors, timed as told: `(gpu, frame)` in each pass and round.
 pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
@@ -12,7 +12,7 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
     let case = Case {
         view: 0,
         settings: MethodSettings {
-            method: Method::Search(Solver::Circle),
+            method: Method::Search(CIRCLE),
             map_format: revmap::maps::MapFormat::R16,
             ..MethodSettings::default()
         },

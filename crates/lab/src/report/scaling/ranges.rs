@@ -138,13 +138,13 @@ pub(crate) fn field(one: &View, count: u32) -> View {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use revmap::settings::Solver;
+    use revmap_searches::CIRCLE;
 
     #[test]
     fn a_field_holds_its_copies_side_by_side() {
         let plan = plan(
             &[DrawStage::Compute],
-            &[Method::Search(Solver::Circle)],
+            &[Method::Search(CIRCLE)],
             Ranges::ALL,
         )
         .unwrap();

@@ -10,7 +10,7 @@ mod shapes;
 use super::case::Case;
 use crate::report::folder::png;
 use crate::report::folder::{make, write_bytes};
-use revmap::error::{Error, Result, Stage};
+use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Picture;
 use std::path::Path;
 
@@ -29,14 +29,14 @@ pub fn all() -> Vec<Case> {
 /// The cases of these names; all where none is named.
 ///
 /// # Errors
-/// [`Stage::Usage`] for a name that no case has.
+/// [`ErrorKind::Usage`] for a name that no case has.
 pub fn named(names: &[String]) -> Result<Vec<Case>> {
     let all = all();
     for name in names {
         if !all.iter().any(|case| case.name == name) {
             let known: Vec<_> = all.iter().map(|case| case.name).collect();
             return Err(Error::new(
-                Stage::Usage,
+                ErrorKind::Usage,
                 format!("{name:?} is no case; give some of {}", known.join(", ")),
             ));
         }

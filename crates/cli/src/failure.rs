@@ -1,0 +1,91 @@
+//! What the program says of the library's failures: its own options in place of keys and methods,
+//! and an exit code.
+
+use super::output;
+use revmap::error::{Error, ErrorKind};
+use std::process::ExitCode;
+
+/// What the library calls by this key is given by this option.
+const OPTIONS: [(&str, &str); 6] = [
+    ("device", "--device"),
+    ("out", "--out"),
+    ("sets", "--set"),
+    ("size", "--size"),
+    ("solver", "--solver"),
+    ("tolerance", "--tolerance"),
+];
+
+/// Says what failed in one line, and how the program ends.
+pub fn report(error: Error) -> ExitCode {
+    let code = exit_code(error.kind);
+    output::complain(&text(error));
+    ExitCode::from(code)
+}
+
+/// 2 wrong usage, 3 no usable device, 1 all else.
+fn exit_code(kind: ErrorKind) -> u8 {
+    match kind {
+        ErrorKind::Usage => 2,
+        ErrorKind::Unsupported => 3,
+        _ => 1,
+    }
+}
+
+fn text(mut error: Error) -> String {
+    let kind = error.kind;
+    error.key = error.key.map(|key| match option(&key) {
+        Some(option) => option.to_owned(),
+        // A key of the scene that was set on the command line.
+        None if kind == ErrorKind::Usage && !key.starts_with('-') => format!("--set {key}"),
+        None => key,
+    });
+    let named = error.key.as_ref().is_some_and(|key| key.starts_with('-'));
+    format!("{error}{}", if named { "" } else { remedy(kind) })
+}
+
+fn option(key: &str) -> Option<&'static str> {
+    let found = OPTIONS.iter().find(|(known, _)| *known == key);
+    found.map(|(_, option)| *option)
+}
+
+/// The options that help, where a kind of failure has some.
+fn remedy(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::DeviceLost => "; see --size, --max-steps",
+        ErrorKind::OutOfDeviceMemory => "; see --size, --map-rows, --memory-budget",
+        ErrorKind::TooLarge => "; see --size, --map-rows",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_become_options_and_kinds_exit_codes() {
+        for (kind, key, code, wanted) in [
+            (ErrorKind::Unsupported, "device", 3, "--device: no"),
+            (ErrorKind::Usage, "sets", 2, "--set: no"),
+            (
+                ErrorKind::Usage,
+                "object.2.bevel",
+                2,
+                "--set object.2.bevel: no",
+            ),
+            (ErrorKind::Usage, "--stage", 2, "--stage: no"),
+            (
+                ErrorKind::Content,
+                "object.2.bevel",
+                1,
+                "object.2.bevel: no",
+            ),
+            (ErrorKind::TooLarge, "size", 1, "--size: no"),
+        ] {
+            assert_eq!(exit_code(kind), code);
+            assert_eq!(text(Error::new(kind, "no").at_key(key)), wanted);
+        }
+        let lost = text(Error::new(ErrorKind::DeviceLost, "lost"));
+        assert_eq!(lost, "lost; see --size, --max-steps");
+    }
+}

@@ -1,0 +1,32 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The floor of cells: each fragment is a hit where its own triangle is. The normal is that of its cell's first
+// patch.
+#include "stage/fragment.glsl"
+#include "search/quadric.glsl"
+#include "stage/outputs.glsl"
+
+layout(location = 11) flat in vec4 first_quadric;
+
+layout(depth_greater) out float gl_FragDepth;
+
+void main()
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    take_over();
+    PixelRays rays = varying_rays();
+    Meridian m;
+    m.v = ray_direction(rays, pixel);
+    m.o = ray_origin(rays, pixel);
+    Hit hit;
+    hit.t = 1.0 / gl_FragCoord.w - rays.base;
+    hit.normal = quadric_normal(m, hit.t, first_quadric);
+    hit.point = m.o + hit.t * m.v;
+    hit.sense = vec3(1.0);
+    hit.steps = 0u;
+    hit.exhausted = false;
+    hit.at_border = false;
+    count_steps(pixel, hit.steps, hit.exhausted);
+    store(shade(varying_look(), rays, pixel, hit));
+    gl_FragDepth = gl_FragCoord.z; // written, as the search does
+}

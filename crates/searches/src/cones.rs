@@ -1,0 +1,199 @@
+//! Cone maps of solids that are single-valued in z: `r <= f(z)`, solid all the way to the axis.
+//!
+//! Such a solid is a height field over the axis: `z` is the place, `r` the height. Cone step
+//! mapping (Dummer 2006) keeps, for each place, the widest cone that stands on the surface there
+//! and has nothing of the solid in it; a ray above the surface may go on to where it leaves that
+//! cone. Turned about the axis a cone's two flanks are cones of revolution, and where a ray leaves
+//! one is a quadratic. A ray moves along the axis one way only, so each flank has a slope of its
+//! own.
+//!
+//! # Layout
+//!
+//! Row `i` of `N` is `i / N <= z <= (i + 1) / N`.
+//!
+//! * `[g, g', k_up, k_down]`: `g` and `g'` are the radius at the row's lower and upper border,
+//!   linear in between. From any point of the row, `(z, g(z))`, nothing of the solid at `z' > z`
+//!   lies beyond `g(z) + k_up (z' - z)`, and nothing at `z' < z` beyond `g(z) + k_down (z - z')`.
+//! * `[g, g', h, -1 - 4096 p - q]`, where that is closer to the surface: a level face at the height
+//!   `(i + p / 2047) / N` splits the row. Below it the radius goes from `g` to `h`, above it from
+//!   `q / 4095` of the largest radius to `g'`. Such rows have no cones.
+//!
+//! The slopes are those of the borders: with `k` the steepest way from the row's lower end to any
+//! point of the surface above (0 if all of them lead down), and `k'` the same from its upper end,
+//! the row has `max(k, k')`. From a point between two ends the way to a third is the mediant of
+//! theirs, so it is no steeper than the steeper of both.
+
+mod surface;
+
+use crate::map::LICENCE;
+use crate::modules::words;
+use glam::DVec2;
+use revmap::error::Result;
+use revmap::search::{Reads, Search, SearchTable, Steps};
+use revmap::settings::Solver;
+use revmap::surface::Contour;
+use surface::{Row, Surface};
+
+/// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z
+/// (`r <= f(z)`); others are an error.
+pub const CONE: Solver = Solver::Other(&CONE_SEARCH);
+
+/// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings back:
+/// as the papers list it. It passes surfaces.
+pub const RELAXED: Solver = Solver::Other(&RELAXED_SEARCH);
+
+static CONE_SEARCH: Search = Search {
+    name: "cone",
+    about: "steps by a row of cones along the axis; for solids single-valued in height",
+    source: "J. Dummer: Cone step mapping: an iterative ray-heightfield intersection algorithm. 2006",
+    licence: LICENCE,
+    reads: Reads::Table(&|contour, rows| Ok(Cones::new(contour, rows)?.table())),
+    steps: None,
+    form: 0,
+    words: words!("cone.glsl"),
+};
+
+static RELAXED_SEARCH: Search = Search {
+    name: "relaxed",
+    about: "the same with relaxed cones, which a step may leave inside the solid, and halvings back",
+    source: "F. Policarpo, M. M. Oliveira: Relaxed cone stepping for relief mapping. GPU Gems 3, chapter 18, 2007",
+    licence: LICENCE,
+    reads: Reads::Table(&|contour, rows| Ok(Cones::relaxed(contour, rows)?.table())),
+    steps: Some(Steps {
+        default: 64,
+        beveled: 64,
+        most: Steps::MOST,
+        may_run_out: true,
+    }),
+    form: 0,
+    words: words!("relaxed.glsl"),
+};
+
+/// The rows of a cone map; the [module](self) tells their layout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cones {
+    /// `[g, g', k_up, k_down]`, or a row with a level face.
+    pub rows: Vec<[f32; 4]>,
+    /// The largest radius.
+    pub reach: f32,
+}
+
+/// Steeper than this no way can be told from a jump.
+const STEEPEST: f64 = 1e6;
+
+impl Cones {
+    /// The cone map of a contour in `rows` rows. What is thinner in z than a row may be lost, or
+    /// filled.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) where going outwards from the axis one
+    /// leaves the solid more than once, or starts outside of it, at two neighbouring borders of
+    /// rows.
+    pub fn new(contour: &Contour, rows: u32) -> Result<Self> {
+        Self::with(contour, rows, slopes)
+    }
+
+    /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of
+    /// the half-plane that comes in from the largest radius leaves the solid, where it has entered
+    /// it, no sooner than the cone. Takes time as the square of `rows`.
+    ///
+    /// # Errors
+    /// As [`Cones::new`].
+    pub fn relaxed(contour: &Contour, rows: u32) -> Result<Self> {
+        Self::with(contour, rows, relaxed_slopes)
+    }
+
+    fn with(contour: &Contour, rows: u32, slopes: fn(&[DVec2]) -> Vec<f64>) -> Result<Self> {
+        let surface = Surface::new(contour, rows.max(1) as usize)?;
+        let up = slopes(&surface.points);
+        let turned: Vec<DVec2> = surface
+            .points
+            .iter()
+            .rev()
+            .map(|p| DVec2::new(p.x, 1.0 - p.y))
+            .collect();
+        let mut down = slopes(&turned);
+        down.reverse();
+        // Rounded up, by what 32-bit floats lose of radii and heights.
+        let steep = |k: f64| (k * (1.0 + 1e-5)).min(STEEPEST) as f32;
+        let row = |row: &Row| {
+            let [g, g_next] = row.radii.map(|r| r as f32);
+            if let Some(level) = row.level {
+                let [lower, rest] = level.numbers(surface.reach);
+                return [g, g_next, lower, rest];
+            }
+            let (low, high) = (row.first, row.first + 1);
+            let k = |all: &[f64]| steep(all[low].max(all[high]));
+            [g, g_next, k(&up), k(&down)]
+        };
+        Ok(Self {
+            rows: surface.rows.iter().map(row).collect(),
+            reach: surface.reach as f32,
+        })
+    }
+
+    /// As `shaders/cone_rows.glsl` reads them.
+    fn table(&self) -> SearchTable {
+        SearchTable {
+            vectors: self.rows.iter().map(|r| r.map(f32::to_bits)).collect(),
+            facts: [self.rows.len() as u32, self.reach.to_bits(), 0],
+        }
+    }
+}
+
+/// From each point of a surface the steepest way `dr / dz` to one farther up (they stand in order);
+/// 0 where all lead down.
+fn slopes(points: &[DVec2]) -> Vec<f64> {
+    let slope = |i: usize, j: usize| {
+        let way = points[j] - points[i];
+        if way.y > 0.0 {
+            way.x / way.y
+        } else if way.x > 0.0 {
+            f64::INFINITY
+        } else {
+            f64::NEG_INFINITY
+        }
+    };
+    let mut all = vec![0.0; points.len()];
+    // The upper hull of the points after `i`, nearest last: the steepest way leads to its first
+    // corner.
+    let mut hull: Vec<usize> = Vec::new();
+    for i in (0..points.len()).rev() {
+        while let [.., far, near] = hull[..]
+            && slope(i, near) <= slope(i, far)
+        {
+            hull.pop();
+        }
+        if let Some(&near) = hull.last() {
+            all[i] = slope(i, near).max(0.0);
+        }
+        hull.push(i);
+    }
+    all
+}
+
+/// From each point of a surface the steepest way to one farther up where a ray can come out that
+/// has entered in between: one steeper there than the surface, from the largest radius over the
+/// point; 0 where all lead down.
+fn relaxed_slopes(points: &[DVec2]) -> Vec<f64> {
+    let top = points.iter().fold(0.0, |m: f64, p| m.max(p.x));
+    let of = |(i, from): (usize, &DVec2)| {
+        let mut steepest = 0.0f64;
+        for side in points[i..].windows(2) {
+            let along = side[1] - side[0];
+            for end in side {
+                let way = *end - *from;
+                // The ray from (top, from.y) falls less than the side does.
+                let comes_out = (end.x - top) * along.y > along.x * way.y;
+                if way.y > 0.0 && comes_out {
+                    steepest = steepest.max(way.x / way.y);
+                }
+            }
+        }
+        steepest
+    };
+    points.iter().enumerate().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests;

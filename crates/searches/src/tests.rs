@@ -1,0 +1,38 @@
+#![allow(clippy::unwrap_used)]
+use crate::list::modules;
+use crate::modules::generated as g;
+use revmap::search::unpacked;
+use std::collections::BTreeSet;
+
+/// The list of modules is finite and known; whoever lengthens it sees by how much.
+#[test]
+fn modules_are_few() {
+    let names: BTreeSet<String> = modules().iter().map(|listed| listed.name()).collect();
+    assert_eq!((names.len(), modules().len()), (60, 60));
+    let is_spirv = |packed| unpacked(packed).is_some_and(|words| words[0] == 0x0723_0203);
+    assert_eq!(g::packed().filter(|packed| is_spirv(packed)).count(), 60);
+}
+
+/// What is kept was made from today's sources; and word for word, where the same compiler makes it
+/// here.
+#[test]
+fn kept_spirv_is_what_the_sources_give() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/spirv");
+    let kept = |name: &str| std::fs::read(format!("{folder}/{name}")).unwrap();
+    let hashes = String::from_utf8(kept("sources.fnv")).unwrap();
+    let hashes: Vec<&str> = hashes.lines().collect();
+    assert_eq!(
+        hashes[0],
+        format!("{:#018x}", g::SOURCES_HASH),
+        "shaders changed; renew spirv/ with REVMAP_KEEP_SPIRV=1 cargo build -p revmap-searches --features shaderc"
+    );
+    if hashes[1] == format!("{:#018x}", g::COMPILER_HASH) {
+        for (listed, packed) in modules().iter().zip(g::packed()) {
+            let name = listed.name();
+            let same = unpacked(&kept(&format!("{name}.spv.z"))) == unpacked(packed);
+            assert!(same, "{name}: kept words differ from the compiled");
+        }
+    }
+    let files = std::fs::read_dir(folder).unwrap().count();
+    assert_eq!(files, modules().len() + 1, "files that nothing reads");
+}

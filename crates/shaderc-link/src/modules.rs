@@ -1,0 +1,264 @@
+//! Packed SPIR-V for build scripts: each module of a list is compiled from GLSL with the feature
+//! `shaderc`, and read from the folder of kept modules without it. With the variable
+//! `REVMAP_KEEP_SPIRV=1` what is compiled is kept.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a step of a build script gives.
+pub type Fallible<T> = Result<T, Box<dyn Error>>;
+
+/// The ending of packed modules.
+pub const ENDING: &str = "spv.z";
+
+/// One module.
+pub struct Module {
+    /// Its name, and that of its kept file.
+    pub name: String,
+    /// Its entry file.
+    pub entry: &'static str,
+    /// What it is compiled with.
+    pub macros: Vec<(&'static str, &'static str)>,
+    /// An included file, and the file that is read in its place.
+    pub hook: Option<(&'static str, &'static str)>,
+    /// Whether it is kept for tests alone, with its names, which optimised words do not hold.
+    pub named: bool,
+}
+
+/// Modules, and where their GLSL is. Of two folders that hold a file the first is read.
+pub struct Modules<'a> {
+    /// Folders of entry files.
+    pub entries: &'a [&'a str],
+    /// Folders of included files.
+    pub includes: &'a [&'a str],
+    /// The folder of kept modules.
+    pub kept: &'a str,
+    /// The modules.
+    pub all: Vec<Module>,
+}
+
+impl Modules<'_> {
+    /// Writes the packed modules into `modules.bin` of the output folder, one after another, and
+    /// returns Rust code: their sizes, and hashes of `sources` and of the compiler.
+    pub fn embed(&self, sources: &[PathBuf]) -> Fallible<String> {
+        println!("cargo::rerun-if-env-changed=REVMAP_KEEP_SPIRV");
+        println!("cargo::rerun-if-changed={}", self.kept);
+        let mut hash = Fnv::default();
+        for file in sources {
+            println!("cargo::rerun-if-changed={}", file.display());
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            hash.add(name.as_bytes());
+            hash.add(&fs::read(file)?);
+        }
+        let (hash, compiler) = (hash.0, compiler()?);
+        if keeps() {
+            fs::create_dir_all(self.kept)?;
+            // Those that the list no longer has must not stay.
+            for old in files_in(self.kept, &["spv", "z"])? {
+                fs::remove_file(old)?;
+            }
+            let hashes = format!("{hash:#018x}\n{compiler:#018x}\n");
+            fs::write(Path::new(self.kept).join("sources.fnv"), hashes)?;
+        }
+        let named = self.all.iter().map(|module| module.named);
+        let packed: Vec<_> = self
+            .packed()?
+            .into_iter()
+            .zip(named)
+            .filter_map(|(bytes, named)| (!named).then_some(bytes))
+            .collect();
+        let sizes: Vec<usize> = packed.iter().map(Vec::len).collect();
+        let out = PathBuf::from(std::env::var("OUT_DIR")?);
+        fs::write(out.join("modules.bin"), packed.concat())?;
+        let mut text = String::new();
+        writeln!(
+            text,
+            "/// Packed bytes of each module, in the order of the list.\npub(super) static MODULE_BYTES: &[usize] = &{sizes:?};\n\n\
+             /// FNV-1a of the names and texts of all sources.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
+             /// FNV-1a of what the compiler makes of a fixed probe: tells compilers apart; 0 where none was used.\n\
+             pub const COMPILER_HASH: u64 = {compiler:#018x};\n"
+        )?;
+        Ok(text)
+    }
+
+    #[cfg(not(feature = "shaderc"))]
+    fn packed(&self) -> Fallible<Vec<Vec<u8>>> {
+        let kept = |module: &Module| {
+            let path = Path::new(self.kept).join(format!("{}.{ENDING}", module.name));
+            Ok(fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))?)
+        };
+        self.all.iter().map(kept).collect()
+    }
+
+    #[cfg(feature = "shaderc")]
+    fn packed(&self) -> Fallible<Vec<Vec<u8>>> {
+        self.each(|module, words| {
+            let bytes = packed(words);
+            if keeps() {
+                let path = Path::new(self.kept).join(format!("{}.{ENDING}", module.name));
+                fs::write(path, &bytes).map_err(|e| e.to_string())?;
+            }
+            Ok(bytes)
+        })
+    }
+
+    /// The words of every module.
+    #[cfg(feature = "shaderc")]
+    pub fn compiled(&self) -> Fallible<Vec<Vec<u32>>> {
+        self.each(|_, words| Ok(words.to_vec()))
+    }
+
+    /// What `make` gives for the words of each module. Compiles on every core: modules are many.
+    #[cfg(feature = "shaderc")]
+    fn each<T: Send>(
+        &self,
+        make: impl Fn(&Module, &[u32]) -> Result<T, String> + Sync,
+    ) -> Fallible<Vec<T>> {
+        use std::sync::Mutex;
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let next = AtomicUsize::new(0);
+        let done = Mutex::new(Vec::new());
+        std::thread::scope(|scope| {
+            for _ in 0..threads {
+                scope.spawn(|| {
+                    // One compiler keeps what it has read of the language.
+                    let compiler = crate::Compiler::new().map_err(|e| e.to_string());
+                    while let Some((n, module)) = {
+                        let n = next.fetch_add(1, Ordering::Relaxed);
+                        self.all.get(n).map(|m| (n, m))
+                    } {
+                        let compiler = compiler.as_ref().map_err(String::clone);
+                        let made = compiler
+                            .and_then(|c| self.words(c, module).map_err(|e| e.to_string()))
+                            .and_then(|words| make(module, &words))
+                            .map_err(|e| format!("{}: {e}", module.name));
+                        if let Ok(mut done) = done.lock() {
+                            done.push((n, made));
+                        }
+                    }
+                });
+            }
+        });
+        let mut done = done.into_inner().map_err(|e| e.to_string())?;
+        done.sort_by_key(|(n, _)| *n);
+        if done.len() != self.all.len() {
+            return Err("a thread of the compiler died".into());
+        }
+        Ok(done
+            .into_iter()
+            .map(|(_, made)| made)
+            .collect::<Result<_, _>>()?)
+    }
+
+    #[cfg(feature = "shaderc")]
+    fn words(&self, compiler: &crate::Compiler, module: &Module) -> Fallible<Vec<u32>> {
+        let (path, text) = read(self.entries, module.entry)?;
+        let include = |wanted: &str| match module.hook {
+            Some((included, file)) if included == wanted => read(self.includes, file),
+            _ => read(self.includes, wanted),
+        };
+        let level = if module.named {
+            crate::OptimizationLevel::Zero
+        } else {
+            crate::OptimizationLevel::Performance
+        };
+        let made = crate::spirv(compiler, (&path, &text), &module.macros, level, include)?;
+        Ok(made.as_binary().to_vec())
+    }
+}
+
+/// The files of a folder with one of these endings, in order.
+pub fn files_in(folder: impl AsRef<Path>, endings: &[&str]) -> Fallible<Vec<PathBuf>> {
+    let has_ending = |path: &PathBuf| {
+        let ending = path.extension();
+        ending.is_some_and(|e| endings.iter().any(|ending| e == *ending))
+    };
+    let mut files: Vec<_> = fs::read_dir(folder)?
+        .filter_map(|entry| entry.ok().map(|e| e.path()))
+        .filter(has_ending)
+        .collect();
+    files.sort();
+    Ok(files)
+}
+
+/// A file's path and text.
+#[cfg(feature = "shaderc")]
+fn read(folders: &[&str], wanted: &str) -> Result<(String, String), String> {
+    let path = folders
+        .iter()
+        .map(|folder| Path::new(folder).join(wanted))
+        .find(|path| path.exists())
+        .ok_or_else(|| format!("{wanted}: there is no such file"))?;
+    let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+    Ok((path.to_string_lossy().into_owned(), text))
+}
+
+fn keeps() -> bool {
+    cfg!(feature = "shaderc") && std::env::var_os("REVMAP_KEEP_SPIRV").is_some_and(|v| v == "1")
+}
+
+/// Words as seven bits a byte, most of them being small; then deflated.
+#[cfg(feature = "shaderc")]
+fn packed(words: &[u32]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(2 * words.len());
+    for mut word in words.iter().copied() {
+        while word >= 128 {
+            bytes.push((word & 127) as u8 | 128);
+            word >>= 7;
+        }
+        bytes.push(word as u8);
+    }
+    miniz_oxide::deflate::compress_to_vec(&bytes, 9)
+}
+
+#[cfg(not(feature = "shaderc"))]
+fn compiler() -> Fallible<u64> {
+    Ok(0)
+}
+
+/// Versions of shaderc that share a generator word make other words of the same text; a probe with some of everything shows it.
+#[cfg(feature = "shaderc")]
+fn compiler() -> Fallible<u64> {
+    const PROBE: &str = "#version 450
+        struct S { vec4 a; uvec4 b; };
+        layout(local_size_x = 8) in;
+        layout(constant_id = 0) const uint K = 3u;
+        layout(set = 0, binding = 0, std140) uniform U { S s; mat4 m; } u;
+        layout(set = 0, binding = 1, std430) buffer B { uint w[]; };
+        layout(set = 0, binding = 2) uniform sampler2D t[2];
+        bool f(inout S s, vec3 v) { s.a = u.m * vec4(v, 1.0); return any(lessThan(v, s.a.xyz)) && K != 0u; }
+        void main() {
+            S s = u.s;
+            for (uint i = 0u; i < K; ++i) {
+                if (f(s, textureGather(t[i & 1u], s.a.xy).xyz)) { break; }
+                s.b.x += findLSB(int(i)) > 0 ? 1u : w[i];
+            }
+            atomicAdd(w[gl_GlobalInvocationID.x], s.b.x);
+        }";
+    let compiler = crate::Compiler::new()?;
+    let level = crate::OptimizationLevel::Zero;
+    let none = |wanted: &str| Err(format!("{wanted}: the probe includes nothing"));
+    let made = crate::spirv(&compiler, ("probe", PROBE), &[], level, none)?;
+    let mut hash = Fnv::default();
+    hash.add(made.as_binary_u8());
+    Ok(hash.0)
+}
+
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn add(&mut self, bytes: &[u8]) {
+        for &b in bytes {
+            self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

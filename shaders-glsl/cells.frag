@@ -1,0 +1,22 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Solves the patches of a fragment's cell.
+#include "search/cell.glsl"
+#include "stage/outputs.glsl"
+
+layout(depth_greater) out float gl_FragDepth;
+
+void main()
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    Hit hit;
+    bool found = trace_hull(pixel, hit);
+    count_steps(pixel, hit.steps, hit.exhausted);
+    if (!found) {
+        discard;
+    }
+#if OUTPUT != OUTPUT_DEPTH
+    store(shade(varying_look(), varying_rays(), pixel, hit));
+#endif
+    gl_FragDepth = hull_depth(ray_origin_base.w + hit.t);
+}

@@ -1,0 +1,108 @@
+// Repetition: the box holds nx x ny x nz cells, each a replica of the whole solid, shrunk to its cell and cut by it.
+// The ray is taken from cell to cell in the order in which it meets them, and in each the one solid is traced: as safe
+// as that, next to any neighbour, mirrored or not.
+#ifndef REPLICAS_GLSL
+#define REPLICAS_GLSL
+#include "core/trace.glsl"
+
+#if REPEATED
+// -1 along axes in which a cell is reflected.
+vec3 cell_sense(vec3 cell)
+{
+    vec3 odd = cell - 2.0 * floor(cell * 0.5);
+    return 1.0 - 2.0 * vec3(uvec3(solid.cells.w) >> uvec3(0u, 1u, 2u) & 1u) * odd;
+}
+
+// A place in the lattice as the cell's own object space has it: its middle at the box's middle, reflected where it is.
+vec3 in_cell(vec3 place, vec3 cell)
+{
+    vec3 size = vec3(2.0 * solid.bounds.xx, 1.0);
+    return ((place - cell - 0.5) * cell_sense(cell) + 0.5) * size - vec3(solid.axis.xy + solid.bounds.xx, 0.0);
+}
+
+// Whether the replica of a cell is solid at a place that is given relative to its axis.
+bool is_solid(vec3 p, inout uint steps)
+{
+#if SEARCH == SEARCH_QUADRIC
+    Meridian m;
+    m.o = p;
+    m.c = dot(p.xy, p.xy);
+    return starts_within(m);
+#elif READS_TABLES
+    Meridian m;
+    m.o = p;
+    m.c = dot(p.xy, p.xy);
+    return starts_in_table(m);
+#else
+    ++steps;
+    return field(vec2(length(p.xy), p.z)) <= 0.0;
+#endif
+}
+
+bool trace_replicas(vec3 eye, vec3 v, float base, inout Hit hit)
+{
+    // In units in which a cell is as large as the box is without repetition; its lower corner at 0.
+    vec3 count = vec3(solid.cells.xyz);
+    vec3 size = vec3(2.0 * solid.bounds.xx, 1.0);
+    vec3 o = (eye + vec3(solid.axis.xy + solid.bounds.xx, 0.0)) * count / size;
+    vec3 d = v * count / size;
+    vec3 inverse = 1.0 / mix(d, vec3(1e-30), equal(d, vec3(0.0)));
+    vec3 t_low = -o * inverse;
+    vec3 t_high = (count - o) * inverse;
+    vec3 near = min(t_low, t_high);
+    vec3 far = max(t_low, t_high);
+    float t = max(max(near.x, near.y), max(near.z, -base));
+    float t_out = min(far.x, min(far.y, far.z));
+    vec3 stride = vec3(greaterThanEqual(d, vec3(0.0)));
+    vec3 cell = clamp(floor(o + t * d), vec3(0.0), count - 1.0);
+    uint most = REPLICAS == 0u ? 1u : solid.cells.x + solid.cells.y + solid.cells.z;
+    bool inside = false; // comes from a replica that is solid at the border
+    for (uint i = 0u; i < most && (REPLICAS == 0u || t <= t_out); ++i) {
+        vec3 local = eye;
+        vec3 local_v = v;
+        vec3 sense = vec3(1.0);
+        if (REPLICAS != 0u) {
+            sense = cell_sense(cell);
+            local = in_cell(o, cell);
+            local_v = d * sense * size;
+        }
+        bool met = trace_solid(local, local_v, base, inside, hit);
+        vec3 next = (cell + stride - o) * inverse;
+        t = min(next.x, min(next.y, next.z));
+        vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
+        bool last = REPLICAS == 0u || any(lessThan(beyond, vec3(0.0))) || any(greaterThanEqual(beyond, count));
+        // Between two replicas that are solid at the border nothing is seen. A rounding must not ask the cell that the
+        // ray leaves.
+        vec3 border = clamp(o + t * d, beyond + 1e-5, beyond + (1.0 - 1e-5));
+        inside = REPLICAS != 0u && met && hit.at_border && !last && is_solid(in_cell(border, beyond), hit.steps);
+        if (met && !inside) {
+            if (REPLICAS != 0u) {
+                hit.sense = sense;
+                hit.normal = normalize(hit.normal * sense * count);
+            }
+            return true;
+        }
+        if (last) {
+            return false;
+        }
+        cell = beyond;
+    }
+    return false;
+}
+#endif
+
+// Of the ray `eye + t v`, t >= -base.
+bool trace(vec3 eye, vec3 v, float base, out Hit hit)
+{
+    hit.steps = 0u;
+    hit.exhausted = false;
+    hit.sense = vec3(1.0);
+    hit.at_border = false;
+#if REPEATED
+    return trace_replicas(eye, v, base, hit);
+#else
+    return trace_solid(eye, v, base, false, hit);
+#endif
+}
+
+#endif

@@ -1,0 +1,35 @@
+// Quads of pixels (tile_words.glsl) as points, each a vertex; where the device has no points of this size, as two
+// triangles of six vertices.
+#ifndef QUAD_GLSL
+#define QUAD_GLSL
+#include "stage/tile_words.glsl"
+#include "core/pixel_ray.glsl"
+
+struct Quad {
+    uvec2 corner; // in pixels
+    uint side;
+    uint instance;
+    float near; // no point of the copy is nearer
+};
+
+Quad this_quad()
+{
+    uint at = 4u * (LARGE_POINTS != 0u ? uint(gl_VertexIndex) : uint(gl_VertexIndex) / 6u);
+    uint place = tile_words[at];
+    uvec2 corner = uvec2(place, place >> QUAD_BITS) & ((1u << QUAD_BITS) - 1u);
+    return Quad(corner, 1u << (place >> (2u * QUAD_BITS)), tile_words[at + 1u], uintBitsToFloat(tile_words[at + 3u]));
+}
+
+// No fragment's depth is nearer than the quad's.
+void place_quad(Quad quad)
+{
+    vec2 at = vec2(quad.corner) + 0.5 * float(quad.side);
+    if (LARGE_POINTS == 0u) {
+        uint bit = 1u << (uint(gl_VertexIndex) % 6u);
+        at = vec2(quad.corner) + float(quad.side) * vec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
+    }
+    gl_Position = vec4(at * frame.pixels.xz + frame.pixels.yw, depth_of(max(quad.near, 1e-30)), 1.0);
+    gl_PointSize = float(quad.side);
+}
+
+#endif

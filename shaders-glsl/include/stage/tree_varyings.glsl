@@ -1,0 +1,53 @@
+// Flat varyings of proxies without patches, besides those of varyings.glsl: what clipping and searching read.
+#ifndef TREE_VARYINGS_GLSL
+#define TREE_VARYINGS_GLSL
+#include "stage/varyings.glsl"
+
+layout(location = 11) flat VARYING vec4 tree_bounds;
+layout(location = 12) flat VARYING vec4 tree_axis; // of depth alone z is the instance's number
+#if READS_MAP
+layout(location = 13) flat VARYING vec4 tree_map;
+#endif
+#if TAKES_STEPS
+layout(location = 14) flat VARYING vec4 tree_offset;
+#endif
+#if READS_TABLES
+layout(location = 15) flat VARYING uvec4 tree_patches;
+#endif
+
+#ifdef VERTEX_GLSL
+void hand_over_tree()
+{
+    tree_bounds = solid.bounds;
+    tree_axis = OUTPUT == OUTPUT_DEPTH ? vec4(solid.axis.xy, float(instance_number), 0.0) : solid.axis;
+#if READS_MAP
+    tree_map = solid.map;
+#endif
+#if TAKES_STEPS
+    tree_offset = solid.offset;
+#endif
+#if READS_TABLES
+    tree_patches = solid.patches;
+#endif
+}
+#else
+void take_over_tree()
+{
+#if OUTPUT == OUTPUT_DEPTH && REPEATED
+    take_solid(instances[uint(tree_axis.z)].solid.x);
+#endif
+    solid.bounds = tree_bounds;
+    solid.axis = tree_axis;
+#if READS_MAP
+    solid.map = tree_map;
+#endif
+#if TAKES_STEPS
+    solid.offset = tree_offset;
+#endif
+#if READS_TABLES
+    solid.patches = tree_patches;
+#endif
+}
+#endif
+
+#endif

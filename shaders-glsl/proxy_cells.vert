@@ -1,0 +1,39 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// A proxy of cells: two rings of HULL_SIDES corners for every frustum of their shells, with the patches of its cell.
+// CLIPPED: triangles end at the box's sides, from where proxy_boxes.vert draws on.
+#include "stage/vertex.glsl"
+#include "stage/cell_varyings.glsl"
+#include "core/patch_tables.glsl"
+#include "core/meridian.glsl"
+
+#if CLIPPED
+out float gl_ClipDistance[4];
+#endif
+
+void main()
+{
+    Instance i = begin(uint(gl_InstanceIndex));
+    uint at = solid.hull.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
+    uint vertex = uint(gl_VertexIndex) % (2u * HULL_SIDES);
+    vec4 rings = uintBitsToFloat(patch_tables[at]);
+    vec2 rz = vertex < HULL_SIDES ? rings.xy : rings.zw;
+    float angle = float(vertex % HULL_SIDES) * (6.28318530717958648 / float(HULL_SIDES));
+    vec3 corner = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(solid.axis.xy, 0.0);
+    gl_Position = clip_of(i, corner);
+    hand_over(i, frame.forward.w);
+    hull_sides = sides_of_box();
+    [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+        hull_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
+        hull_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+    }
+#if CLIPPED
+    // No triangle is taken away that begins within the sides, as they are drawn.
+    vec2 side = solid.bounds.x + max(fraction_of_pixel(i).xy, 1e-3);
+    gl_ClipDistance[0] = side.x - corner.x;
+    gl_ClipDistance[1] = side.x + corner.x;
+    gl_ClipDistance[2] = side.y - corner.y;
+    gl_ClipDistance[3] = side.y + corner.y;
+#endif
+}

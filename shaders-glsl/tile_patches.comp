@@ -1,0 +1,15 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Solves the pixels of tiles whose patches are listed.
+#include "search/listed.glsl"
+
+void main()
+{
+    share_patches(share_tile());
+    barrier();
+    begin_tile();
+    uvec2 pixel = tile_corner + gl_LocalInvocationID.xy;
+    Nearest nearest;
+    bool found = search_listed(pixel, nearest);
+    store_tile(pixel, found, nearest);
+}

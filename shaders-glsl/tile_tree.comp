@@ -1,0 +1,20 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Searches the pixels of tiles of one copy as in a box.
+#include "stage/tile.glsl"
+#include "core/replicas.glsl"
+
+void main()
+{
+    share_tile();
+    barrier();
+    begin_tile();
+    uvec2 pixel = tile_corner + gl_LocalInvocationID.xy;
+    Nearest nearest;
+    nearest.instance = 0u;
+    bool found = trace(ray_origin(tile_rays, pixel), ray_direction(tile_rays, pixel), tile_rays.base, nearest.hit);
+    nearest.steps = nearest.hit.steps;
+    nearest.exhausted = nearest.hit.exhausted;
+    nearest.depth = depth_of(tile_rays.base + nearest.hit.t);
+    store_tile(pixel, found, nearest);
+}

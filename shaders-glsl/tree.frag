@@ -1,0 +1,27 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Searches a fragment of a box, of a strip of its sides or of a tile.
+#include "stage/tree_varyings.glsl"
+#include "stage/fragment.glsl"
+#include "core/replicas.glsl"
+#include "stage/outputs.glsl"
+
+layout(depth_greater) out float gl_FragDepth;
+
+void main()
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    take_over();
+    take_over_tree();
+    PixelRays rays = varying_rays();
+    Hit hit;
+    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, hit);
+    count_steps(pixel, hit.steps, hit.exhausted);
+    if (!found) {
+        discard;
+    }
+#if OUTPUT != OUTPUT_DEPTH
+    store(shade(varying_look(), rays, pixel, hit));
+#endif
+    gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
+}

@@ -1,0 +1,197 @@
+//! Levels of a surface: the same boundary fitted at tolerances that double from level to level. The
+//! finest, number 0, is the exact one. Which of them an object is drawn by follows from the view
+//! alone, so that a picture does not depend on the frames before it.
+
+use super::tiles::{Cylinder, Projector};
+use super::view::View;
+use crate::scene::{Cluster, Object, Placement};
+use crate::settings::Tolerance;
+use crate::surface::FitOptions;
+use glam::{DVec2, DVec3};
+use std::f64::consts::SQRT_2;
+
+/// The coarsest level: patches within a 36th of the height.
+pub(crate) const COARSEST: u8 = 12;
+
+/// Pixels of tolerance for one pixel that the surface moves. A ray that meets the surface at an
+/// angle with the cosine `c` is off by `1 / c` times what the surface moves. Over eight solids the
+/// 99.9th percentile of that is 7 to 15.
+pub(crate) const GRAZING: f64 = 16.0;
+
+/// Largest distance between the patches of a level and the exact contour, in units of the profile's
+/// height.
+pub(crate) fn bound(level: u8) -> f64 {
+    FitOptions::default().tolerance * f64::from(1u32 << level)
+}
+
+/// The coarsest level that `tolerance` allows an object of which `pixels` are a unit's size where
+/// it is nearest.
+pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
+    let allowed = tolerance.pixels() / GRAZING;
+    (1..=COARSEST)
+        .take_while(|&level| bound(level) * pixels <= allowed)
+        .last()
+        .unwrap_or(0)
+}
+
+/// The most pixels that one unit of an object can take, over the copies that lie in front of the
+/// eye; infinite where one may reach the eye. `height`: of the box in units of the profile's.
+/// `all`: also copies that are beside the picture, whose shadows may be in it.
+pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
+    // Off the middle of the picture a length across the ray covers more pixels.
+    let stretch = if view.parallel {
+        1.0
+    } else {
+        let [low, high] = view.corners();
+        [
+            (low.x, low.y),
+            (high.x, low.y),
+            (low.x, high.y),
+            (high.x, high.y),
+        ]
+        .map(|(x, y)| view.dir_00 + (x - 0.5) * view.dir_x + (y - 0.5) * view.dir_y)
+        .map(|ray| ray.length() / ray.dot(view.forward))
+        .into_iter()
+        .fold(1.0, f64::max)
+    };
+    let pixel = view.dir_x.length().min(view.dir_y.length());
+    let of = |scale: f64, [nearest, farthest]: [f64; 2]| {
+        if farthest <= 0.0 {
+            0.0
+        } else if view.parallel {
+            scale / pixel
+        } else {
+            // What the near plane cuts is nearest there.
+            scale * stretch / (nearest.max(view.near) * pixel)
+        }
+    };
+    let visible = Visible::new(object, view, all);
+    let radius = object.profile.radius;
+    let at_most = |cluster: &Cluster| {
+        let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
+        of(cluster.most_scale.max_element(), around.along(view.forward)) * (1.0 + 1e-9)
+    };
+    let least = object.least_of_copies(
+        |cluster| {
+            if visible.may_show_any(cluster) {
+                -at_most(cluster)
+            } else {
+                0.0
+            }
+        },
+        |copy| {
+            let pixels = of(copy.scale.max_element(), depths(radius, copy, view));
+            if pixels > 0.0 && visible.may_show(copy) {
+                -pixels
+            } else {
+                0.0
+            }
+        },
+    );
+    -least / height
+}
+
+/// Which copies may be in the picture.
+struct Visible {
+    /// None where all are taken to be.
+    projector: Option<Projector>,
+    shape: Cylinder,
+}
+
+impl Visible {
+    fn new(object: &Object, view: &View, all: bool) -> Self {
+        Self {
+            projector: (!all && !view.parallel).then(|| Projector::new(view)),
+            shape: Cylinder {
+                axis: DVec2::ZERO,
+                radius: object.profile.radius * SQRT_2,
+                low: 0.0,
+                high: 1.0,
+            },
+        }
+    }
+
+    fn may_show(&self, copy: &Placement) -> bool {
+        let seen = |projector: &Projector| {
+            projector.bounds(&projector.axes(copy, self.shape.axis), &self.shape)
+        };
+        self.projector.as_ref().is_none_or(|f| seen(f).is_some())
+    }
+
+    /// Whether some of a cluster's copies may.
+    fn may_show_any(&self, cluster: &Cluster) -> bool {
+        let seen = |projector: &Projector| projector.cluster_bounds(cluster, &self.shape);
+        self.projector.as_ref().is_none_or(|f| seen(f).is_some())
+    }
+}
+
+/// Least and largest depth of a copy's box.
+fn depths(radius: f64, copy: &Placement, view: &View) -> [f64; 2] {
+    let forward = copy.rotation.conjugate() * view.forward * copy.scale;
+    let middle = (copy.position - view.eye).dot(view.forward) + 0.5 * forward.z;
+    let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
+    [middle - reach, middle + reach]
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::profile::Profile;
+    use crate::scene::Camera;
+    use std::sync::Arc;
+
+    fn at(distance: f64) -> (Object, View) {
+        let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
+        let mut object = Object::new("spindle", Arc::new(profile));
+        object.placement.position.z = -0.5;
+        let camera = Camera::new(DVec3::new(distance, 0.0, 0.0), DVec3::ZERO);
+        let view = View::from_camera(&camera, (800, 600), [0.01, 1e4]).unwrap();
+        (object, view)
+    }
+
+    #[test]
+    fn pixels_of_a_unit_are_those_of_its_nearest_point() {
+        for distance in [2.0, 20.0, 200.0] {
+            let (object, view) = at(distance);
+            let found = pixels_per_unit(&object, 1.0, &view, false);
+            // Any two near points on the box, one unit apart, are seen nearer to each other.
+            let p = |y: f64, z: f64| view.project(DVec3::new(0.5, y, z)).0;
+            for (a, b) in [(p(0.5, 0.0), p(-0.5, 0.0)), (p(0.0, 0.5), p(0.0, -0.5))] {
+                assert!((b - a).length() <= found && (b - a).length() > 0.8 * found);
+            }
+        }
+        let (mut object, view) = at(20.0);
+        let one = pixels_per_unit(&object, 1.0, &view, false);
+        object.placement.scale = DVec3::new(1.0, 3.0, 1.0);
+        assert!((pixels_per_unit(&object, 1.0, &view, false) / one - 3.0).abs() < 1e-9);
+        assert!((pixels_per_unit(&object, 2.0, &view, false) / one - 1.5).abs() < 1e-9);
+        object.placement.position.x = 100.0;
+        assert_eq!(
+            pixels_per_unit(&object, 1.0, &view, true),
+            0.0,
+            "behind the eye"
+        );
+        // Beside the picture, and around the eye's plane but below the picture.
+        for beside in [DVec3::new(0.0, 40.0, 0.0), DVec3::new(20.0, 0.0, -9.0)] {
+            object.placement.position = beside;
+            assert!(pixels_per_unit(&object, 1.0, &view, true) > 0.0);
+            assert_eq!(pixels_per_unit(&object, 1.0, &view, false), 0.0, "{beside}");
+        }
+    }
+
+    #[test]
+    fn the_bound_of_a_level_stays_below_what_is_allowed() {
+        for tolerance in [0.05, 0.25, 2.0] {
+            let tolerance = Tolerance::new(tolerance).unwrap();
+            for pixels in [0.1, 1.0, 10.0, 100.0, 1000.0] {
+                let level = coarsest(tolerance, pixels);
+                let error = |level| bound(level) * pixels * GRAZING;
+                assert!(level == 0 || error(level) <= tolerance.pixels());
+                assert!(level == COARSEST || error(level + 1) > tolerance.pixels());
+            }
+        }
+        assert_eq!(coarsest(Tolerance::EXACT, 1e-9), 0);
+        assert_eq!(coarsest(Tolerance::DEFAULT, f64::INFINITY), 0);
+    }
+}

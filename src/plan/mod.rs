@@ -1,0 +1,474 @@
+//! What a frame draws, as plain data: from a view, objects and limits to a [`FramePlan`]. No module
+//! here speaks Vulkan, and nothing here can fail.
+//!
+//! Fragments draw proxies, [`proxy`], or tiles where copies are many; compute draws tiles,
+//! [`tiles`]. Objects that share a pipeline and a set of textures share draws and dispatches: their
+//! number does not depend on how many objects there are.
+
+pub(crate) mod levels;
+mod path;
+pub(crate) mod proxy;
+mod rectangle;
+pub(crate) mod tiles;
+mod view;
+
+pub use path::DrawPath;
+pub(crate) use path::{Conditions, LIST_LENGTHS_OF, Path, PlanObject, shape_of};
+pub use view::{DepthOrder, View, Viewport};
+
+use crate::shader::generated::{
+    BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
+};
+use crate::shader::{Kind, Variant};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+use tiles::{Batch, Drawer, LayerTiles, Projector, TileWords, Visible};
+
+/// From so many objects on paths are chosen on all cores: to wake these takes as long as to choose a
+/// thousand.
+const MANY: usize = 4096;
+
+/// Work groups of one dispatch: what every device takes.
+const MOST_GROUPS: u32 = 65_535;
+
+/// A frame's draws and dispatches, and all that they read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct FramePlan {
+    /// In the order in which they are recorded.
+    pub steps: Vec<Step>,
+    pub draws: Vec<IndexedDraw>,
+    /// Records and lists of tiles.
+    pub words: Vec<u32>,
+    /// Words that the device fills with lists; the first of them are zeroed before it does.
+    pub list_words: u32,
+    pub list_heads: u32,
+    /// One an object.
+    pub paths: Vec<DrawPath>,
+    /// The copies of each object that are read; none: all.
+    pub copies: Vec<Option<Vec<u32>>>,
+    /// What is read of each object's surface.
+    pub parts: Vec<Parts>,
+    /// Whether compute compares depths.
+    pub compares_depths: bool,
+}
+
+/// Parts of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Parts {
+    /// What searches walk.
+    pub tables: bool,
+    /// Frusta of cells, and rows of the box's sides.
+    pub frusta: bool,
+    /// What lists of patches are made from.
+    pub patches: bool,
+}
+
+/// One draw or dispatch, or as many of them as one command draws.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Step {
+    /// Steps of a phase wait for those of the phase before.
+    pub phase: u32,
+    pub variant: Variant,
+    pub kind: Kind,
+    /// Among the objects: the one whose textures are bound and, with `variant.own_tables`, whose
+    /// tables.
+    pub object: u32,
+    pub call: Call,
+}
+
+/// What a step records.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Call {
+    /// Draws of [`FramePlan::draws`].
+    Draws(Range<u32>),
+    /// Records of quads.
+    Quads(Range<u32>),
+    /// Work groups.
+    Dispatch(u32, Pushed),
+    /// As many work groups as the head at this word of the lists says.
+    Indirect(u32, Pushed),
+}
+
+/// `Pushed` of `compute.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Pushed {
+    /// Number of the first record.
+    pub first: u32,
+    /// Of records.
+    pub count: u32,
+    /// Word of the heads of their lists.
+    pub heads: u32,
+    /// Word where the tiles of their lists begin.
+    pub tiles: u32,
+    /// Which of the lists is taken.
+    pub list: u32,
+    /// Number of the only solid, of tiles of several copies.
+    pub solid: u32,
+}
+
+/// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
+pub(crate) type IndexedDraw = [u32; 5];
+
+/// Plans a frame.
+pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> FramePlan {
+    let chosen = |of: &PlanObject| with.choose(of, view);
+    let paths: Vec<Path> = if objects.len() < MANY {
+        objects.iter().map(chosen).collect()
+    } else {
+        objects.par_iter().with_min_len(64).map(chosen).collect()
+    };
+    let mut plan = FramePlan {
+        paths: paths.iter().map(Path::public).collect(),
+        copies: vec![None; objects.len()],
+        parts: vec![Parts::default(); objects.len()],
+        ..FramePlan::default()
+    };
+    let variants = variants(objects, with);
+    plan.add_proxies(view, objects, (&paths, &variants));
+    plan.add_tiles(view, objects, (&paths, &variants), with);
+    for (parts, object) in plan.parts.iter_mut().zip(objects) {
+        parts.tables |= with.casts;
+        parts.tables &= object.surface.is_some();
+    }
+    plan
+}
+
+impl Path {
+    fn public(&self) -> DrawPath {
+        match self {
+            Self::Box => DrawPath::Box,
+            Self::Cells { .. } => DrawPath::Hull,
+            Self::Tiles => DrawPath::Tiles,
+        }
+    }
+}
+
+/// Each object's variant, with how many solids those have that look alike. That does not depend on
+/// the view, so that a camera that moves needs no other pipelines.
+pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
+    let mut looks = HashMap::new();
+    for of in objects {
+        *looks.entry((of.variant, of.textures)).or_insert(0u32) += 1;
+    }
+    let of_look = |of: &PlanObject| {
+        let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
+        Variant {
+            one_solid: u32::from(alone),
+            own_tables: u32::from(alone && with.holds_tables(of)),
+            ..of.variant
+        }
+    };
+    objects.iter().map(of_look).collect()
+}
+
+/// Objects that share a pipeline and a set of textures.
+struct Layer {
+    variant: Variant,
+    kind: Kind,
+    objects: Vec<u32>,
+    draws: Vec<IndexedDraw>,
+}
+
+impl Layer {
+    /// The layer of an object, made where it is the first.
+    fn of<'a>(
+        all: &'a mut Vec<Self>,
+        objects: &[PlanObject],
+        number: usize,
+        (variant, kind): (Variant, Kind),
+    ) -> (usize, &'a mut Self) {
+        let textures = objects[number].textures;
+        let same = |layer: &Self| {
+            let like = layer.objects.first().map(|&n| objects[n as usize].textures);
+            (layer.variant, layer.kind, like) == (variant, kind, Some(textures))
+        };
+        let at = all.iter().position(same).unwrap_or_else(|| {
+            all.push(Self {
+                variant,
+                kind,
+                objects: Vec::new(),
+                draws: Vec::new(),
+            });
+            all.len() - 1
+        });
+        all[at].objects.push(number as u32);
+        (at, &mut all[at])
+    }
+}
+
+impl FramePlan {
+    /// Boxes and cells.
+    fn add_proxies(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        (paths, variants): (&[Path], &[Variant]),
+    ) {
+        let mut layers = Vec::new();
+        for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
+            let count = of.object.placements().len() as u32;
+            let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
+            let seen = |outside: bool| Variant {
+                outside: u32::from(outside),
+                ..variants[n]
+            };
+            let mut add = |kind: Kind, outside, draws: &mut dyn Iterator<Item = IndexedDraw>| {
+                let key = (seen(outside).of_kind(kind), kind);
+                Layer::of(&mut layers, objects, n, key)
+                    .1
+                    .draws
+                    .extend(draws);
+            };
+            match path {
+                Path::Tiles => {}
+                Path::Box => {
+                    let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
+                    let outside = of.surface.is_some_and(|s| apart(s));
+                    add(
+                        Kind::Boxes,
+                        outside,
+                        &mut [draw(BOX_INDICES, 0)].into_iter(),
+                    );
+                    self.parts[n].tables = true;
+                }
+                Path::Cells { frusta, cut } => {
+                    let corners = |frusta: u32| 6 * HULL_SIDES * frusta;
+                    let all = BOX_INDICES + STRIP_INDICES;
+                    let of_run = |run: &Range<u32>| {
+                        draw(corners(run.end - run.start), all + corners(run.start))
+                    };
+                    add(Kind::Cells, !cut, &mut frusta.iter().map(of_run));
+                    if *cut {
+                        let strips = draw(STRIP_INDICES, BOX_INDICES);
+                        add(Kind::Boxes, false, &mut [strips].into_iter());
+                    }
+                    self.parts[n].frusta = true;
+                    self.parts[n].tables |= *cut;
+                }
+            }
+        }
+        for layer in layers {
+            let first = self.draws.len() as u32;
+            self.draws.extend(&layer.draws);
+            self.steps.push(Step {
+                phase: 0,
+                variant: layer.variant,
+                kind: layer.kind,
+                object: layer.objects[0],
+                call: Call::Draws(first..self.draws.len() as u32),
+            });
+        }
+    }
+
+    /// Tiles of all objects that are drawn by them.
+    fn add_tiles(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        (paths, variants): (&[Path], &[Variant]),
+        with: &Conditions,
+    ) {
+        let drawn = |n: &usize| paths[*n] == Path::Tiles;
+        let numbers: Vec<usize> = (0..objects.len()).filter(drawn).collect();
+        if numbers.is_empty() {
+            self.compares_depths = with.host_depths;
+            return;
+        }
+        let batches: Vec<Batch> = (numbers.iter())
+            .map(|&n| batch(&objects[n], with))
+            .collect();
+        let projector = Projector::new(view);
+        let visible = Visible::new(view, &projector, &batches);
+        let mut layers = Vec::new();
+        let mut layer_of = Vec::with_capacity(numbers.len());
+        let kind = if with.compute {
+            Kind::TileTree
+        } else {
+            Kind::Quads
+        };
+        let copies = visible.copies();
+        for (batch, &n) in numbers.iter().enumerate() {
+            let of = &objects[n];
+            if copies[batch].is_empty() {
+                // In no layer: nothing of it is listed.
+                layer_of.push(u32::MAX);
+                continue;
+            }
+            let variant = Variant {
+                outside: u32::from(of.is_whole() && visible.is_apart(batch)),
+                ..variants[n]
+            };
+            let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
+            layer_of.push(layer as u32);
+        }
+        let mut dealt = TileWords::default();
+        for lists in [true, false] {
+            let drawer = if with.compute {
+                Drawer::Groups { lists }
+            } else {
+                Drawer::Fragments
+            };
+            dealt = visible.deal(drawer, &layer_of, layers.len());
+            let words = |l: &LayerTiles| u64::from(list_words(l.listed.len() as u32));
+            if dealt.layers.iter().map(words).sum::<u64>() <= with.room() {
+                break;
+            }
+        }
+        for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
+            if copies.is_empty() {
+                self.paths[n] = DrawPath::Nothing;
+            }
+            let shows = !copies.is_empty();
+            self.parts[n].tables = shows;
+            self.parts[n].patches = shows && visible.takes_lists(batch);
+            self.copies[n] = (!with.casts).then_some(copies);
+        }
+        if with.compute {
+            self.dispatch(&layers, &dealt.layers, objects, with);
+        } else {
+            for (layer, tiles) in layers.iter().zip(&dealt.layers) {
+                self.steps.push(Step {
+                    phase: 0,
+                    variant: layer.variant.of_kind(kind),
+                    kind,
+                    object: layer.objects[0],
+                    call: Call::Quads(tiles.quads.clone()),
+                });
+            }
+        }
+        self.words = dealt.words;
+    }
+
+    /// The dispatches of tiles: lists of patches first, then tiles of one copy, of which no two
+    /// share pixels, then, layer by layer, tiles of several.
+    fn dispatch(
+        &mut self,
+        layers: &[Layer],
+        tiles: &[LayerTiles],
+        objects: &[PlanObject],
+        with: &Conditions,
+    ) {
+        let several = tiles.iter().any(|t| !t.several.is_empty());
+        self.compares_depths = several || with.host_depths;
+        let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
+        self.list_heads = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
+        let mut phase = 2;
+        let mut later = Vec::new();
+        let mut head = 0;
+        self.list_words = self.list_heads;
+        for (layer, tiles) in layers.iter().zip(tiles) {
+            let base = Variant {
+                depth_test: u32::from(self.compares_depths),
+                depth_keep: u32::from(self.compares_depths),
+                ..layer.variant
+            };
+            let step = |phase, kind, variant: Variant, call| Step {
+                phase,
+                variant: variant.of_kind(kind),
+                kind,
+                object: layer.objects[0],
+                call,
+            };
+            for records in chunks(&tiles.listed) {
+                let count = records.end - records.start;
+                let (first, tiles) = (records.start, self.list_words);
+                let pushed = |list| Pushed {
+                    first,
+                    count,
+                    heads: head,
+                    tiles,
+                    list,
+                    solid: 0,
+                };
+                let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
+                let call = Call::Dispatch(groups, pushed(0));
+                self.steps.push(step(0, Kind::TileLists, base, call));
+                for list in 0..TILE_LISTS {
+                    let call = Call::Indirect(head + 4 * list, pushed(list));
+                    later.push(if list < LIST_LENGTHS {
+                        let list_length = LIST_LENGTHS_OF[list as usize];
+                        let variant = Variant {
+                            list_length,
+                            ..base
+                        };
+                        step(1, Kind::TilePatches, variant, call)
+                    } else {
+                        let variant = Variant {
+                            list_length: 1,
+                            ..base
+                        };
+                        step(1, Kind::TileTree, variant, call)
+                    });
+                }
+                head += 4 * TILE_LISTS;
+                self.list_words += 2 * TILE_LISTS * count;
+            }
+            for records in chunks(&tiles.single) {
+                let count = records.end - records.start;
+                let call = Call::Dispatch(count, direct(&records));
+                later.push(step(1, Kind::TileTree, base, call));
+            }
+            for records in chunks(&tiles.several) {
+                let count = records.end - records.start;
+                let solid = objects[layer.objects[0] as usize].number;
+                let pushed = Pushed {
+                    solid,
+                    ..direct(&records)
+                };
+                let call = Call::Dispatch(count, pushed);
+                later.push(step(phase, Kind::TileCopies, base, call));
+            }
+            phase += u32::from(!tiles.several.is_empty());
+        }
+        later.sort_by_key(|step| step.phase);
+        self.steps.extend(later);
+    }
+}
+
+/// Tiles that are taken in their order.
+fn direct(records: &Range<u32>) -> Pushed {
+    Pushed {
+        first: records.start,
+        count: records.end - records.start,
+        ..Pushed::default()
+    }
+}
+
+/// An object's copies, as tiles are found for them.
+fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
+    let surface = of.surface.filter(|_| of.object.repeat == [1; 3]);
+    let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
+    let culls = surface.filter(|_| with.occlusion_culling);
+    let is_single = with.occlusion_culling && of.object.repeat == [1; 3];
+    let of_outline = of.outline.filter(|_| is_single && surface.is_none());
+    let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
+    Batch {
+        placements: of.copies(),
+        first: of.first_instance,
+        shape: of.shape,
+        inner: culls.filter(|_| of.is_whole()).and_then(|s| s.inner()),
+        outer: culls
+            .and_then(|s| s.outer())
+            .map(|outer| (outer, 0.0))
+            .or(of_outline),
+        surface,
+        half_side: of.object.profile.radius,
+        lists: with.takes_lists(of),
+    }
+}
+
+/// Words of the lists of so many tiles: see `compute.glsl`.
+fn list_words(tiles: u32) -> u32 {
+    TILE_LISTS * (4 * tiles.div_ceil(MOST_GROUPS) + 2 * tiles)
+}
+
+/// Runs of records that one dispatch takes.
+fn chunks(records: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
+    let Range { start, end } = *records;
+    (start..end)
+        .step_by(MOST_GROUPS as usize)
+        .map(move |first| first..end.min(first + MOST_GROUPS))
+}

@@ -1,0 +1,311 @@
+//! How each object is drawn: chosen from the view, the placements and the surface.
+
+use super::proxy;
+use super::tiles::{Cylinder, Placements};
+use super::view::View;
+use crate::gpu::offset_surface::OffsetSurface;
+use crate::gpu::outline_cache::OutlineCache;
+use crate::scene::Object;
+use crate::shader::generated::{LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST};
+use crate::shader::{Kind, Variant};
+use glam::DVec2;
+use std::f64::consts::SQRT_2;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// How an object is drawn in a frame:
+/// [`Renderer::draw_paths`](crate::gpu::Renderer::draw_paths).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DrawPath {
+    /// Not at all, as it is beside the picture, behind the eye or hidden. Proxies are always drawn:
+    /// the rasteriser finds out whether they show.
+    Nothing,
+    /// Fragment stage: its shape boxes are rasterised, and fragments search.
+    Box,
+    /// Fragment stage: cells of its surface are rasterised, and fragments solve their patches.
+    Hull,
+    /// Tiles of the screen in which its copies may show are drawn: in the fragment stage several
+    /// copies, in compute everything.
+    Tiles,
+}
+
+/// A draw path with what it needs.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Path {
+    Box,
+    Cells {
+        /// Runs of frusta that may be seen.
+        frusta: Vec<Range<u32>>,
+        /// Whether the box's sides cut the solid, and are drawn.
+        cut: bool,
+    },
+    Tiles,
+}
+
+/// One object as a plan reads it.
+pub(crate) struct PlanObject<'a> {
+    pub object: &'a Object,
+    /// Of its block among all solids.
+    pub number: u32,
+    /// The number of its first copy among all instances.
+    pub first_instance: u32,
+    pub variant: Variant,
+    /// Tells sets of textures apart.
+    pub textures: usize,
+    /// What its search walks.
+    pub surface: Option<&'a Arc<OffsetSurface>>,
+    /// Whether cells and lists may take the place of the tree.
+    pub takes_patches: bool,
+    pub shape: Cylinder,
+    /// Its outline, and how far the surface may be from it, object units.
+    pub outline: Option<(&'a OutlineCache, f64)>,
+}
+
+/// What a plan depends on besides view and objects.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conditions {
+    /// Whether tiles are traced in compute; else proxies and tiles are drawn by fragments.
+    pub compute: bool,
+    /// Whether the device passes a cell's components from vertices to fragments.
+    pub passes_cells: bool,
+    /// Whether the device clips triangles by a box's sides.
+    pub clips: bool,
+    /// Whether the device is a processor, on which triangles are dear.
+    pub software: bool,
+    /// Invocations that run together.
+    pub subgroup_size: u32,
+    /// Most bytes of a storage buffer.
+    pub most_storage: u32,
+    /// Vectors of one solid's tables that a uniform buffer holds.
+    pub own_vectors: usize,
+    /// As [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
+    pub least_pixels: u32,
+    /// As [`SearchSettings::occlusion_culling`](crate::settings::SearchSettings::occlusion_culling).
+    pub occlusion_culling: bool,
+    /// Whether shadows are thrown: their rays may meet every copy of every object.
+    pub casts: bool,
+    /// Whether the target's depths are compared with, and left.
+    pub host_depths: bool,
+}
+
+/// Most copies of an object that are drawn by cells. Of more, many are small or hidden, and tiles
+/// leave those out.
+const MOST_PROXIES: usize = 64;
+
+/// Fewer invocations than these, run together, walk a tree faster than they test a list: few of
+/// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes twice as long
+/// over lists; llvmpipe has 8 and takes two thirds.
+const LEAST_SUBGROUP: u32 = 8;
+
+/// What a frustum costs a software driver, over what `proxy_min_pixels` says: its triangles are set
+/// up by the processor that shades. Of five solids the box with its tree is as fast at 600 to 800
+/// pixels a frustum.
+const SOFTWARE_FRUSTUM: u32 = 5;
+
+/// Lengths of lists of patches; longer ones walk the tree.
+pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
+    [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
+
+impl Conditions {
+    /// The paths that an object may be drawn by, in the order in which they are tried; the last
+    /// always serves.
+    fn candidates(&self, of: &PlanObject) -> impl Iterator<Item = Path> + use<> {
+        let copies = of.object.placements().len();
+        let wraps = of.takes_patches && of.object.repeat == [1; 3] && !self.compute;
+        let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
+        let tiles = self.compute || (copies > 1 && of.variant.is_shaded());
+        let cells_of = |cut| Path::Cells {
+            frusta: Vec::new(),
+            cut,
+        };
+        let may_cut = self.clips && proxy::may_be_cut(of.object);
+        [
+            cells.then(|| cells_of(false)),
+            (cells && may_cut).then(|| cells_of(true)),
+            tiles.then_some(Path::Tiles),
+            (!self.compute).then_some(Path::Box),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// How an object is drawn in a view: the first of its candidates that shows all of it.
+    pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
+        let mut chosen = Path::Box;
+        for candidate in self.candidates(of) {
+            match candidate {
+                Path::Cells { cut, .. } => {
+                    let seen = of.surface.and_then(|s| {
+                        let least = self.least_pixels(of.object);
+                        proxy::frusta(of.object, s, view, least).filter(|found| found.1 == cut)
+                    });
+                    if let Some((frusta, cut)) = seen {
+                        return Path::Cells { frusta, cut };
+                    }
+                }
+                Path::Tiles if view.parallel => {}
+                other => {
+                    chosen = other;
+                    break;
+                }
+            }
+        }
+        chosen
+    }
+
+    /// Pixels that the box covers for each frustum from which on cells are cheaper. Measured of
+    /// single solids; others keep the setting as it is.
+    fn least_pixels(&self, object: &Object) -> u32 {
+        if self.software && object.placements().len() == 1 {
+            self.least_pixels.saturating_mul(SOFTWARE_FRUSTUM)
+        } else {
+            self.least_pixels
+        }
+    }
+
+    /// Whether patches may be listed for tiles of an object.
+    pub fn takes_lists(&self, of: &PlanObject) -> bool {
+        self.may_list(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
+    }
+
+    /// Likewise, under some offset.
+    fn may_list(&self, of: &PlanObject) -> bool {
+        of.takes_patches
+            && self.compute
+            && self.subgroup_size >= LEAST_SUBGROUP
+            && of.object.repeat == [1; 3]
+    }
+
+    /// Most words of lists of tiles.
+    pub fn room(&self) -> u64 {
+        u64::from(self.most_storage) / 16
+    }
+
+    /// Whether a uniform buffer holds an object's tables.
+    pub fn holds_tables(&self, of: &PlanObject) -> bool {
+        of.surface
+            .is_some_and(|surface| surface.tables().own <= self.own_vectors)
+    }
+
+    /// Every pipeline that an object may come to need while parameters, lights, camera and
+    /// placements move: those of all its candidates. `variant`: the one that
+    /// [`variants`](super::variants) gives it.
+    pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
+        let mut kinds = Vec::new();
+        for path in self.candidates(of) {
+            match path {
+                Path::Cells { cut: false, .. } => kinds.push((Kind::Cells, [1].as_slice())),
+                Path::Cells { cut: true, .. } => {
+                    kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
+                }
+                Path::Box => kinds.push((Kind::Boxes, &[0, 1])),
+                Path::Tiles if !self.compute => kinds.push((Kind::Quads, &[0, 1])),
+                Path::Tiles => {
+                    let may_cut = proxy::may_be_cut(of.object);
+                    let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
+                    if self.may_list(of) {
+                        kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
+                    }
+                    kinds.extend([
+                        (Kind::TileTree, [0, 1].as_slice()),
+                        (Kind::TileCopies, &[0, 1]),
+                    ]);
+                }
+            }
+        }
+        let lights: &[u32] = if self.casts { &[0] } else { &[0, 1] };
+        // An offset may move the size of tables across the limit.
+        let large = of
+            .surface
+            .is_some_and(|s| 4 * s.tables().own > 3 * self.own_vectors);
+        let own: &[u32] = match (variant.one_solid == 0, large) {
+            (true, _) => &[0],
+            (false, false) => &[1],
+            (false, true) => &[0, 1],
+        };
+        let depths: &[bool] = if self.host_depths {
+            &[true]
+        } else {
+            &[false, true]
+        };
+        let lengths: Vec<u32> = if self.may_list(of) {
+            std::iter::once(0).chain(LIST_LENGTHS_OF).collect()
+        } else {
+            vec![0]
+        };
+        let mut data = Vec::new();
+        for &more_lights in lights {
+            for &own_tables in own {
+                for &depths in depths {
+                    for &list_length in &lengths {
+                        data.push((more_lights, own_tables, u32::from(depths), list_length));
+                    }
+                }
+            }
+        }
+        let forms = variant.forms();
+        let mut all = Vec::new();
+        for (kind, outside) in kinds {
+            for (form, &outside) in forms
+                .iter()
+                .flat_map(|f| outside.iter().map(move |o| (f, o)))
+            {
+                for &(more_lights, own_tables, depths, list_length) in &data {
+                    let variant = Variant {
+                        outside,
+                        more_lights,
+                        own_tables,
+                        list_length,
+                        depth_test: depths,
+                        depth_keep: depths,
+                        ..*form
+                    };
+                    let key = (variant.of_kind(kind), kind);
+                    let empty = kind == Kind::TilePatches && list_length == 0;
+                    if !empty && !all.contains(&key) {
+                        all.push(key);
+                    }
+                }
+            }
+        }
+        all
+    }
+}
+
+impl PlanObject<'_> {
+    /// Its copies, as tiles are found for them.
+    pub fn copies(&self) -> Placements<'_> {
+        if self.object.instances.is_empty() {
+            Placements::One(&self.object.placement)
+        } else {
+            Placements::Many(&self.object.instances)
+        }
+    }
+
+    /// Whether the box shows no more than the surface's patches.
+    pub fn is_whole(&self) -> bool {
+        self.surface
+            .is_some_and(|surface| proxy::is_whole(self.object, surface))
+    }
+}
+
+/// What of an object's box can be solid; `bounds`: half of the box's side, and the clip cylinder's
+/// radius, lowest and highest `z`.
+pub(crate) fn shape_of(object: &Object, bounds: [f64; 4]) -> Cylinder {
+    let [side, radius, low, high] = bounds;
+    if object.repeat == [1; 3] {
+        Cylinder {
+            axis: DVec2::from(object.axis_offset()),
+            radius,
+            low,
+            high,
+        }
+    } else {
+        Cylinder {
+            axis: DVec2::ZERO,
+            radius: side * SQRT_2,
+            low: 0.0,
+            high: 1.0,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Which objects can be drawn by proxies of cells.
+
+use super::rectangle::{Rectangle, rectangle};
+use super::view::View;
+use crate::gpu::offset_surface::OffsetSurface;
+use crate::scene::{Clip, Cluster, Object, Placement};
+use crate::surface::ProxyHull;
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+
+/// By how much an eye has to stand clear of a shell, and a shell of the near plane, object units.
+const CLEARANCE: f64 = 1e-3;
+
+/// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and
+/// holds no replicas.
+pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
+    let radius = object.profile.radius;
+    let [x, y] = object.axis_offset();
+    let side_face = radius - x.abs().max(y.abs());
+    // What of a coarse level bulges beyond the box may be seen.
+    object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
+}
+
+/// Whether the box's sides cut the solid, or come to do so by another offset.
+pub(crate) fn may_be_cut(object: &Object) -> bool {
+    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
+    object.clip == Clip::Box || object.axis_offset() != [0.0; 2] || widest > object.profile.radius
+}
+
+/// Whether rays to all of an object's copies begin outside of the solid, of which the box cuts
+/// nothing.
+pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    !view.parallel && is_whole(object, surface) && is_outside(object, surface, view)
+}
+
+fn is_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    let apart = |copy| is_apart(surface, seen_from(object, copy, view).0);
+    object.placements().iter().all(apart)
+}
+
+/// Whether a place of object space, relative to the axis, is clear of the solid's bounding cylinder.
+pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
+    let [r_max, z_min, z_max] = surface.extent();
+    let place = flat(place);
+    place.x > r_max + CLEARANCE || place.y < z_min - CLEARANCE || place.y > z_max + CLEARANCE
+}
+
+/// Whether [`is_apart`] may be false of one of a cluster's copies, whose axis is so far from the
+/// middle of their box; `forward`: the view's.
+pub(crate) fn may_hold_eye(
+    surface: &OffsetSurface,
+    axis: f64,
+    cluster: &Cluster,
+    eye: DVec3,
+    forward: DVec3,
+) -> bool {
+    let [r_max, z_min, z_max] = surface.extent();
+    let beside = axis + r_max + CLEARANCE;
+    let along = z_min.abs().max(z_max.abs()) + CLEARANCE;
+    cluster.around(eye, [beside, along]).along(forward)[0] <= 0.0
+}
+
+/// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,
+/// `(p - eye) . forward` is its depth.
+fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
+    let [x, y] = object.axis_offset();
+    let turn = placement.rotation.conjugate();
+    let eye = turn * (view.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0);
+    (eye, turn * view.forward * placement.scale)
+}
+
+/// Largest ratio of the sides of a box, in the world, that hulls are drawn in. Their rays start in
+/// the plane through the box's middle, in a flat box up to so many heights from where they meet the
+/// solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
+const LOPSIDED: f64 = 32.0;
+
+/// Whether a copy's box, of twice this width, is too flat or too slender for its hull.
+pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
+    let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
+    sides.max_element() > LOPSIDED * sides.min_element()
+}
+
+/// Whether a cluster may hold a copy of which [`is_lopsided`] is true.
+pub(crate) fn may_be_lopsided(radius: f64, cluster: &Cluster) -> bool {
+    let sides = DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
+    let most = (cluster.most_scale * sides).max_element();
+    most > LOPSIDED * (cluster.least_scale * sides).min_element()
+}
+
+/// How wide shells may be that a box's sides cut, over half the box's side. Depths of triangles that
+/// reach much farther than what shows of them are interpolated too roughly: of shells 60 times as
+/// wide as the box a pixel was lost.
+const WIDEST_CUT: f64 = 8.0;
+
+/// How many copies are looked at for what the whole batch's copies cover on the screen.
+const SAMPLES: usize = 64;
+
+/// The frusta of `object`'s cells, if they show from this camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
+/// object is large enough on the screen for its triangles to pay. Besides, whether the box's sides
+/// cut it.
+pub(crate) fn frusta(
+    object: &Object,
+    surface: &OffsetSurface,
+    view: &View,
+    least_pixels: u32,
+) -> Option<(Vec<Range<u32>>, bool)> {
+    if object.repeat != [1; 3] {
+        return None;
+    }
+    let cut = !is_whole(object, surface);
+    let hull = &surface.hull().hull;
+    let copies = object.placements();
+    if cut && hull.extent()[1] > WIDEST_CUT * object.profile.radius {
+        return None;
+    }
+    if surface.hull().touches
+        || copies
+            .iter()
+            .any(|copy| is_lopsided(object.profile.radius, copy))
+    {
+        return None;
+    }
+    let sampled = copies.iter().step_by(copies.len().div_ceil(SAMPLES).max(1));
+    let count = sampled.len().max(1);
+    let covered: u64 = sampled
+        .clone()
+        .filter_map(|copy| rectangle(view, 1, object.profile.radius, copy))
+        .map(Rectangle::squares)
+        .sum();
+    let eyes: Vec<DVec2> = sampled
+        .map(|copy| flat(seen_from(object, copy, view).0))
+        .collect();
+    // Parallel rays come from everywhere, and a cut opens cavities.
+    let frusta = if eyes.len() == copies.len() && !view.parallel && !cut {
+        hull.seen_from(&eyes)
+    } else {
+        std::iter::once(0..hull.frusta.len() as u32).collect()
+    };
+    let drawn: usize = frusta.iter().map(ExactSizeIterator::len).sum();
+    if covered < u64::from(least_pixels) * (drawn * count) as u64 {
+        return None;
+    }
+    let seen = |copy| is_in_front(object, hull, seen_from(object, copy, view), view, cut);
+    copies.iter().all(seen).then_some((frusta, cut))
+}
+
+/// A point as the half-plane has it.
+fn flat(p: DVec3) -> DVec2 {
+    DVec2::new(p.truncate().length(), p.z)
+}
+
+/// Whether the eye is in none of a copy's shells, and all that is drawn of them is in front of the
+/// near plane: everything, or what is between the box's sides.
+fn is_in_front(
+    object: &Object,
+    hull: &ProxyHull,
+    (eye, forward): (DVec3, DVec3),
+    view: &View,
+    cut: bool,
+) -> bool {
+    let ahead = |middle: DVec2, reach: f64, low: f64, high: f64| {
+        let lowest = (forward.z * (low - eye.z)).min(forward.z * (high - eye.z));
+        let across = forward.truncate().dot(middle - eye.truncate()) - reach;
+        lowest + across >= view.near + CLEARANCE * forward.length()
+    };
+    if cut {
+        let radius = object.profile.radius;
+        let [_, _, low, high] = hull.extent();
+        let reach = radius * (forward.x.abs() + forward.y.abs());
+        let middle = -DVec2::from(object.axis_offset());
+        return ahead(middle, reach, low, high);
+    }
+    let aside = forward.truncate().length();
+    let all_ahead = hull
+        .extents
+        .iter()
+        .all(|&[_, r, low, high]| ahead(DVec2::ZERO, r * aside, low, high));
+    // Parallel rays begin in the near plane, which all is in front of.
+    all_ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
+}

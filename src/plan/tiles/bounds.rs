@@ -1,0 +1,280 @@
+//! A copy as the view sees it: its rectangle of pixels and its nearest depth.
+
+use super::cover::{first_pixel, last_pixel};
+use crate::plan::View;
+use crate::scene::Placement;
+use glam::{DMat3, DVec2, DVec3};
+
+/// What of a box can be solid: a cylinder about the axis, object units from the middle of the
+/// box's lower face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cylinder {
+    pub axis: DVec2,
+    pub radius: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// The view as three linear projector: a point's pixel is the first two over the third, its depth.
+pub(crate) struct Projector {
+    pub(super) eye: DVec3,
+    pub(super) rows: DMat3,
+    /// First and last pixel centre, both axes.
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+    /// First and last pixel of both axes whose middles the viewport holds: left, top, right, bottom.
+    pub(super) ends: [i32; 4],
+    /// A pixel's longer side at unit depth.
+    pixel: f64,
+}
+
+/// Ways along an object's axes, one object unit each, and the place of its axis at `z = 0`; as
+/// projector have them, and in the world.
+pub(crate) struct ProjectedAxes {
+    pub middle: DVec3,
+    pub along: [DVec3; 3],
+    /// The eye in object space, about the axis.
+    pub eye: DVec3,
+    /// World units of the shortest object unit.
+    least_scale: f64,
+}
+
+/// What a copy covers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScreenBounds {
+    /// Left, top, right, bottom: pixels, all included.
+    pub pixels: [u16; 4],
+    /// No point of the copy is nearer.
+    pub near: f32,
+}
+
+/// By how much a rectangle is wider than computed, pixels: more than roundings of 32 bits amount
+/// to.
+pub(super) const MARGIN: f64 = 1.0 / 16.0;
+/// By how much depths are moved to the safe side, as a part.
+pub(super) const SLACK: f64 = 1e-5;
+
+impl Projector {
+    /// Of a view of perspective.
+    pub fn new(view: &View) -> Self {
+        let row = |d: DVec3| {
+            let d = d / d.length_squared();
+            d + view.forward * (0.5 - view.dir_00.dot(d))
+        };
+        let rows = [row(view.dir_x), row(view.dir_y), view.forward];
+        let [low, high] = view.corners();
+        Self {
+            ends: [
+                first_pixel(low.x).max(0),
+                first_pixel(low.y).max(0),
+                last_pixel(high.x),
+                last_pixel(high.y),
+            ],
+            eye: view.eye,
+            rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
+            low: low + 0.5,
+            high: high - 0.5,
+            pixel: view.dir_x.length().max(view.dir_y.length()),
+        }
+    }
+
+    /// The pixels of the picture: left, top, right, bottom.
+    pub fn picture(&self) -> [u32; 4] {
+        self.ends.map(|pixel| pixel.max(0) as u32)
+    }
+
+    pub fn axes(&self, copy: &Placement, axis: DVec2) -> ProjectedAxes {
+        let turn = DMat3::from_quat(copy.rotation);
+        let from_eye = copy.position - self.eye;
+        let shift = axis * copy.scale.truncate();
+        let place = from_eye + turn.x_axis * shift.x + turn.y_axis * shift.y;
+        let ways = [
+            turn.x_axis * copy.scale.x,
+            turn.y_axis * copy.scale.y,
+            turn.z_axis * copy.scale.z,
+        ];
+        ProjectedAxes {
+            middle: self.rows * place,
+            along: ways.map(|way| self.rows * way),
+            eye: -(turn.transpose() * place) / copy.scale,
+            least_scale: copy.scale.min_element(),
+        }
+    }
+
+    /// Object units that are seen as [`MARGIN`] or more all over a cylinder.
+    pub fn margin(&self, axes: &ProjectedAxes, of: &Cylinder) -> f64 {
+        let [x, y, z] = axes.along.map(|way| way.z);
+        let deep = of.radius * (x.abs() + y.abs()) + (z * of.low).max(z * of.high);
+        MARGIN * self.pixel * (axes.middle.z + deep) / axes.least_scale
+    }
+
+    /// None where no pixel's ray can meet the cylinder.
+    pub fn bounds(&self, axes: &ProjectedAxes, of: &Cylinder) -> Option<ScreenBounds> {
+        let [x, y, z] = axes.along;
+        let square = |i: usize, k: usize| of.radius * of.radius * (x[i] * x[k] + y[i] * y[k]);
+        let discs = [of.low, of.high].map(|h| axes.middle + z * h);
+        let deep = square(2, 2).sqrt();
+        let near = discs[0].z.min(discs[1].z) - deep;
+        let far = discs[0].z.max(discs[1].z) + deep;
+        if far <= 0.0 {
+            return None;
+        }
+        let mut pixels = [0u16; 4];
+        for i in 0..2 {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            if near > 1e-3 * far {
+                // Lines of sight that touch a disc: the roots of a quadratic.
+                for c in &discs {
+                    let a = c.z * c.z - square(2, 2);
+                    let b = c[i] * c.z - square(i, 2);
+                    let root = (b * b - a * (c[i] * c[i] - square(i, i))).max(0.0).sqrt();
+                    let inverse = 1.0 / a;
+                    low = low.min((b - root) * inverse);
+                    high = high.max((b + root) * inverse);
+                }
+            } else {
+                // Around or beside the eye: everything, unless it lies beyond an edge of the
+                // picture.
+                (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
+                let beyond = |edge: f64, sense: f64| {
+                    let side = |c: &DVec3| sense * (c[i] - edge * c.z);
+                    let wide =
+                        square(i, i) - 2.0 * edge * square(i, 2) + edge * edge * square(2, 2);
+                    side(&discs[0]).max(side(&discs[1])) + wide.max(0.0).sqrt() < 0.0
+                };
+                if beyond(self.low[i] - MARGIN, 1.0) || beyond(self.high[i] + MARGIN, -1.0) {
+                    return None;
+                }
+            }
+            let first = first_pixel(low - MARGIN).max(self.ends[i]);
+            let last = last_pixel(high + MARGIN).min(self.ends[i + 2]);
+            if first > last {
+                return None;
+            }
+            (pixels[i], pixels[i + 2]) = (first as u16, last as u16);
+        }
+        Some(ScreenBounds {
+            pixels,
+            near: (near * (1.0 - SLACK)).max(0.0) as f32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::plan::DepthOrder;
+    use crate::plan::Viewport;
+    use crate::scene::Copies;
+    use glam::{DMat4, DVec4};
+
+    /// Wherever a host's viewport begins and ends: copies that are larger than it are seen in the
+    /// pixels whose middles it holds, and so is a cluster of them, before the eye and around it.
+    #[test]
+    fn viewports_need_not_begin_at_the_first_pixel() {
+        let shape = Cylinder {
+            axis: DVec2::ZERO,
+            radius: 50.0,
+            low: -50.0,
+            high: 50.0,
+        };
+        let eye = DVec3::new(0.0, 0.0, 0.5);
+        for [x, y] in [
+            [0.0, 0.0],
+            [-4.0, -3.0],
+            [5.0, 3.0],
+            [0.03, 7.6],
+            [-0.5, 2.5],
+        ] {
+            for [width, height] in [[64.0, 48.0], [40.6, 33.3]] {
+                let viewport = Viewport {
+                    x,
+                    y,
+                    width,
+                    height,
+                };
+                let look = DMat4::from_translation(-eye);
+                // Along x, z upwards; from 0.1 to 1000.
+                let deep = 1000.0 / 999.9;
+                let lens = DMat4::from_rows(
+                    DVec4::new(0.0, -1.0, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, -width / height, 0.0),
+                    DVec4::new(deep, 0.0, 0.0, -0.1 * deep),
+                    DVec4::X,
+                );
+                let view = View::from_matrices(look, lens, viewport, DepthOrder::Normal).unwrap();
+                let projector = Projector::new(&view);
+                let ends = |from: f64, size: f64| {
+                    let inside = |k: &i32| (from..=from + size).contains(&(f64::from(*k) + 0.5));
+                    let all: Vec<u32> = (0..200).filter(inside).map(|k| k as u32).collect();
+                    [all[0], all[all.len() - 1]]
+                };
+                let ([left, right], [top, bottom]) = (ends(x, width), ends(y, height));
+                let wanted = [left, top, right, bottom];
+                assert_eq!(projector.picture(), wanted, "{viewport:?}");
+                for away in [0.0, 52.0] {
+                    let position = DVec3::new(away, 0.0, 0.0);
+                    let copies: Copies = vec![
+                        Placement {
+                            position,
+                            ..Placement::default()
+                        };
+                        2
+                    ]
+                    .into();
+                    let one = projector
+                        .bounds(&projector.axes(&copies[0], shape.axis), &shape)
+                        .unwrap();
+                    let cluster = &copies.clusters().all()[0];
+                    let all = projector.cluster_bounds(cluster, &shape).unwrap();
+                    assert_eq!(one.pixels.map(u32::from), wanted, "{viewport:?}, {away}");
+                    assert_eq!(all.pixels, one.pixels, "{viewport:?}, {away}");
+                }
+            }
+        }
+    }
+
+    /// Far clusters between the middles of two pixels are none.
+    #[test]
+    fn clusters_below_a_pixel_have_sound_rectangles() {
+        let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);
+        let view = View::from_camera(&camera, (64, 48), [1.0, 1e4]).unwrap();
+        let projector = Projector::new(&view);
+        let shape = Cylinder {
+            axis: DVec2::ZERO,
+            radius: 0.4,
+            low: 0.0,
+            high: 1.0,
+        };
+        let mut seen = [0; 2];
+        for n in 0..500 {
+            let position = DVec3::new(0.0, 0.11 * f64::from(n) - 27.0, 0.07 * f64::from(n % 90));
+            let copies: Copies = vec![
+                Placement {
+                    position,
+                    ..Placement::default()
+                };
+                2
+            ]
+            .into();
+            let all = projector.cluster_bounds(&copies.clusters().all()[0], &shape);
+            let one = projector.bounds(&projector.axes(&copies[0], shape.axis), &shape);
+            seen[usize::from(all.is_some())] += 1;
+            let Some(ScreenBounds {
+                pixels: [x0, y0, x1, y1],
+                near,
+            }) = all
+            else {
+                assert!(one.is_none(), "{n}");
+                continue;
+            };
+            assert!(x0 <= x1 && y0 <= y1, "{n}");
+            assert!(one.is_none_or(|one| {
+                let [a, b, c, d] = one.pixels;
+                x0 <= a && y0 <= b && c <= x1 && d <= y1 && near <= one.near
+            }));
+        }
+        assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
+    }
+}

@@ -1,0 +1,318 @@
+//! Pixels that solids are proven to cover, and how deep: squares of 8 x 8 pixels, a bit for each,
+//! with one depth for each row, as on a field rows are as deep as what stands there.
+
+use super::bounds::{MARGIN, ProjectedAxes, SLACK};
+use crate::surface::{CylinderPiece, InnerCylinders};
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+
+/// Pixels along a square's side.
+pub(super) const SIDE: u32 = 8;
+
+/// Some columns of squares.
+pub(super) struct Cover {
+    squares: Vec<Square>,
+    /// In squares.
+    columns: Range<u32>,
+    down: u32,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Square {
+    covered: u64,
+    /// Of all that covers, in each row.
+    depths: [f32; SIDE as usize],
+}
+
+impl Square {
+    /// The pixels that are covered by what is nearer than `near`.
+    fn hidden(&self, near: f32) -> u64 {
+        if self.covered == 0 {
+            return 0;
+        }
+        let behind = self.depths.map(|depth| if near > depth { 0xff } else { 0 });
+        self.covered & u64::from_le_bytes(behind)
+    }
+}
+
+/// Bits from column `low` to `high` in every row from `top` to `bottom`, all included.
+pub(super) fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
+    let row = (0xffu64 >> (7 - (high - low))) << low;
+    let rows = (u64::MAX >> (8 * (7 - (bottom - top)))) << (8 * top);
+    (row * 0x0101_0101_0101_0101) & rows
+}
+
+/// The bits of a square, `x` and `y` in squares, that a rectangle of pixels holds.
+pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
+    let inside = |pixel: u32, square: u32| pixel.clamp(square * SIDE, square * SIDE + 7) % SIDE;
+    block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
+}
+
+impl Cover {
+    /// Of these columns of squares in so many rows.
+    pub fn new(columns: Range<u32>, down: u32) -> Self {
+        Self {
+            squares: vec![Square::default(); columns.len() * down as usize],
+            columns,
+            down,
+        }
+    }
+
+    /// Whether some of these pixels are here.
+    pub fn meets(&self, [x0, _, x1, _]: [u16; 4]) -> bool {
+        u32::from(x0) < SIDE * self.columns.end && u32::from(x1) >= SIDE * self.columns.start
+    }
+
+    /// Whether nothing that is not nearer than `near` will ever show in these pixels, whatever else
+    /// comes to cover others of the rows that they are in.
+    pub fn hides(&self, pixels: [u16; 4], near: f32) -> bool {
+        let [x0, y0, x1, y1] = self.squares_of(pixels);
+        let [_, top, _, bottom] = pixels.map(u32::from);
+        (y0..=y1).all(|y| {
+            let rows = within([0, y], [0, top, SIDE - 1, bottom]);
+            let row = &self.squares[self.at(x0, y)..=self.at(x1, y)];
+            row.iter().all(|square| !square.hidden(near) & rows == 0)
+        })
+    }
+
+    /// The squares here that hold some of these pixels: left, top, right, bottom, all included.
+    fn squares_of(&self, pixels: [u16; 4]) -> [u32; 4] {
+        let [x0, y0, x1, y1] = pixels.map(|pixel| u32::from(pixel) / SIDE);
+        let Range { start, end } = self.columns;
+        [x0.max(start), y0, x1.min(end - 1), y1.min(self.down - 1)]
+    }
+
+    /// The place of the square in this column and row.
+    fn at(&self, x: u32, y: u32) -> usize {
+        (y * (self.columns.end - self.columns.start) + x - self.columns.start) as usize
+    }
+
+    /// Whether some of these pixels may show what is not nearer than `near`.
+    pub fn is_open(&self, pixels: [u16; 4], near: f32) -> bool {
+        let [x0, y0, x1, y1] = self.squares_of(pixels);
+        let pixels = pixels.map(u32::from);
+        let open = |x: u32, y: u32| {
+            within([x, y], pixels) & !self.squares[self.at(x, y)].hidden(near) != 0
+        };
+        (y0..=y1).any(|y| (x0..=x1).any(|x| open(x, y)))
+    }
+
+    /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
+    /// the square's place in the picture and the pixels. `rows`: of each row of these pixels the
+    /// ends of what may show, where they are known.
+    pub fn open(
+        &self,
+        pixels: [u16; 4],
+        rows: Option<&[[f64; 2]]>,
+        near: f32,
+        mut visit: impl FnMut([u32; 2], u64),
+    ) {
+        let [left, first, right, last] = self.squares_of(pixels);
+        let [x0, y0, x1, y1] = pixels.map(u32::from);
+        for y in first..=last {
+            let (top, bottom) = (y0.max(y * SIDE) - y * SIDE, y1.min(y * SIDE + 7) - y * SIDE);
+            let (mut from, mut to) = (x0, x1);
+            let mut spans = [[1u32, 0]; SIDE as usize];
+            if let Some(rows) = rows {
+                (from, to) = (u32::MAX, 0);
+                for k in top..=bottom {
+                    let [low, high] = rows[(y * SIDE + k - y0) as usize];
+                    let low = first_pixel(low).max(x0 as i32);
+                    let high = last_pixel(high).min(x1 as i32);
+                    if low <= high {
+                        spans[k as usize] = [low as u32, high as u32];
+                        (from, to) = (from.min(low as u32), to.max(high as u32));
+                    }
+                }
+                if from > to {
+                    continue;
+                }
+            }
+            for x in left.max(from / SIDE)..=right.min(to / SIDE) {
+                let held = if rows.is_some() {
+                    u64::from_le_bytes(spans.map(|[low, high]| {
+                        let [low, end] =
+                            [low, high + 1].map(|at| at.clamp(x * SIDE, x * SIDE + SIDE));
+                        (0xffu32 << (low - x * SIDE) & !(0xff << (end - x * SIDE))) as u8
+                    }))
+                } else {
+                    within([x, y], [x0, y0, x1, y1])
+                };
+                let bits = held & !self.squares[self.at(x, y)].hidden(near);
+                if bits != 0 {
+                    visit([x, y], bits);
+                }
+            }
+        }
+    }
+
+    /// Adds what a copy hides, which is wholly in front of the eye.
+    pub fn add(&mut self, axes: &ProjectedAxes, inner: &InnerCylinders, pixels: [u16; 4]) {
+        let high = pixels[3] - pixels[1];
+        // The section through the axis that faces the eye.
+        let beside = axes.eye.truncate();
+        let across = beside.perp().normalize_or(DVec2::X);
+        let across = axes.along[0] * across.x + axes.along[1] * across.y;
+        for piece in inner.of(u32::from(high)) {
+            let [low, top] = [piece.low, piece.high].map(|z| axes.middle + axes.along[2] * z);
+            let out = across * piece.radius;
+            self.polygon(&[low - out, low + out, top + out, top - out]);
+            if high >= 6 {
+                self.disc(axes, piece, beside.length());
+            }
+        }
+    }
+
+    /// The end of a piece that the eye looks down upon, where it looks steeply.
+    fn disc(&mut self, axes: &ProjectedAxes, piece: &CylinderPiece, beside: f64) {
+        let z = axes.eye.z.clamp(piece.low, piece.high);
+        if (axes.eye.z - z).abs() < 0.3 * beside {
+            return;
+        }
+        let middle = axes.middle + axes.along[2] * z;
+        let [x, y] = [0, 1].map(|k| axes.along[k] * piece.radius);
+        let d = std::f64::consts::FRAC_1_SQRT_2;
+        let corners = [
+            (1.0, 0.0),
+            (d, d),
+            (0.0, 1.0),
+            (-d, d),
+            (-1.0, 0.0),
+            (-d, -d),
+            (0.0, -1.0),
+            (d, -d),
+        ];
+        self.polygon(&corners.map(|(a, b)| middle + x * a + y * b));
+    }
+
+    /// Marks the pixels whose centres a flat convex polygon in the solid covers.
+    fn polygon<const N: usize>(&mut self, corners: &[DVec3; N]) {
+        let mut flat = [DVec2::ZERO; N];
+        let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0f64);
+        for (at, corner) in flat.iter_mut().zip(corners) {
+            *at = corner.truncate() / corner.z;
+            (low, high, depth) = (low.min(*at), high.max(*at), depth.max(corner.z));
+        }
+        let depth = (depth * (1.0 + SLACK)) as f32;
+        // Much of what is far away holds the middle of no pixel.
+        let ends = [self.columns.start, self.columns.end].map(|x| (x * SIDE) as i32);
+        let left = first_pixel(low.x + MARGIN).max(ends[0]);
+        let right = last_pixel(high.x - MARGIN).min(ends[1] - 1);
+        let mut first = first_pixel(low.y + MARGIN).max(0);
+        let mut last = last_pixel(high.y - MARGIN).min((self.down * SIDE) as i32 - 1);
+        if first > last || left > right {
+            return;
+        }
+        let area: f64 = (0..N).map(|k| flat[k].perp_dot(flat[(k + 1) % N])).sum();
+        if area == 0.0 || !area.is_finite() {
+            return;
+        }
+        // Bounds on x that edges are: at the top of the picture, and from row to row.
+        let mut lows = [[f64::from(ends[0]), 0.0]; N];
+        let mut highs = [[f64::from(ends[1]), 0.0]; N];
+        for k in 0..N {
+            let (p, q) = (flat[k], flat[(k + 1) % N]);
+            let n = (q - p).perp() * area.signum();
+            let least = n.dot(p) + MARGIN * (n.x.abs() + n.y.abs());
+            if n.x.abs() > 1e-9 * n.y.abs() {
+                let bounds = if n.x > 0.0 { &mut lows } else { &mut highs };
+                bounds[k] = [least / n.x, -n.y / n.x];
+            } else if n.y > 0.0 {
+                first = first.max(first_pixel(least / n.y));
+            } else if n.y < 0.0 {
+                last = last.min(last_pixel(least / n.y));
+            }
+        }
+        for y in first..=last {
+            let row = f64::from(y) + 0.5;
+            let at = |[begin, step]: &[f64; 2]| begin + step * row;
+            let low = lows.iter().map(at).fold(f64::NEG_INFINITY, f64::max);
+            let high = highs.iter().map(at).fold(f64::INFINITY, f64::min);
+            let (low, high) = (first_pixel(low).max(left), last_pixel(high).min(right));
+            self.span(y as u32, low, high, depth);
+        }
+    }
+
+    /// Marks pixels of a row, none if the last comes before the first.
+    fn span(&mut self, y: u32, low: i32, high: i32, depth: f32) {
+        if low > high {
+            return;
+        }
+        let (low, high) = (low as u32, high as u32);
+        for x in low / SIDE..=high / SIDE {
+            let left = low.max(x * SIDE) - x * SIDE;
+            let right = high.min(x * SIDE + 7) - x * SIDE;
+            let bits = block([left, y % SIDE, right, y % SIDE]);
+            let at = self.at(x, y / SIDE);
+            let square = &mut self.squares[at];
+            if bits & !square.covered != 0 {
+                square.covered |= bits;
+                let row = &mut square.depths[(y % SIDE) as usize];
+                *row = row.max(depth);
+            }
+        }
+    }
+}
+
+/// The first pixel whose middle does not come before a place.
+///
+/// Casts are faster than the library's rounding, which is called.
+pub(super) fn first_pixel(place: f64) -> i32 {
+    let place = place - 0.5;
+    let whole = place as i32;
+    whole.saturating_add(i32::from(f64::from(whole) < place))
+}
+
+/// The last pixel whose middle does not come after a place.
+pub(super) fn last_pixel(place: f64) -> i32 {
+    let place = place - 0.5;
+    let whole = place as i32;
+    whole.saturating_sub(i32::from(f64::from(whole) > place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_rectangles_of_bits() {
+        assert_eq!(block([0, 0, 7, 7]), u64::MAX);
+        assert_eq!(block([0, 0, 0, 0]), 1);
+        assert_eq!(block([7, 7, 7, 7]), 1 << 63);
+        assert_eq!(block([1, 2, 3, 2]), 0b1110 << 16);
+        assert_eq!(block([1, 2, 3, 3]), 0b1110 << 16 | 0b1110 << 24);
+    }
+
+    #[test]
+    fn a_polygon_covers_the_pixels_within_and_hides_what_is_behind() {
+        let mut cover = Cover::new(0..4, 4);
+        let at = |x: f64, y: f64| DVec3::new(2.0 * x, 2.0 * y, 2.0);
+        cover.polygon(&[at(3.0, 4.0), at(21.0, 4.0), at(21.0, 20.0), at(3.0, 20.0)]);
+        let open = |cover: &Cover, near| {
+            let mut all = 0;
+            cover.open([0, 0, 31, 31], None, near, |_, bits| {
+                all += bits.count_ones()
+            });
+            all
+        };
+        assert_eq!(open(&cover, 1.9), 1024);
+        assert_eq!(open(&cover, 2.1), 1024 - 18 * 16);
+        let mut hidden = true;
+        cover.open([3, 4, 20, 19], None, 2.1, |_, _| hidden = false);
+        assert!(hidden);
+        // Any way round, at a slant: nothing without.
+        cover.polygon(&[
+            at(31.0, 31.0),
+            at(20.0, 31.0),
+            at(31.0, 20.0),
+            at(31.0, 30.0),
+        ]);
+        cover.open([0, 0, 31, 31], None, 2.1, |[left, top], bits| {
+            for bit in (0..64).filter(|bit| bits & (1 << bit) == 0) {
+                let (x, y) = (left * 8 + bit % 8, top * 8 + bit / 8);
+                let first = (3..21).contains(&x) && (4..20).contains(&y);
+                assert!(first || x + y >= 50, "{x} {y}");
+            }
+        });
+    }
+}

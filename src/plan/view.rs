@@ -1,0 +1,309 @@
+//! A view of the scene: rays of pixels and the depths that their hits get, from a camera or from a
+//! host's matrices.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::scene::{Camera, CameraFrame};
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+/// Which end of the depth range is near.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DepthOrder {
+    /// 0 is near, fragments pass that are less.
+    #[default]
+    Normal,
+    /// 1 is near, fragments pass that are greater.
+    Reversed,
+}
+
+/// The part of the framebuffer that is drawn, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// Left edge.
+    pub x: f64,
+    /// Upper edge; the lower one where `height` is negative.
+    pub y: f64,
+    /// Width, positive.
+    pub width: f64,
+    /// Height; negative where clip space has `y` upwards (Vulkan 1.1).
+    pub height: f64,
+}
+
+/// An eye, the ray of every pixel, and the depth of every point.
+///
+/// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j
+/// dir_y)`. Its direction is not normalised: `t` is the depth along `forward`, and the depth buffer
+/// holds `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
+/// instead, and depths `depth[0] + depth[1] t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    pub(crate) eye: DVec3,
+    pub(crate) dir_00: DVec3,
+    pub(crate) dir_x: DVec3,
+    pub(crate) dir_y: DVec3,
+    pub(crate) forward: DVec3,
+    pub(crate) clip_from_world: DMat4,
+    pub(crate) depth: [f64; 2],
+    /// `t` of the near plane.
+    pub(crate) near: f64,
+    pub(crate) order: DepthOrder,
+    pub(crate) viewport: Viewport,
+    pub(crate) parallel: bool,
+}
+
+impl View {
+    /// The view of `camera` in pictures of `size` pixels, with depth 0 at `near` and 1 at `far`,
+    /// both along the view.
+    ///
+    /// # Errors
+    /// As [`CameraFrame::new`]; [`ErrorKind::Content`] unless `0 < near < far`.
+    pub fn from_camera(camera: &Camera, size: (u32, u32), [near, far]: [f64; 2]) -> Result<Self> {
+        if !(near > 0.0 && far > near && far.is_finite()) {
+            return Err(wrong(format!(
+                "the depth range {near} to {far} is none; give 0 < near < far"
+            )));
+        }
+        let camera = CameraFrame::new(camera, size.0, size.1)?;
+        // depth = constant + factor / t
+        let constant = far / (far - near);
+        let factor = -far * near / (far - near);
+        // Steps of a pixel, as parts of half the picture; the middle is 0 in clip space unless the
+        // camera is shifted.
+        let step = |v: DVec3, pixels: u32| v * (2.0 / (v.length_squared() * f64::from(pixels)));
+        let middle = |at: f64, pixels: u32| camera.forward * (2.0 * at / f64::from(pixels) - 1.0);
+        let right = step(camera.right, size.0) + middle(camera.middle[0], size.0);
+        let down = step(-camera.up, size.1) + middle(camera.middle[1], size.1);
+        let row = |v: DVec3| DVec4::new(v.x, v.y, v.z, -v.dot(camera.eye));
+        let depth_row = row(camera.forward);
+        let clip_from_world = DMat4::from_cols(
+            row(right),
+            row(down),
+            depth_row * constant + DVec4::W * factor,
+            depth_row,
+        )
+        .transpose();
+        Ok(Self {
+            eye: camera.eye,
+            dir_00: camera.pixel(0, 0),
+            dir_x: camera.right,
+            dir_y: -camera.up,
+            forward: camera.forward,
+            clip_from_world,
+            depth: [constant, factor],
+            near,
+            order: DepthOrder::Normal,
+            parallel: false,
+            viewport: Viewport {
+                x: 0.0,
+                y: 0.0,
+                width: f64::from(size.0),
+                height: f64::from(size.1),
+            },
+        })
+    }
+
+    /// The view of a host's matrices, column vectors, clip space as Vulkan's (`0 <= z <= w`):
+    /// `projection * view` takes a world point to clip space. Jitter, off-centre frusta, infinite
+    /// and reversed depth are what the projection says.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for a projection whose near plane is not at right angles to the view,
+    /// or that mirrors the picture; for an empty viewport; for numbers that are not finite.
+    pub fn from_matrices(
+        view: DMat4,
+        projection: DMat4,
+        viewport: Viewport,
+        order: DepthOrder,
+    ) -> Result<Self> {
+        let clip_from_world = projection * view;
+        let fits = viewport.width > 0.0 && viewport.height != 0.0;
+        if !clip_from_world.is_finite() || !fits {
+            return Err(wrong(
+                "the matrices or the viewport are not of a picture; give finite numbers and a width above 0",
+            ));
+        }
+        let inverse = clip_from_world.inverse();
+        let w_row = clip_from_world.transpose().w_axis;
+        if w_row.truncate().length() < 1e-12 * w_row.w.abs() {
+            return Self::parallel(clip_from_world, viewport, order);
+        }
+        let eye = view.inverse().w_axis;
+        let eye = eye.truncate() / eye.w;
+        let rows = clip_from_world.transpose();
+        let (z_row, forward) = (rows.z_axis, rows.w_axis.truncate());
+        if forward.length() < 1e-12 || !inverse.is_finite() || !eye.is_finite() {
+            return Err(wrong(
+                "the projection is not of perspective; give one whose last row looks along the view",
+            ));
+        }
+        // clip z = constant * clip w + factor
+        let constant = z_row.truncate().dot(forward) / forward.length_squared();
+        let factor = (clip_from_world * eye.extend(1.0)).z;
+        let bent = z_row.truncate() - forward * constant;
+        if bent.length() > 1e-6 * z_row.truncate().length().max(forward.length()) {
+            return Err(wrong(
+                "the near plane is not at right angles to the view; give a projection without an oblique plane",
+            ));
+        }
+        let direction = |x: f64, y: f64| {
+            let ndc = DVec2::new(
+                2.0 * (x - viewport.x) / viewport.width - 1.0,
+                2.0 * (y - viewport.y) / viewport.height - 1.0,
+            );
+            // Clip points of one w: the eye's own image (0, 0, factor, 0) and the pixel's at w = 1.
+            let point = inverse * DVec4::new(ndc.x, ndc.y, constant, 1.0);
+            point.truncate()
+        };
+        let dir_00 = direction(0.5, 0.5);
+        let (dir_x, dir_y) = (direction(1.5, 0.5) - dir_00, direction(0.5, 1.5) - dir_00);
+        if dir_x.cross(dir_y).dot(forward) <= 0.0 {
+            return Err(wrong(
+                "the view mirrors the picture; turn one axis of the projection or of the viewport round",
+            ));
+        }
+        let near_value = f64::from(u8::from(order == DepthOrder::Reversed));
+        let near = factor / (near_value - constant);
+        if !(near > 0.0 && near.is_finite()) {
+            return Err(wrong(
+                "the near plane is not in front of the eye; give a projection for this depth order",
+            ));
+        }
+        Ok(Self {
+            eye,
+            dir_00,
+            dir_x,
+            dir_y,
+            forward,
+            clip_from_world,
+            depth: [constant, factor],
+            near,
+            order,
+            viewport,
+            parallel: false,
+        })
+    }
+
+    /// The view of parallel rays that begin in the near plane; `t` counts from there.
+    fn parallel(clip_from_world: DMat4, viewport: Viewport, order: DepthOrder) -> Result<Self> {
+        let inverse = clip_from_world.inverse();
+        let (near_value, sense) = match order {
+            DepthOrder::Normal => (0.0, 1.0),
+            DepthOrder::Reversed => (1.0, -1.0),
+        };
+        let point = |x: f64, y: f64| {
+            let ndc_x = 2.0 * (x - viewport.x) / viewport.width - 1.0;
+            let ndc_y = 2.0 * (y - viewport.y) / viewport.height - 1.0;
+            let p = inverse * DVec4::new(ndc_x, ndc_y, near_value, 1.0);
+            p.truncate() / p.w
+        };
+        let eye = point(0.5, 0.5);
+        let (dir_x, dir_y) = (point(1.5, 0.5) - eye, point(0.5, 1.5) - eye);
+        let rows = clip_from_world.transpose();
+        let (z_row, w) = (rows.z_axis.truncate() / rows.w_axis.w, rows.w_axis.w);
+        let slope = z_row.length();
+        let forward = z_row * (sense / slope);
+        let turned = dir_x.cross(dir_y).dot(forward);
+        let level = dir_x.dot(forward).abs() + dir_y.dot(forward).abs();
+        let finite = eye.is_finite() && forward.is_finite() && w != 0.0;
+        if !finite || turned <= 0.0 || level > 1e-6 * (dir_x.length() + dir_y.length()) {
+            return Err(wrong(
+                "the parallel projection is oblique, mirrors, or is none; give one at right angles to the view, for this depth order",
+            ));
+        }
+        Ok(Self {
+            eye,
+            dir_00: forward,
+            dir_x,
+            dir_y,
+            forward,
+            clip_from_world,
+            depth: [near_value, sense * slope],
+            near: 0.0,
+            order,
+            viewport,
+            parallel: true,
+        })
+    }
+
+    /// From world space to clip space.
+    #[must_use]
+    pub fn clip_from_world(&self) -> DMat4 {
+        self.clip_from_world
+    }
+
+    /// The eye, world units.
+    #[must_use]
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// The depth that a point at `t` has in the depth buffer.
+    #[must_use]
+    pub fn depth_at(&self, t: f64) -> f64 {
+        if self.parallel {
+            self.depth[0] + self.depth[1] * t
+        } else {
+            self.depth[0] + self.depth[1] / t
+        }
+    }
+
+    /// How far along the view the depth buffer's value lies; infinite where nothing is drawn. Of
+    /// perspective and normal depths.
+    pub(crate) fn along_at(&self, depth: f32) -> f64 {
+        if depth < 1.0 {
+            self.depth[1] / (f64::from(depth) - self.depth[0])
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth
+    /// along the view.
+    #[cfg(test)]
+    pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
+        let from_eye = world - self.eye;
+        let depth = from_eye.dot(self.forward);
+        let beside = if self.parallel {
+            from_eye
+        } else {
+            from_eye / depth - self.dir_00
+        };
+        let along = |d: DVec3| beside.dot(d) / d.length_squared() + 0.5;
+        (DVec2::new(along(self.dir_x), along(self.dir_y)), depth)
+    }
+
+    /// What clip x and y change by for a way in the world; of parallel rays for a clip w of 1.
+    pub(crate) fn clip_rows(&self) -> [DVec3; 2] {
+        let rows = self.clip_from_world.transpose();
+        let w = if self.parallel { rows.w_axis.w } else { 1.0 };
+        [rows.x_axis, rows.y_axis].map(|row| row.truncate() / w)
+    }
+
+    /// Clip x and y of a point that is given from the eye.
+    pub(crate) fn clip_of(&self, from_eye: DVec3) -> DVec2 {
+        let [x, y] = self.clip_rows();
+        let at_eye = self.clip_from_world * self.eye.extend(1.0);
+        // Of perspective the eye's own is nothing.
+        let constant = if self.parallel {
+            at_eye.truncate().truncate() / at_eye.w
+        } else {
+            DVec2::ZERO
+        };
+        constant + DVec2::new(x.dot(from_eye), y.dot(from_eye))
+    }
+
+    /// The corners of the viewport: upper left, lower right, pixels.
+    pub(crate) fn corners(&self) -> [DVec2; 2] {
+        let v = &self.viewport;
+        let (top, bottom) = (v.y.min(v.y + v.height), v.y.max(v.y + v.height));
+        [DVec2::new(v.x, top), DVec2::new(v.x + v.width, bottom)]
+    }
+
+    /// A pixel's size at unit depth.
+    pub(crate) fn pixel_size(&self) -> f64 {
+        self.dir_x.length()
+    }
+}
+
+fn wrong(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Content, message).at_key("view")
+}

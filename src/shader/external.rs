@@ -1,0 +1,137 @@
+//! A search of another crate as a variant holds it.
+
+use super::list::{self, Module};
+use crate::error::{Error, ErrorKind, Result};
+use crate::maps::MapFormat;
+use crate::search::{Features, Output, Pass, Reads, Search, SearchModule};
+use crate::settings::SearchSettings;
+
+/// A search, and which of its forms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct External {
+    /// The search.
+    pub search: &'static Search,
+    beveled: bool,
+    rgba8: bool,
+    /// The bound on steps where it is the default, as a comparison must not lose by an option that
+    /// it does not take; else 0, and the bound is data.
+    known_steps: u32,
+}
+
+impl External {
+    /// The form for an object. `beveled`: whether it has a bevel; `met`: whether shadows' rays may
+    /// meet one; `casts`: whether there are shadows, whose rays take the steps of what they meet.
+    pub fn new(
+        search: &'static Search,
+        settings: &SearchSettings,
+        beveled: bool,
+        met: bool,
+        casts: bool,
+    ) -> Self {
+        let (form, rgba8) = match search.reads {
+            Reads::Map { tells_bevels, .. } => (
+                !tells_bevels || beveled || met,
+                settings.map_format == MapFormat::Rgba8,
+            ),
+            Reads::Table(_) => (false, false),
+        };
+        let own = default_steps(search, beveled);
+        let is_own = settings.max_steps.is_none_or(|steps| steps == own);
+        Self {
+            search,
+            beveled: form,
+            rgba8,
+            known_steps: if is_own && !casts { own } else { 0 },
+        }
+    }
+
+    /// Whether the search reads a table of its own.
+    pub const fn reads_table(self) -> bool {
+        matches!(self.search.reads, Reads::Table(_))
+    }
+
+    /// The forms that it may come to when a bevel comes or goes.
+    pub fn others(self) -> Vec<Self> {
+        let distinct = matches!(
+            self.search.reads,
+            Reads::Map {
+                tells_bevels: true,
+                ..
+            }
+        );
+        if !distinct {
+            return Vec::new();
+        }
+        let beveled = !self.beveled;
+        let known = [0, default_steps(self.search, beveled)];
+        let other = |known_steps| Self {
+            beveled,
+            known_steps,
+            ..self
+        };
+        known.map(other).to_vec()
+    }
+
+    /// The search whose vertices hand over what this one's fragments take.
+    pub const fn vertices(self) -> list::Search {
+        match (&self.search.reads, &self.search.steps) {
+            (Reads::Map { .. }, _) => list::Search::Live,
+            (Reads::Table(_), None) => list::Search::Quadric,
+            (Reads::Table(_), Some(_)) => list::Search::External,
+        }
+    }
+
+    /// `(SEARCH_FORM, KNOWN_STEPS)`.
+    pub const fn constants(self) -> (u32, u32) {
+        (self.search.form, self.known_steps)
+    }
+
+    /// What `module` is among the search's.
+    pub fn module(self, module: &Module) -> Option<SearchModule> {
+        let pass = match module.entry {
+            list::Entry::Tree => Pass::Fragment,
+            list::Entry::TileTree => Pass::Tile,
+            list::Entry::TileCopies => Pass::Copies,
+            _ => return None,
+        };
+        let output = match module.output {
+            list::Output::Color => Output::Color,
+            list::Output::Planes => Output::Planes,
+            list::Output::Depth | list::Output::DepthOrtho => return None,
+        };
+        Some(SearchModule {
+            pass,
+            features: match module.features {
+                list::Features::Plain => Features::Plain,
+                list::Features::Textured => Features::Textured,
+                list::Features::Full => Features::Full,
+            },
+            output,
+            table: self.reads_table(),
+            bounded: self.search.steps.is_some(),
+            beveled: self.beveled,
+            rgba8: self.rgba8,
+        })
+    }
+
+    /// The name of `module`.
+    pub fn name(self, module: &Module) -> String {
+        let own = self.module(module).map(|own| own.name());
+        format!("{}.{}", self.search.name, own.unwrap_or_default())
+    }
+
+    /// The SPIR-V of `module`.
+    pub fn words(self, module: &Module) -> Result<Vec<u32>> {
+        let none = || {
+            Error::new(
+                ErrorKind::Other,
+                format!("no shader is {}", self.name(module)),
+            )
+        };
+        self.search.words.of(&self.module(module).ok_or_else(none)?)
+    }
+}
+
+fn default_steps(search: &Search, beveled: bool) -> u32 {
+    search.steps.map_or(0, |steps| steps.of(beveled))
+}

@@ -1,0 +1,193 @@
+//! Cylinders about a solid's axis: those that it holds, and those that hold it.
+
+use super::{QuadricPatch, SOLID_ROWS, extents, solid_radii};
+use crate::profile::{Outline, Segment};
+
+/// One cylinder, object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CylinderPiece {
+    pub radius: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Cylinders about an axis, from the lowest to the highest: the more the larger a copy is seen.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cylinders([Vec<CylinderPiece>; 3]);
+
+impl Cylinders {
+    /// Of rows with these radii, as [`cylinders`] says.
+    pub fn new(radii: &[f64], bound: fn(f64, f64) -> f64) -> Self {
+        Self([3, 8, 16].map(|count| cylinders(radii, count, bound)))
+    }
+
+    /// Of a copy that is seen in so many rows of pixels; below `few` rows there are few.
+    pub fn of(&self, rows: u32, few: u32) -> &[CylinderPiece] {
+        &self.0[usize::from(rows >= few) + usize::from(rows >= MANY_ROWS)]
+    }
+}
+
+/// Copies of more rows of pixels are worth many cylinders.
+const MANY_ROWS: u32 = 64;
+
+/// Cylinders within a solid: what it is sure to hide.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct InnerCylinders(Cylinders);
+
+/// Cylinders that hold a solid: where it can show.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OuterCylinders(Cylinders);
+
+/// What copies of fewer rows of pixels hide is told by few cylinders.
+const FEW_ROWS: u32 = 12;
+
+impl InnerCylinders {
+    /// Of the solid that the patches enclose.
+    pub fn new(patches: &[QuadricPatch]) -> Self {
+        Self(Cylinders::new(&solid_radii(patches), f64::min))
+    }
+
+    /// Of a copy that is seen in so many rows of pixels.
+    pub fn of(&self, rows: u32) -> &[CylinderPiece] {
+        self.0.of(rows, FEW_ROWS)
+    }
+}
+
+/// Outer cylinders of copies of fewer rows of pixels are few.
+const FEW_OUTER_ROWS: u32 = 24;
+
+impl OuterCylinders {
+    /// Of the solid that the patches enclose.
+    pub fn new(patches: &[QuadricPatch]) -> Self {
+        let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
+        let radii: Vec<f64> = extents(patches, SOLID_ROWS).iter().map(most).collect();
+        Self::of_radii(&radii)
+    }
+
+    /// Of the solid that an outline encloses, as far as its box reaches.
+    pub fn of_outline(outline: &Outline) -> Self {
+        let mut radii = [0.0f64; SOLID_ROWS];
+        for Segment { a, b } in outline.surface_segments() {
+            let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
+            let row = |z: f64| (z * SOLID_ROWS as f64).floor();
+            let (first, last) = (
+                row(low.y).max(0.0),
+                row(high.y).min(SOLID_ROWS as f64 - 1.0),
+            );
+            let radius_at = |z: f64| {
+                let part = ((z - low.y) / (high.y - low.y)).clamp(0.0, 1.0);
+                if part.is_nan() {
+                    low.x.max(high.x)
+                } else {
+                    low.x + part * (high.x - low.x)
+                }
+            };
+            for k in first as usize..(last + 1.0) as usize {
+                let ends = [k, k + 1].map(|k| radius_at(k as f64 / SOLID_ROWS as f64));
+                radii[k] = radii[k].max(ends[0]).max(ends[1]);
+            }
+        }
+        Self::of_radii(&radii)
+    }
+
+    /// Of a solid whose rows of equal height have these largest radii.
+    pub fn of_radii(radii: &[f64]) -> Self {
+        Self(Cylinders::new(radii, f64::max))
+    }
+
+    /// Of a copy that is seen in so many rows of pixels.
+    pub fn of(&self, rows: u32) -> &[CylinderPiece] {
+        self.0.of(rows, FEW_OUTER_ROWS)
+    }
+}
+
+/// At most `count` runs of rows, each with its least or largest radius, as `bound` says, that
+/// together are as near to the radii as can be; those of no radius are left out.
+fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<CylinderPiece> {
+    let n = radii.len();
+    let outer = bound(0.0, 1.0) > 0.0;
+    let sense = if outer { -1.0 } else { 1.0 };
+    // Of the first j rows: what is covered at best, and where the last run begins. Rows within may
+    // be left out, rows without may not.
+    let left_out = |j: usize| {
+        if outer && j > 0 {
+            f64::NEG_INFINITY
+        } else {
+            0.0
+        }
+    };
+    let mut best: Vec<(f64, usize)> = (0..=n).map(|j| (left_out(j), 0)).collect();
+    let mut steps = Vec::with_capacity(count);
+    for _ in 0..count {
+        let mut next = vec![(0.0f64, 0usize); n + 1];
+        for j in 0..=n {
+            let mut radius = radii[j.saturating_sub(1)];
+            next[j] = (best[j].0, j);
+            for i in (0..j).rev() {
+                radius = bound(radius, radii[i]);
+                let covered = best[i].0 + sense * (j - i) as f64 * radius;
+                if covered > next[j].0 {
+                    next[j] = (covered, i);
+                }
+            }
+        }
+        steps.push(next.clone());
+        best = next;
+    }
+    let mut found = Vec::new();
+    let mut end = n;
+    for step in steps.iter().rev() {
+        let begin = step[end].1;
+        if let Some(radius) = radii[begin..end].iter().copied().reduce(bound)
+            && radius > 0.0
+        {
+            found.push(CylinderPiece {
+                radius,
+                low: begin as f64 / n as f64,
+                high: end as f64 / n as f64,
+            });
+        }
+        end = begin;
+    }
+    found.reverse();
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_keep_to_their_side_of_the_radii_and_cover_most() {
+        let radii: Vec<f64> = (0..64)
+            .map(|k| {
+                if k < 16 {
+                    0.4
+                } else {
+                    0.1 + 0.001 * f64::from(k)
+                }
+            })
+            .collect();
+        let found = cylinders(&radii, 8, f64::min);
+        assert!(found.len() > 1 && found.len() <= 8);
+        let mut covered = 0.0;
+        for piece in &found {
+            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
+            assert!(rows.iter().all(|r| *r >= piece.radius));
+            covered += piece.radius * rows.len() as f64;
+        }
+        assert!(covered > 0.9 * radii.iter().sum::<f64>());
+        assert!(found.windows(2).all(|w| w[0].high <= w[1].low));
+        assert!(cylinders(&[0.0; 64], 8, f64::min).is_empty());
+        let found = cylinders(&radii, 8, f64::max);
+        assert!(found.len() <= 8 && found[0].low == 0.0 && found[found.len() - 1].high == 1.0);
+        let mut covered = 0.0;
+        for piece in &found {
+            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
+            assert!(rows.iter().all(|r| *r <= piece.radius));
+            covered += piece.radius * rows.len() as f64;
+        }
+        assert!(covered < 1.1 * radii.iter().sum::<f64>());
+        assert!(found.windows(2).all(|w| w[0].high == w[1].low));
+    }
+}

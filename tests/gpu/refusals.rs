@@ -1,0 +1,296 @@
+//! What a renderer refuses when it is made, or before it records, and by which kind: nothing
+//! reaches Vulkan that validation would complain about.
+#![allow(unsafe_code)]
+
+use crate::calls::{Layer, Mask};
+use crate::common::host::{Host, lent, open};
+use crate::common::{device, shapes};
+use crate::embedding::{assert_silent, borrow};
+use crate::embedding_outputs::once;
+use ash::vk;
+use ash::vk::Handle as _;
+use glam::DVec3;
+use revmap::error::ErrorKind::{self, Unsupported, Usage};
+use revmap::gpu::{
+    ComputeTarget, DepthOrder, Device, HostDevice, ObjectId, Output, PassFormats, PassKind,
+    Renderer, Requirements, View,
+};
+use revmap::scene::{Camera, Object};
+use revmap::settings::{Planes, SearchSettings};
+
+const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
+const FLOAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+const BOTH: vk::Format = vk::Format::D32_SFLOAT_S8_UINT;
+const NONE: vk::Format = vk::Format::UNDEFINED;
+
+fn pass(begun: PassKind, samples: u32, planes: Planes) -> Output {
+    Output::Pass(PassFormats {
+        begun,
+        samples,
+        depth: DepthOrder::Normal,
+        planes,
+    })
+}
+
+fn dynamic(
+    color: &[vk::Format],
+    depth: vk::Format,
+    stencil: vk::Format,
+    planes: Planes,
+    samples: u32,
+) -> Output {
+    let begun = PassKind::Dynamic {
+        color: color.to_vec(),
+        depth,
+        stencil,
+    };
+    pass(begun, samples, planes)
+}
+
+/// The kind of the refusal; none where a renderer is made.
+fn refused(device: &Device, output: Output) -> Option<(ErrorKind, Option<String>)> {
+    let made = Renderer::new(device, output, &SearchSettings::exact(), 1);
+    made.err().map(|error| (error.kind, error.key))
+}
+
+#[track_caller]
+fn assert_refused(device: &Device, output: Output, kind: ErrorKind, key: Option<&str>) {
+    let found = refused(device, output.clone());
+    assert_eq!(found, Some((kind, key.map(str::to_owned))), "{output:?}");
+}
+
+#[test]
+fn attachments_that_do_not_fit_are_refused() {
+    let depth_alone = Planes::Depth { parallel: false };
+    for (color, depth, stencil, planes, samples) in [
+        (&[COLOR][..], DEPTH, NONE, Planes::Color, 1),
+        (&[COLOR], BOTH, NONE, Planes::Color, 4),
+        (&[COLOR], BOTH, BOTH, Planes::Color, 1),
+        (&[FLOAT; 4], DEPTH, NONE, Planes::All, 1),
+        (&[], vk::Format::D16_UNORM, NONE, depth_alone, 1),
+    ] {
+        let output = dynamic(color, depth, stencil, planes, samples);
+        assert_eq!(refused(device(), output.clone()), None, "{output:?}");
+    }
+    let unsigned = vk::Format::R8G8B8A8_UINT;
+    let signed = vk::Format::R32G32B32A32_SINT;
+    let packed = vk::Format::BC1_RGB_UNORM_BLOCK;
+    let stencil_alone = vk::Format::S8_UINT;
+    for (color, depth, stencil, planes, kind, key) in [
+        (&[][..], DEPTH, NONE, Planes::Color, Usage, Some("color")),
+        (
+            &[COLOR, COLOR],
+            DEPTH,
+            NONE,
+            Planes::Color,
+            Usage,
+            Some("color"),
+        ),
+        (&[FLOAT; 3], DEPTH, NONE, Planes::All, Usage, Some("color")),
+        (&[FLOAT; 5], DEPTH, NONE, Planes::All, Usage, Some("color")),
+        (&[COLOR], DEPTH, NONE, depth_alone, Usage, Some("color")),
+        (&[NONE], DEPTH, NONE, Planes::Color, Usage, Some("color")),
+        (&[DEPTH], DEPTH, NONE, Planes::Color, Usage, Some("color")),
+        (
+            &[stencil_alone],
+            DEPTH,
+            NONE,
+            Planes::Color,
+            Usage,
+            Some("color"),
+        ),
+        (
+            &[unsigned],
+            DEPTH,
+            NONE,
+            Planes::Color,
+            Usage,
+            Some("color"),
+        ),
+        (
+            &[FLOAT, FLOAT, FLOAT, signed],
+            DEPTH,
+            NONE,
+            Planes::All,
+            Usage,
+            Some("color"),
+        ),
+        (&[packed], DEPTH, NONE, Planes::Color, Unsupported, None),
+        (&[COLOR], NONE, NONE, Planes::Color, Usage, Some("depth")),
+        (&[COLOR], COLOR, NONE, Planes::Color, Usage, Some("depth")),
+        (
+            &[COLOR],
+            stencil_alone,
+            NONE,
+            Planes::Color,
+            Usage,
+            Some("depth"),
+        ),
+        (
+            &[COLOR],
+            DEPTH,
+            DEPTH,
+            Planes::Color,
+            Usage,
+            Some("stencil"),
+        ),
+        (&[COLOR], DEPTH, BOTH, Planes::Color, Usage, Some("stencil")),
+        (
+            &[COLOR],
+            DEPTH,
+            COLOR,
+            Planes::Color,
+            Usage,
+            Some("stencil"),
+        ),
+    ] {
+        let output = dynamic(color, depth, stencil, planes, 1);
+        assert_refused(device(), output, kind, key);
+    }
+    let null = PassKind::RenderPass {
+        pass: vk::RenderPass::null(),
+        subpass: 0,
+    };
+    assert_refused(device(), pass(null, 1, Planes::Color), Usage, Some("pass"));
+    device().check().unwrap();
+}
+
+#[test]
+fn samples_that_the_device_has_not_are_refused() {
+    for samples in [0, 3, 16] {
+        let output = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, samples);
+        assert_refused(device(), output, Usage, Some("samples"));
+    }
+    let layer = Layer::take();
+    let host = open();
+    // SAFETY: the system's loader, as of the host.
+    let entry = unsafe { ash::Entry::load() }.unwrap();
+    let mask = Mask {
+        samples: true,
+        ..Mask::default()
+    };
+    let instance = layer.instance(&entry, &host.instance, mask);
+    let lent = HostDevice {
+        instance: &instance,
+        ..lent(&host)
+    };
+    // SAFETY: the host's own handles; the device is dropped before the host.
+    let poorer = unsafe { Device::borrow(&lent) }.unwrap();
+    let own = PassKind::RenderPass {
+        // Refused before anything is done with it.
+        pass: vk::RenderPass::from_raw(1),
+        subpass: 0,
+    };
+    for samples in [2, 4, 8] {
+        let output = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, samples);
+        assert_refused(&poorer, output, Unsupported, Some("samples"));
+        let output = pass(own.clone(), samples, Planes::Color);
+        assert_refused(&poorer, output, Unsupported, Some("samples"));
+    }
+    let output = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
+    assert_eq!(refused(&poorer, output), None);
+    drop(poorer);
+    assert_silent(&host);
+}
+
+#[test]
+fn all_planes_need_their_feature_and_their_buffer() {
+    let all = || dynamic(&[FLOAT; 4], DEPTH, NONE, Planes::All, 1);
+    let bare = Host::open(true, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, vk::PhysicalDeviceFeatures::default()))
+    })
+    .unwrap();
+    assert_refused(&borrow(&bare), all(), Unsupported, None);
+    assert_silent(&bare);
+
+    let host = open();
+    let device = borrow(&host);
+    let camera = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
+    let view = View::from_camera(&camera, (16, 16), [1.0, 4.0]).unwrap();
+    // Refused before anything is done with them.
+    let (words, image) = (vk::Buffer::from_raw(1), vk::ImageView::from_raw(1));
+    let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
+    let compute = Output::Compute;
+    for (output, words, images, key) in [
+        (all(), vk::Buffer::null(), &[][..], "words"),
+        (all(), words, &[image], "images"),
+        (color(), words, &[], "target"),
+        (compute(Planes::Color), vk::Buffer::null(), &[], "words"),
+        (compute(Planes::Color), words, &[image], "images"),
+        (compute(Planes::All), words, &[image; 3], "images"),
+        (
+            compute(Planes::All),
+            words,
+            &[vk::ImageView::null(); 4],
+            "images",
+        ),
+    ] {
+        let mut renderer =
+            Renderer::new(&device, output.clone(), &SearchSettings::exact(), 1).unwrap();
+        let images = images.to_vec();
+        // SAFETY: the target is refused.
+        let set = unsafe {
+            renderer.set_compute_target(ComputeTarget {
+                words,
+                images,
+                depths: true,
+            })
+        };
+        let mut errors = vec![(set.unwrap_err(), key)];
+        once(&host, |cmd| {
+            // SAFETY: `cmd` is recording outside of a pass.
+            let prepared = unsafe { renderer.prepare(cmd, 0, &view) };
+            errors.extend(prepared.err().map(|error| (error, "target")));
+        });
+        assert_eq!(errors.len(), if output == color() { 1 } else { 2 });
+        for (error, key) in errors {
+            assert_eq!(
+                (error.kind, error.key.as_deref()),
+                (Usage, Some(key)),
+                "{error}"
+            );
+        }
+    }
+    drop(device);
+    assert_silent(&host);
+}
+
+/// Two renderers count their objects alike.
+#[test]
+fn another_renderers_object_is_refused() {
+    let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
+    let make = || Renderer::new(device(), color(), &SearchSettings::exact(), 1).unwrap();
+    let (mut one, mut other) = (make(), make());
+    let object = Object::new("vase", shapes::vase().into());
+    let id = one.add(object.clone()).unwrap();
+    let twin = other.add(object.clone()).unwrap();
+    assert_ne!(id.to_bits(), twin.to_bits());
+    for id in [id, ObjectId::from_bits(id.to_bits())] {
+        let kinds = [
+            other.object(id).unwrap_err().kind,
+            other.set(id, object.clone()).unwrap_err().kind,
+            other.set_offset(id, object.offset).unwrap_err().kind,
+            other.remove(id).unwrap_err().kind,
+        ];
+        assert_eq!(kinds, [Usage; 4]);
+        // Reading takes no exclusive reference.
+        let (read, again) = (&one, &one);
+        assert_eq!(
+            read.object(id).unwrap().name,
+            again.object(id).unwrap().name
+        );
+    }
+    assert!(other.object(twin).is_ok());
+    one.remove(id).unwrap();
+    assert_ne!(one.add(object).unwrap(), id);
+    assert_eq!(one.object(id).unwrap_err().kind, Usage);
+    for bits in [0, u64::MAX] {
+        assert_eq!(
+            one.object(ObjectId::from_bits(bits)).unwrap_err().kind,
+            Usage
+        );
+    }
+}
