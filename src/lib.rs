@@ -147,6 +147,7 @@ pub mod scene;
 pub mod search;
 pub mod settings;
 mod shader;
+mod solid;
 pub mod surface;
 
 #[cfg(all(test, not(any(feature = "drawing", feature = "exr", feature = "jpeg"))))]

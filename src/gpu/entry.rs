@@ -1,17 +1,17 @@
 //! What a renderer keeps of an object: its values, and what is prepared from them.
 
-use super::block::{note_growth, solid_block};
-use super::blocks::SolidBlock;
-use super::map_key::MapFacts;
-use super::offset_surface::OffsetSurface;
-use super::shape_texture::{ArcTexture, ShapeTexture};
-use super::solid::Solid;
-use super::table_slot::{Part, Slot};
-use super::textures::TextureSet;
+use crate::gpu::resources::block::{note_growth, solid_block};
+use crate::gpu::resources::blocks::SolidBlock;
+use crate::gpu::resources::map_key::MapFacts;
+use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
+use crate::gpu::resources::solid_cache::Solid;
+use crate::gpu::resources::textures::TextureSet;
 use crate::scene::{GrownObject, Object};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::Variant;
 use crate::shader::generated::FRUSTUM_VECTORS;
+use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::table_slot::{Part, Slot};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -5,76 +5,40 @@
 //! the frame back.
 #![allow(unsafe_code)]
 
-mod arena;
-mod block;
-pub(crate) mod blocks;
-mod buffers;
-mod call;
-mod clock;
-mod commands;
-#[cfg(feature = "other-shaders")]
-#[doc(hidden)]
-pub mod compiler;
-mod costs;
-pub(crate) mod descriptors;
 mod device;
 mod entry;
-mod frame_slot;
-mod geometry;
-mod instance;
-mod kept;
-mod map_key;
+mod frame;
 mod memory;
-mod memory_budget;
-mod messages;
 mod object_id;
 mod objects;
 mod offscreen;
-pub(crate) mod offset_surface;
-pub(crate) mod outline_cache;
-mod output;
-mod pipelines;
-mod planned;
-mod prepare;
 mod prewarm;
-mod proxy_hull;
-mod reach;
-mod read_back;
-mod record;
 mod refresh;
-mod render_pass;
 mod renderer;
-mod report;
-mod requirements;
-mod sampler;
-mod shape_texture;
-pub(crate) mod solid;
-mod srgb;
-mod table_slot;
-mod tables;
-mod target;
-mod textures;
-mod uploads;
-mod usage;
+pub(crate) mod resources;
+#[cfg(feature = "other-shaders")]
+#[doc(hidden)]
+pub use vk::compiler;
+pub(crate) mod vk;
 
 pub use crate::plan::{DepthOrder, DrawPath, View, Viewport};
-pub use call::{allocation_error, vulkan_error};
-pub use costs::{INSTANCE_BYTES, ObjectCost};
+pub use device::instance::VALIDATION_VARIABLE;
+pub use device::report::{DEVICE_VARIABLE, DeviceReport, devices};
+pub use device::requirements::Requirements;
 pub use device::{Device, HostDevice};
-pub use instance::VALIDATION_VARIABLE;
+pub use frame::costs::{INSTANCE_BYTES, ObjectCost};
+pub use frame::output::{Output, PassFormats, PassKind};
+pub use frame::prepare::PreparedFrame;
+pub use frame::target::ComputeTarget;
 pub use memory::Buffer;
-pub use memory_budget::MemoryUse;
+pub use memory::budget::MemoryUse;
 pub use object_id::ObjectId;
 pub use offscreen::{Guest, Offscreen, Times};
-pub use output::{Output, PassFormats, PassKind};
-#[cfg(feature = "other-shaders")]
-pub use pipelines::ShaderSource;
-pub use prepare::PreparedFrame;
 pub use prewarm::Prewarm;
 pub use renderer::Renderer;
-pub use report::{DEVICE_VARIABLE, DeviceReport, devices};
-pub use requirements::Requirements;
-pub use target::ComputeTarget;
+pub use vk::call::{allocation_error, vulkan_error};
+#[cfg(feature = "other-shaders")]
+pub use vk::pipelines::ShaderSource;
 
 use crate::error::Result;
 use crate::frame::Frame;

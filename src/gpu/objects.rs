@@ -1,9 +1,9 @@
 //! The objects of a renderer: they come, go and change.
 
-use super::entry::Entry;
-use super::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
-use super::renderer::Renderer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::entry::Entry;
+use crate::gpu::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
+use crate::gpu::renderer::Renderer;
 use crate::scene::{Copies, Lighting, Object, Offset, Placement};
 use range_alloc::RangeAllocator;
 use std::ops::Range;
@@ -260,7 +260,7 @@ impl Renderer {
     /// [`ErrorKind::Content`] for values out of range, with the key.
     pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
         lighting.check()?;
-        super::block::check_lights(lighting)?;
+        crate::gpu::resources::block::check_lights(lighting)?;
         let codes = |l: &Lighting| (l.lights.len(), l.shadow);
         if codes(lighting) != codes(&self.lighting) {
             self.changed.extend(self.objects.numbers());

@@ -1,17 +1,17 @@
 //! Frames without a host: a target, commands, and reading back; the first user of [`Renderer`].
 
-use super::clock::Clock;
-use super::commands::Commands;
-use super::costs::ObjectCost;
-use super::device::{Device, Shared};
-use super::object_id::ObjectId;
-use super::output::{Output, PassFormats, PassKind};
-use super::read_back;
-use super::renderer::Renderer;
-use super::target::Target;
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::Frame;
+use crate::gpu::device::{Device, Shared};
+use crate::gpu::frame::costs::ObjectCost;
+use crate::gpu::frame::output::{Output, PassFormats, PassKind};
+use crate::gpu::frame::read_back;
+use crate::gpu::frame::target::Target;
+use crate::gpu::object_id::ObjectId;
+use crate::gpu::renderer::Renderer;
+use crate::gpu::vk::clock::Clock;
+use crate::gpu::vk::commands::Commands;
 use crate::plan::{DepthOrder, DrawPath, View};
 use crate::scene::{CameraFrame, Cluster, Growth, Object, Placement, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};

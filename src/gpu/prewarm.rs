@@ -1,13 +1,13 @@
 //! Pipelines compiled before they are needed.
 
-use super::device::Shared;
-use super::entry::Entry;
-use super::output::Output;
-use super::planned::PlannedObject;
-use super::prepare::PreparedFrame;
-use super::refresh::FALLBACK;
-use super::renderer::Renderer;
 use crate::error::Result;
+use crate::gpu::device::Shared;
+use crate::gpu::entry::Entry;
+use crate::gpu::frame::output::Output;
+use crate::gpu::frame::planned::PlannedObject;
+use crate::gpu::frame::prepare::PreparedFrame;
+use crate::gpu::refresh::FALLBACK;
+use crate::gpu::renderer::Renderer;
 use crate::plan::{PlanObject, Pushed, variants};
 use crate::settings::Solver;
 use crate::shader::{Kind, Variant};

@@ -1,21 +1,21 @@
 //! From an object's values to what the device needs of it. All that can fail comes first; then
 //! everything is taken over at once.
 
-use super::block::check_format;
-use super::entry::{Entry, Prepared};
-use super::map_key::MapKey;
-use super::offset_surface::OffsetSurface;
-use super::renderer::Renderer;
-use super::shape_texture::ShapeTexture;
-use super::solid::Solid;
-use super::textures::{Bound, ShadowMaps};
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::entry::{Entry, Prepared};
+use crate::gpu::renderer::Renderer;
+use crate::gpu::resources::block::check_format;
+use crate::gpu::resources::map_key::MapKey;
+use crate::gpu::resources::shape_texture::ShapeTexture;
+use crate::gpu::resources::solid_cache::Solid;
+use crate::gpu::resources::textures::{Bound, ShadowMaps};
 use crate::maps::Projection;
 use crate::plan::{View, levels};
 use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
 use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
 use crate::shader::{ShadowCasters, Variant};
+use crate::solid::offset_surface::OffsetSurface;
 use std::sync::Arc;
 
 /// The search of what has no surface of its own: it reads the map alone.

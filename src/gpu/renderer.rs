@@ -4,17 +4,17 @@
 //! view's frame is planned in `planned.rs`, prepared for a slot in `prepare.rs` and recorded in
 //! `record.rs`.
 
-use super::device::{Device, Shared};
-use super::frame_slot::FrameSlot;
-use super::geometry::Geometry;
-use super::object_id::next_renderer;
-use super::objects::Objects;
-use super::output::Output;
-use super::planned::Planned;
-use super::target::ComputeTarget;
-use super::textures::{ShadowMaps, Textures};
-use super::uploads::Uploads;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::{Device, Shared};
+use crate::gpu::frame::output::Output;
+use crate::gpu::frame::planned::Planned;
+use crate::gpu::frame::slot::FrameSlot;
+use crate::gpu::frame::target::ComputeTarget;
+use crate::gpu::memory::uploads::Uploads;
+use crate::gpu::object_id::next_renderer;
+use crate::gpu::objects::Objects;
+use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::resources::textures::{ShadowMaps, Textures};
 use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;

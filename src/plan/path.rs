@@ -3,11 +3,11 @@
 use super::proxy;
 use super::tiles::{Cylinder, Placements};
 use super::view::View;
-use crate::gpu::offset_surface::OffsetSurface;
-use crate::gpu::outline_cache::OutlineCache;
 use crate::scene::Object;
 use crate::shader::generated::{LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST};
 use crate::shader::{Kind, Variant};
+use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::outline_cache::OutlineCache;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;

@@ -2,8 +2,8 @@
 
 use super::rectangle::{Rectangle, rectangle};
 use super::view::View;
-use crate::gpu::offset_surface::OffsetSurface;
 use crate::scene::{Clip, Cluster, Object, Placement};
+use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
 use std::ops::Range;

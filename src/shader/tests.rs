@@ -2,7 +2,7 @@
 //! is kept for builds without shaderc.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::gpu::blocks::{
+use crate::gpu::resources::blocks::{
     FrameBlock, InstanceBlock, LightBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
 };
 use crate::profile::Profile;
@@ -343,7 +343,7 @@ fn descriptors_are_those_of_the_shaders() {
                 (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
                 _ => &[T::STORAGE_BUFFER],
             };
-            let known = crate::gpu::descriptors::SETS[set as usize][binding as usize];
+            let known = crate::gpu::vk::descriptors::SETS[set as usize][binding as usize];
             assert!(
                 wanted.contains(&known.kind),
                 "{}: {set}, {binding}",
@@ -352,7 +352,7 @@ fn descriptors_are_those_of_the_shaders() {
             seen.insert((set, binding));
         }
     }
-    let all: usize = crate::gpu::descriptors::SETS
+    let all: usize = crate::gpu::vk::descriptors::SETS
         .iter()
         .map(|set| set.len())
         .sum();

@@ -66,25 +66,25 @@ impl OuterCylinders {
 
     /// Of the solid that an outline encloses, as far as its box reaches.
     pub fn of_outline(outline: &Outline) -> Self {
+        let rows = SOLID_ROWS as f64;
         let mut radii = [0.0f64; SOLID_ROWS];
         for Segment { a, b } in outline.surface_segments() {
             let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
-            let row = |z: f64| (z * SOLID_ROWS as f64).floor();
-            let (first, last) = (
-                row(low.y).max(0.0),
-                row(high.y).min(SOLID_ROWS as f64 - 1.0),
-            );
-            let radius_at = |z: f64| {
-                let part = ((z - low.y) / (high.y - low.y)).clamp(0.0, 1.0);
-                if part.is_nan() {
+            let first = (low.y * rows).floor().max(0.0) as usize;
+            let last = (high.y * rows).floor() as usize;
+            let radius_at = |row: usize| {
+                let part = (row as f64 / rows - low.y) / (high.y - low.y);
+                // Of a level segment the division gives no number.
+                let radius = low.x + part.clamp(0.0, 1.0) * (high.x - low.x);
+                if radius.is_nan() {
                     low.x.max(high.x)
                 } else {
-                    low.x + part * (high.x - low.x)
+                    radius
                 }
             };
-            for k in first as usize..(last + 1.0) as usize {
-                let ends = [k, k + 1].map(|k| radius_at(k as f64 / SOLID_ROWS as f64));
-                radii[k] = radii[k].max(ends[0]).max(ends[1]);
+            let met = radii.iter_mut().enumerate().take(last + 1).skip(first);
+            for (row, radius) in met {
+                *radius = radius.max(radius_at(row)).max(radius_at(row + 1));
             }
         }
         Self::of_radii(&radii)

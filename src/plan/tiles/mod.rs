@@ -29,8 +29,8 @@ mod strip;
 pub(crate) use bounds::{Cylinder, Projector};
 
 use super::view::View;
-use crate::gpu::offset_surface::OffsetSurface;
 use crate::scene::{Copies, Placement};
+use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
 use candidates::{Candidates, CopyFacts};
 use cover::{SIDE, within};

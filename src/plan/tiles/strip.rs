@@ -114,12 +114,12 @@ impl<'a> Strip<'a> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::gpu::offset_surface::OffsetSurface;
-    use crate::gpu::solid::SolidCache;
+    use crate::gpu::resources::solid_cache::SolidCache;
     use crate::plan::View;
     use crate::plan::tiles::{Cylinder, Drawer, Placements, Visible};
     use crate::profile::Profile;
     use crate::scene::{Camera, Copies, Growth, Offset, Placement};
+    use crate::solid::offset_surface::OffsetSurface;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};

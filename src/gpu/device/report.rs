@@ -1,0 +1,357 @@
+//! What each Vulkan device offers, and which of them to take.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::instance::{API_VERSION, Instance};
+use crate::gpu::vk::call::Call;
+use crate::shader::generated::GROUP_PIXELS;
+use ash::vk;
+use std::ffi::CStr;
+
+/// The environment variable that names the device to take.
+pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
+
+/// What a Vulkan device is and offers.
+#[derive(Clone, Debug)]
+pub struct DeviceReport {
+    /// Position in the loader's list; [`Device::open`](super::Device::open) takes it.
+    pub index: usize,
+    /// The device's name.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    pub kind: &'static str,
+    /// Driver's name and version.
+    pub driver: String,
+    /// Vulkan version, as `1.3.230`.
+    pub api_version: String,
+    /// What a renderer would use of it: `(what, whether or which)`.
+    pub uses: Vec<(String, String)>,
+    /// What it lacks that is needed; empty: renderers can be made on it.
+    pub missing: Vec<String>,
+    /// Whether [`Device::open`](super::Device::open) takes it where none is named.
+    pub preferred: bool,
+}
+
+/// A device with what opening it takes.
+pub(crate) struct Candidate {
+    pub report: DeviceReport,
+    pub physical: vk::PhysicalDevice,
+    pub family: u32,
+    pub timestamp_bits: u32,
+    pub features: vk::PhysicalDeviceFeatures,
+    pub properties: vk::PhysicalDeviceProperties,
+    pub subgroup_size: u32,
+    pub extensions: Vec<vk::ExtensionProperties>,
+}
+
+impl Candidate {
+    /// Whether textures are filtered anisotropically. Software devices take ten times as long over
+    /// it, and llvmpipe filters otherwise in fragment than in compute shaders.
+    pub fn anisotropic(&self) -> bool {
+        self.features.sampler_anisotropy == vk::TRUE
+            && self.properties.device_type != vk::PhysicalDeviceType::CPU
+    }
+
+    /// Whether triangles can be clipped by the four sides of a box, and corners are placed as well
+    /// as the strips of these sides need it: hulls are drawn of solids that the sides cut. Of
+    /// SwiftShader, which places corners at sixteenths of a pixel, 10 pixels of 14,000 were lost
+    /// along the edges of sides.
+    pub fn clips(&self) -> bool {
+        let limits = &self.properties.limits;
+        self.features.shader_clip_distance == vk::TRUE
+            && limits.max_clip_distances >= 4
+            && limits.sub_pixel_precision_bits >= 8
+    }
+
+    /// Whether squares of up to eight pixels a side are drawn as points: one vertex for six, and
+    /// no diagonal, along which blocks of pixels are searched twice.
+    pub fn large_points(&self) -> bool {
+        let limits = &self.properties.limits;
+        let [least, most] = limits.point_size_range;
+        let step = limits.point_size_granularity;
+        self.features.large_points == vk::TRUE
+            && least <= 1.0
+            && most >= GROUP_PIXELS as f32
+            && (step == 0.0 || (1.0 / step).fract() == 0.0)
+    }
+
+    /// How many indexed draws one indirect command takes.
+    pub fn most_draws(&self) -> u32 {
+        let both = [
+            self.features.multi_draw_indirect,
+            self.features.draw_indirect_first_instance,
+        ];
+        if both == [vk::TRUE; 2] {
+            self.properties.limits.max_draw_indirect_count
+        } else {
+            0
+        }
+    }
+
+    /// Whether it offers an extension.
+    pub fn offers(&self, extension: &CStr) -> bool {
+        let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
+        self.extensions.iter().any(named)
+    }
+
+    /// The features that are used where they are offered.
+    pub fn wanted_features(&self) -> vk::PhysicalDeviceFeatures {
+        vk::PhysicalDeviceFeatures {
+            fragment_stores_and_atomics: vk::TRUE,
+            sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
+            shader_clip_distance: vk::Bool32::from(self.clips()),
+            large_points: vk::Bool32::from(self.large_points()),
+            multi_draw_indirect: self.features.multi_draw_indirect,
+            draw_indirect_first_instance: self.features.draw_indirect_first_instance,
+            ..Default::default()
+        }
+    }
+
+    /// [`DeviceReport::uses`].
+    fn uses(&self) -> Vec<(String, String)> {
+        let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
+        let limits = &self.properties.limits;
+        let timestamps = if self.timestamp_bits > 0 {
+            let (bits, period) = (self.timestamp_bits, limits.timestamp_period);
+            format!("{bits} bits of {period} ns")
+        } else {
+            "no: times are the wall clock's alone".to_owned()
+        };
+        let (width, height) = (limits.max_framebuffer_width, limits.max_framebuffer_height);
+        let side = limits.max_image_dimension2_d;
+        [
+            ("GPU timestamps", timestamps),
+            ("anisotropic filtering", yes_no(self.anisotropic())),
+            ("hulls of solids that their box cuts", yes_no(self.clips())),
+            ("squares of crowds as points", yes_no(self.large_points())),
+            ("largest map", format!("{side} texels a side")),
+            ("largest picture", format!("{width} x {height}")),
+        ]
+        .map(|(what, which)| (what.to_owned(), which))
+        .to_vec()
+    }
+}
+
+/// All devices that the Vulkan loader offers.
+///
+/// # Errors
+/// [`ErrorKind::Unsupported`] when there is no loader or no device.
+pub fn devices() -> Result<Vec<DeviceReport>> {
+    let instance = Instance::from_environment()?;
+    let found = candidates(&instance)?;
+    if found.is_empty() {
+        return Err(none());
+    }
+    let preferred = position(&found, variable().as_deref()).ok();
+    let mut reports: Vec<_> = found.into_iter().map(|c| c.report).collect();
+    if let Some(report) = preferred.and_then(|p| reports.get_mut(p)) {
+        report.preferred = true;
+    }
+    Ok(reports)
+}
+
+/// The device that the environment names.
+pub(crate) fn variable() -> Option<String> {
+    std::env::var(DEVICE_VARIABLE)
+        .ok()
+        .filter(|v| !v.is_empty())
+}
+
+fn none() -> Error {
+    Error::new(
+        ErrorKind::Unsupported,
+        "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers",
+    )
+}
+
+pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
+    // SAFETY: plain query of a live instance.
+    let all =
+        unsafe { instance.raw.enumerate_physical_devices() }.call("vkEnumeratePhysicalDevices")?;
+    Ok(all
+        .into_iter()
+        .enumerate()
+        .map(|(index, physical)| inspect(&instance.raw, index, physical))
+        .collect())
+}
+
+/// The candidate that `choice` names (an index, or part of a name, in any case); none named: the
+/// first by kind.
+pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
+    let chosen = all.swap_remove(position(&all, choice)?);
+    refuse(&chosen)?;
+    Ok(chosen)
+}
+
+fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
+    let Some(wanted) = choice else {
+        return all
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.report.missing.is_empty())
+            .min_by_key(|(_, c)| rank(c.properties.device_type))
+            .or_else(|| all.iter().enumerate().next())
+            .map(|(position, _)| position)
+            .ok_or_else(none);
+    };
+    let part = wanted.to_lowercase();
+    let index = wanted.parse::<usize>().ok().filter(|i| *i < all.len());
+    let named = || {
+        all.iter()
+            .position(|c| c.report.name.to_lowercase().contains(&part))
+    };
+    index.or_else(named).ok_or_else(|| {
+        let names: Vec<_> = all
+            .iter()
+            .map(|c| format!("{} {}", c.report.index, c.report.name))
+            .collect();
+        let names = names.join(", ");
+        let message = format!("no device is called '{wanted}'; there are: {names}");
+        Error::new(ErrorKind::Usage, message).at_key("device")
+    })
+}
+
+/// Fails for a device that lacks something.
+pub(crate) fn refuse(candidate: &Candidate) -> Result<()> {
+    let report = &candidate.report;
+    if report.missing.is_empty() {
+        return Ok(());
+    }
+    let missing = report.missing.join(", ");
+    let message = format!("{} lacks {missing}; choose another", report.name);
+    Err(Error::new(ErrorKind::Unsupported, message).at_key("device"))
+}
+
+fn rank(kind: vk::PhysicalDeviceType) -> u8 {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => 0,
+        vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
+        vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
+        vk::PhysicalDeviceType::CPU => 3,
+        _ => 4,
+    }
+}
+
+fn kind_name(kind: vk::PhysicalDeviceType) -> &'static str {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+        vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+        vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+        vk::PhysicalDeviceType::CPU => "cpu",
+        _ => "other",
+    }
+}
+
+fn version(v: u32) -> String {
+    format!(
+        "{}.{}.{}",
+        vk::api_version_major(v),
+        vk::api_version_minor(v),
+        vk::api_version_patch(v)
+    )
+}
+
+/// A driver's text, up to its zero.
+pub(crate) fn text(raw: &[std::ffi::c_char]) -> String {
+    let bytes: Vec<u8> = raw
+        .iter()
+        .take_while(|c| **c != 0)
+        .map(|c| c.to_ne_bytes()[0])
+        .collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+pub(crate) fn inspect(
+    raw: &ash::Instance,
+    index: usize,
+    physical: vk::PhysicalDevice,
+) -> Candidate {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut extended = vk::PhysicalDeviceProperties2::default();
+    // SAFETY: plain queries of a live physical device.
+    let (basic, features, families, extensions) = unsafe {
+        (
+            raw.get_physical_device_properties(physical),
+            raw.get_physical_device_features(physical),
+            raw.get_physical_device_queue_family_properties(physical),
+            raw.enumerate_device_extension_properties(physical)
+                .unwrap_or_default(),
+        )
+    };
+    let mut subgroup = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut missing = Vec::new();
+    if basic.api_version >= API_VERSION {
+        extended = extended.push_next(&mut driver).push_next(&mut subgroup);
+        // SAFETY: the device is of version 1.2, whose core has the query.
+        unsafe { raw.get_physical_device_properties2(physical, &mut extended) };
+    } else {
+        missing.push(format!("Vulkan {}", version(API_VERSION)));
+    }
+    let both = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let family = families.iter().position(|f| f.queue_flags.contains(both));
+    if family.is_none() {
+        missing.push("a queue for graphics and compute".to_owned());
+    }
+    if features.fragment_stores_and_atomics == vk::FALSE {
+        missing.push("fragmentStoresAndAtomics".to_owned());
+    }
+    for (format, wanted, what) in FORMATS {
+        // SAFETY: plain query.
+        let offered = unsafe { raw.get_physical_device_format_properties(physical, *format) };
+        if !offered.optimal_tiling_features.contains(*wanted) {
+            missing.push((*what).to_owned());
+        }
+    }
+    let timestamp_bits = family.map_or(0, |f| families[f].timestamp_valid_bits);
+    let driver_text = format!(
+        "{} {}",
+        text(&driver.driver_name),
+        text(&driver.driver_info)
+    );
+    let mut candidate = Candidate {
+        report: DeviceReport {
+            index,
+            name: text(&basic.device_name),
+            kind: kind_name(basic.device_type),
+            driver: driver_text.trim().to_owned(),
+            api_version: version(basic.api_version),
+            uses: Vec::new(),
+            missing,
+            preferred: false,
+        },
+        physical,
+        family: family.and_then(|f| u32::try_from(f).ok()).unwrap_or(0),
+        timestamp_bits,
+        features,
+        properties: basic,
+        subgroup_size: subgroup.subgroup_size,
+        extensions,
+    };
+    candidate.report.uses = candidate.uses();
+    candidate
+}
+
+const FORMATS: &[(vk::Format, vk::FormatFeatureFlags, &str)] = &[
+    (
+        vk::Format::R16_SFLOAT,
+        vk::FormatFeatureFlags::SAMPLED_IMAGE,
+        "sampled 16-bit float images",
+    ),
+    (
+        vk::Format::R32_SFLOAT,
+        vk::FormatFeatureFlags::SAMPLED_IMAGE,
+        "sampled 32-bit float images",
+    ),
+    (
+        vk::Format::R32G32B32A32_SFLOAT,
+        vk::FormatFeatureFlags::from_raw(
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
+                | vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw(),
+        ),
+        "render targets and storage images of 32-bit floats",
+    ),
+    (
+        vk::Format::D32_SFLOAT,
+        vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT,
+        "a 32-bit float depth buffer",
+    ),
+];

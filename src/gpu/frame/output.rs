@@ -1,0 +1,252 @@
+//! What a renderer draws into: formats and conventions, told once.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::Shared;
+use crate::gpu::frame::target::ComputeTarget;
+use crate::gpu::vk::call::kind_of;
+use crate::gpu::vk::render_pass::color_formats;
+use crate::plan::DepthOrder;
+use crate::settings::{Planes, Solver};
+use ash::vk;
+
+/// Where a renderer's work ends up. Told once, when the renderer is made.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Output {
+    /// Fragments, in a render pass or dynamic rendering that the host begins.
+    Pass(PassFormats),
+    /// Pixels that a compute shader traces, into a [`ComputeTarget`](super::ComputeTarget).
+    Compute(Planes),
+}
+
+/// The pass in which fragments are drawn.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PassFormats {
+    /// How the host begins it.
+    pub begun: PassKind,
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
+    /// number.
+    pub samples: u32,
+    /// Which end of the depth range is near.
+    pub depth: DepthOrder,
+    /// Which planes the fragment shader writes, one an attachment.
+    pub planes: Planes,
+}
+
+/// How the host begins a pass.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum PassKind {
+    /// As a subpass of a render pass. Passes that are compatible with it may be begun instead.
+    RenderPass {
+        /// The pass. It must live as long as the renderer.
+        pass: vk::RenderPass,
+        /// The subpass, which has the colour attachments of the planes and a depth attachment.
+        subpass: u32,
+    },
+    /// By dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
+    Dynamic {
+        /// Formats of the colour attachments in order; none for depth alone.
+        color: Vec<vk::Format>,
+        /// Format of the depth attachment.
+        depth: vk::Format,
+        /// Format of the stencil attachment, `UNDEFINED` where there is none.
+        stencil: vk::Format,
+    },
+}
+
+impl Output {
+    /// The planes that are drawn.
+    #[must_use]
+    pub fn planes(&self) -> Planes {
+        match self {
+            Self::Pass(pass) => pass.planes,
+            Self::Compute(planes) => *planes,
+        }
+    }
+
+    /// Which end of the depth range is near.
+    #[must_use]
+    pub fn depth_order(&self) -> DepthOrder {
+        match self {
+            Self::Pass(pass) => pass.depth,
+            Self::Compute(_) => DepthOrder::Normal,
+        }
+    }
+
+    /// Fails for what cannot be drawn into, or not by this search.
+    pub(crate) fn check(&self, device: &Shared, solver: Solver) -> Result<()> {
+        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        let in_pass = matches!(self, Self::Pass(_));
+        if matches!(self.planes(), Planes::Depth { .. }) && !(in_pass && exact) {
+            let message =
+                "depth alone is drawn in a pass, by hull, quadric or live; give one of them";
+            return Err(usage("planes", message.into()));
+        }
+        let Self::Pass(pass) = self else {
+            return Ok(());
+        };
+        if pass.planes == Planes::All && !device.fragment_stores {
+            return Err(Error::new(
+                ErrorKind::Unsupported,
+                "all planes in a pass need the feature fragmentStoresAndAtomics; enable it",
+            ));
+        }
+        pass.check_samples()?;
+        match &pass.begun {
+            PassKind::RenderPass { pass: raw, .. } => pass.check_render_pass(device, *raw),
+            PassKind::Dynamic {
+                color,
+                depth,
+                stencil,
+            } => pass.check_formats(device, color, *depth, *stencil),
+        }
+    }
+
+    /// Fails where shaders of this output write to a target and there is none, or another one.
+    pub(crate) fn check_target(&self, target: Option<&ComputeTarget>) -> Result<()> {
+        let compute = matches!(self, Self::Compute(_));
+        let all = self.planes() == Planes::All;
+        let Some(target) = target else {
+            if compute || all {
+                let message = "shaders write to a target; give one to set_compute_target";
+                return Err(usage("target", message.into()));
+            }
+            return Ok(());
+        };
+        if !compute && !all {
+            let message = "only attachments are drawn into; leave the target out";
+            return Err(usage("target", message.into()));
+        }
+        if target.words == vk::Buffer::null() {
+            return Err(usage("words", "the buffer is null; give one".into()));
+        }
+        let (count, wanted) = (target.images.len(), if compute && all { 4 } else { 0 });
+        if count != wanted || target.images.contains(&vk::ImageView::null()) {
+            let message = format!("{count} images; give {wanted}, none of them null");
+            return Err(usage("images", message));
+        }
+        Ok(())
+    }
+}
+
+impl PassFormats {
+    fn check_samples(&self) -> Result<()> {
+        if [1, 2, 4, 8].contains(&self.samples) {
+            return Ok(());
+        }
+        let message = format!("{} samples; give 1, 2, 4 or 8", self.samples);
+        Err(usage("samples", message))
+    }
+
+    /// The formats of a render pass cannot be queried.
+    fn check_render_pass(&self, device: &Shared, raw: vk::RenderPass) -> Result<()> {
+        if raw == vk::RenderPass::null() {
+            return Err(usage("pass", "the render pass is null; give one".into()));
+        }
+        let limits = &device.limits;
+        let colors = limits.framebuffer_color_sample_counts;
+        self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
+    }
+
+    fn check_formats(
+        &self,
+        device: &Shared,
+        color: &[vk::Format],
+        depth: vk::Format,
+        stencil: vk::Format,
+    ) -> Result<()> {
+        let wanted = color_formats(self.planes).len();
+        if color.len() != wanted {
+            let (planes, count) = (self.planes, color.len());
+            let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
+            return Err(usage("color", message));
+        }
+        use vk::ImageUsageFlags as U;
+        for &format in color {
+            if format == vk::Format::UNDEFINED || has_depth(format) || has_stencil(format) {
+                let message = format!("{format:?} holds no colours; give a format that does");
+                return Err(usage("color", message));
+            }
+            if is_integer(format) {
+                let message = format!("{format:?} holds integers; give fractions or floats");
+                return Err(usage("color", message));
+            }
+            self.check_format(device, format, U::COLOR_ATTACHMENT)?;
+        }
+        if !has_depth(depth) {
+            let message = format!("{depth:?} holds no depths; give a format that does");
+            return Err(usage("depth", message));
+        }
+        self.check_format(device, depth, U::DEPTH_STENCIL_ATTACHMENT)?;
+        if stencil == vk::Format::UNDEFINED {
+            return Ok(());
+        }
+        if !has_stencil(stencil) || stencil != depth {
+            let message =
+                format!("{stencil:?} is not the depth's format, with stencil; give that, or none");
+            return Err(usage("stencil", message));
+        }
+        Ok(())
+    }
+
+    fn check_format(
+        &self,
+        device: &Shared,
+        format: vk::Format,
+        usage: vk::ImageUsageFlags,
+    ) -> Result<()> {
+        // SAFETY: plain query of the device's own physical device.
+        let found = unsafe {
+            device
+                .functions
+                .get_physical_device_image_format_properties(
+                    device.physical,
+                    format,
+                    vk::ImageType::TYPE_2D,
+                    vk::ImageTiling::OPTIMAL,
+                    usage,
+                    vk::ImageCreateFlags::empty(),
+                )
+        };
+        let found = found.map_err(|code| {
+            let name = &device.report.name;
+            let message = format!("{name} does not draw into {format:?} ({code:?})");
+            Error::new(kind_of(code), message)
+        })?;
+        self.check_counts(device, found.sample_counts)
+    }
+
+    fn check_counts(&self, device: &Shared, counts: vk::SampleCountFlags) -> Result<()> {
+        if counts.contains(vk::SampleCountFlags::from_raw(self.samples)) {
+            return Ok(());
+        }
+        let name = &device.report.name;
+        let message = format!("{name} has no {} samples; it has {counts:?}", self.samples);
+        Err(Error::new(ErrorKind::Unsupported, message).at_key("samples"))
+    }
+}
+
+fn usage(key: &str, message: String) -> Error {
+    Error::new(ErrorKind::Usage, message).at_key(key)
+}
+
+fn has_depth(format: vk::Format) -> bool {
+    use vk::Format as F;
+    matches!(
+        format,
+        F::D16_UNORM | F::X8_D24_UNORM_PACK32 | F::D32_SFLOAT
+    ) || (has_stencil(format) && format != F::S8_UINT)
+}
+
+fn has_stencil(format: vk::Format) -> bool {
+    use vk::Format as F;
+    matches!(
+        format,
+        F::S8_UINT | F::D16_UNORM_S8_UINT | F::D24_UNORM_S8_UINT | F::D32_SFLOAT_S8_UINT
+    )
+}
+
+/// Formats are called as in the specification, where the last part says how numbers are held.
+fn is_integer(format: vk::Format) -> bool {
+    let name = format!("{format:?}");
+    name.contains("_UINT") || name.contains("_SINT")
+}

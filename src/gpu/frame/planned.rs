@@ -1,0 +1,216 @@
+//! A frame's plan and the surfaces that it is of.
+
+use crate::error::Result;
+use crate::gpu::entry::{Entry, Prepared};
+use crate::gpu::renderer::Renderer;
+use crate::plan::levels::{self, coarsest, pixels_per_unit};
+use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
+use crate::scene::{Growth, Shadow};
+use crate::settings::{Planes, Solver, Tolerance};
+use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::reach::largest_width;
+use crate::solid::table_slot::Part;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What a view shows of a renderer's objects, as they were in one version.
+pub(crate) struct Planned {
+    pub view: View,
+    pub version: u64,
+    pub plan: FramePlan,
+    /// One a drawn object, in order.
+    pub objects: Vec<PlannedObject>,
+}
+
+/// An object in a plan.
+pub(crate) struct PlannedObject {
+    pub number: u32,
+    pub level: u8,
+    /// What its search walks.
+    pub surface: Option<Arc<OffsetSurface>>,
+}
+
+impl Renderer {
+    /// The plan of a view, made where it is not the last one.
+    pub(in crate::gpu) fn planned(&mut self, view: &View) -> Result<Arc<Planned>> {
+        self.refresh(Some(view))?;
+        let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
+        if let Some(planned) = self.planned.as_ref().filter(same) {
+            return Ok(planned.clone());
+        }
+        let objects = self.with_surfaces(view)?;
+        let with = self.conditions();
+        let read: Vec<PlanObject> = objects
+            .iter()
+            .filter_map(|planned| {
+                let entry = self.objects.at(planned.number)?;
+                entry.plan_object(planned, &self.settings)
+            })
+            .collect();
+        let made = Arc::new(Planned {
+            view: *view,
+            version: self.version,
+            plan: plan(view, &read, &with),
+            objects,
+        });
+        self.planned = Some(made.clone());
+        Ok(made)
+    }
+
+    /// What a plan depends on besides view and objects.
+    pub(in crate::gpu) fn conditions(&self) -> Conditions {
+        let limits = &self.device.limits;
+        let target = self.target.as_ref();
+        Conditions {
+            compute: self.is_compute(),
+            passes_cells: limits.max_fragment_input_components
+                >= crate::solid::proxy_hull::COMPONENTS
+                && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
+            clips: self.device.clips,
+            software: self.device.report.kind == "cpu",
+            subgroup_size: self.device.subgroup_size,
+            most_storage: limits.max_storage_buffer_range,
+            own_vectors: self.device.constants.own_vectors as usize,
+            least_pixels: self.settings.proxy_min_pixels,
+            occlusion_culling: self.settings.occlusion_culling,
+            casts: self.lighting.shadow != Shadow::Off,
+            host_depths: self.is_compute() && target.is_none_or(|(target, _)| target.depths),
+        }
+    }
+
+    /// Whether objects are drawn by other levels than the exact one.
+    pub(in crate::gpu) fn has_levels(&self) -> bool {
+        self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
+    }
+
+    /// All objects with the surfaces of the levels that the view allows. With shadows all take the
+    /// finest level that one of them needs: a shadow may fall nearer to the eye than what casts it.
+    fn with_surfaces(&mut self, view: &View) -> Result<Vec<PlannedObject>> {
+        let casts = self.lighting.shadow != Shadow::Off;
+        let level_of = |entry: &Entry, prepared: &Prepared| {
+            if !self.has_levels() || !prepared.solver.follows_tolerance() {
+                return 0;
+            }
+            let pixels = entry.pixels_per_unit(view, casts);
+            if pixels > 0.0 || casts {
+                coarsest(self.settings.tolerance, pixels)
+            } else {
+                // What does not show takes what it has.
+                prepared.levels.first().map_or(0, |(level, _)| *level)
+            }
+        };
+        let mut found: Vec<PlannedObject> = self
+            .objects
+            .ordered()
+            .filter_map(|(number, entry)| {
+                let level = level_of(entry, entry.prepared.as_ref()?);
+                Some(PlannedObject {
+                    number,
+                    level,
+                    surface: None,
+                })
+            })
+            .collect();
+        if casts {
+            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
+            found.iter_mut().for_each(|f| f.level = finest);
+        }
+        let mut new = Vec::new();
+        for one in &mut found {
+            let Some(entry) = self.objects.at_mut(one.number) else {
+                continue;
+            };
+            let (growth, offset) = (entry.growth(), entry.drawn().offset);
+            let Some(prepared) = &mut entry.prepared else {
+                continue;
+            };
+            if prepared.levels.is_empty() {
+                continue;
+            }
+            let known = prepared
+                .levels
+                .iter()
+                .find(|(level, _)| *level == one.level);
+            one.surface = match known {
+                Some((_, surface)) => Some(surface.clone()),
+                None => {
+                    let surface = prepared.solid.patches(&offset, &growth, one.level)?;
+                    prepared.levels.push((one.level, surface.clone()));
+                    new.push(surface.clone());
+                    Some(surface)
+                }
+            };
+        }
+        self.make_surfaces(&new);
+        Ok(found)
+    }
+
+    /// Makes those that are not made yet, on all cores, with the part that the solver reads.
+    pub(in crate::gpu) fn make_surfaces(&mut self, surfaces: &[Arc<OffsetSurface>]) {
+        let mut new: Vec<_> = surfaces.iter().filter(|s| !s.is_made()).collect();
+        new.sort_unstable_by_key(|s| Arc::as_ptr(s));
+        new.dedup_by_key(|s| Arc::as_ptr(s));
+        let part = match (self.settings.solver, self.is_compute()) {
+            (Solver::Hull, false) => Part::Frusta,
+            (Solver::Hull, true) => Part::Patches,
+            _ => Part::Tables,
+        };
+        new.par_iter().for_each(|surface| {
+            surface.make();
+            surface.vectors(part);
+        });
+        self.rebuilds += new.len() as u64;
+    }
+
+    /// Whether tiles are traced in compute.
+    pub(in crate::gpu) fn is_compute(&self) -> bool {
+        matches!(self.output, crate::gpu::frame::output::Output::Compute(_))
+    }
+
+    /// Whether a view of parallel rays is drawn.
+    pub(in crate::gpu) fn is_parallel(&self) -> bool {
+        self.output.planes() == Planes::Depth { parallel: true }
+    }
+}
+
+impl Entry {
+    /// By how much the box has grown with the offset.
+    pub(in crate::gpu) fn growth(&self) -> Growth {
+        self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
+    }
+
+    /// The most pixels that one unit of the profile takes in a view; `all`: of copies that are
+    /// beside the picture, too.
+    pub(in crate::gpu) fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
+        pixels_per_unit(self.drawn(), self.growth().height(), view, all)
+    }
+
+    /// The most that the patches of a level move the silhouette in a view, pixels.
+    pub(in crate::gpu) fn error_pixels(&self, level: u8, view: &View) -> f64 {
+        levels::bound(level) * self.pixels_per_unit(view, false)
+    }
+
+    /// As a plan reads it; none before it is prepared.
+    pub(in crate::gpu) fn plan_object<'a>(
+        &'a self,
+        planned: &'a PlannedObject,
+        settings: &crate::settings::SearchSettings,
+    ) -> Option<PlanObject<'a>> {
+        let prepared = self.prepared.as_ref()?;
+        let surface = planned.surface.as_ref();
+        let block = self.block(planned.number, surface.map(Arc::as_ref), settings)?;
+        let texels = 2.0 / f64::from(block.map[1]);
+        let away = largest_width(&self.drawn().offset).max(0.0) + texels;
+        Some(PlanObject {
+            object: self.drawn(),
+            number: planned.number,
+            first_instance: self.instances.start,
+            variant: prepared.variant,
+            textures: Arc::as_ptr(&prepared.textures) as usize,
+            surface,
+            takes_patches: prepared.takes_patches && surface.is_some(),
+            shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
+            outline: Some((prepared.solid.outline.as_ref(), away)),
+        })
+    }
+}

@@ -1,0 +1,189 @@
+//! What a frame needs before it can be recorded: a plan, places of tables, pipelines, blocks. The
+//! cost follows what has changed.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::frame::planned::Planned;
+use crate::gpu::frame::slot::{Bound, BoundStep};
+use crate::gpu::renderer::Renderer;
+use crate::gpu::resources::block::{frame_block, instance_block};
+use crate::gpu::resources::blocks::{SOLID_STRIDE, SolidBlock};
+use crate::plan::View;
+use crate::scene::Shadow;
+use crate::shader::Kind;
+use crate::solid::table_slot::{Part, Slot};
+use ash::vk;
+use std::sync::Arc;
+
+/// A frame that was prepared in a slot: what [`Renderer::record`] takes. It is of no use once its
+/// slot is prepared again.
+#[derive(Debug, PartialEq, Eq)]
+#[must_use]
+pub struct PreparedFrame {
+    pub(in crate::gpu) renderer: u32,
+    pub(in crate::gpu) slot: usize,
+    pub(in crate::gpu) serial: u64,
+    reads_depths: bool,
+}
+
+impl PreparedFrame {
+    /// Whether compute compares with the depths of its target and leaves its own there. Where it
+    /// does not, the target's depths may hold anything.
+    #[must_use]
+    pub fn reads_depths(&self) -> bool {
+        self.reads_depths
+    }
+}
+
+impl Renderer {
+    /// Takes over what was set, and plans what `view` shows, as the next [`Renderer::prepare`] does
+    /// by itself: to learn early whether that succeeds, or how objects are drawn.
+    ///
+    /// # Errors
+    /// As `prepare`.
+    pub fn plan(&mut self, view: &View) -> Result<()> {
+        self.planned(view).map(|_| ())
+    }
+
+    /// Prepares a frame in slot `slot`, seen by `view`: takes over what was set, writes what
+    /// changed, records copies of new textures. To be called outside of a render pass.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for what cannot be drawn, with the key `object.N...`, N counted in
+    /// order: everything stays as it was before it was set. [`ErrorKind::Usage`] for a slot that is
+    /// not there, a view of the other depth order, or a target that is missing. Of Vulkan.
+    ///
+    /// # Safety
+    /// This call writes to memory that the frame before in `slot` read; records image copies and
+    /// their barriers into `cmd`; drops what that frame alone has held.
+    ///
+    /// The caller must see to it that
+    /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
+    /// * the commands recorded for `slot` before have run, or were never submitted;
+    /// * command buffers of prepared frames are submitted in the order of their `prepare`.
+    pub unsafe fn prepare(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        slot: usize,
+        view: &View,
+    ) -> Result<PreparedFrame> {
+        self.check(slot, view)?;
+        let planned = self.planned(view)?;
+        self.slots[slot].staging = self.uploads.record(&self.device, cmd);
+        let anew = {
+            let bound = self.slots[slot].bound.as_ref();
+            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.planned, &planned))
+        };
+        if anew {
+            self.slots[slot].bound = None;
+            let bound = self.bind(&planned)?;
+            self.write(slot, view, &planned)?;
+            let to = &mut self.slots[slot];
+            let target = self.target.as_ref().map(|(t, n)| (t, *n));
+            to.name(&bound.placed.tables, target);
+            to.bound = Some(bound);
+        }
+        let to = &mut self.slots[slot];
+        to.write_frame(&frame_block(view, &self.lighting))?;
+        to.serial += 1;
+        Ok(PreparedFrame {
+            renderer: self.identity,
+            slot,
+            serial: to.serial,
+            reads_depths: planned.plan.compares_depths,
+        })
+    }
+
+    fn check(&self, slot: usize, view: &View) -> Result<()> {
+        let usage = |message: String| Err(Error::new(ErrorKind::Usage, message));
+        if slot >= self.slots.len() {
+            return usage(format!("slot {slot}; there are {}", self.slots.len()));
+        }
+        if view.order != self.output.depth_order() {
+            return usage("the view's depth order is not the output's; give both the same".into());
+        }
+        if view.parallel != self.is_parallel() {
+            return usage(
+                "parallel views go with an output of parallel depths, and no others".into(),
+            );
+        }
+        self.output.check_target(self.target.as_ref().map(|t| &t.0))
+    }
+
+    /// Places the tables of a plan, and finds what its steps bind.
+    fn bind(&self, planned: &Arc<Planned>) -> Result<Bound> {
+        let plan = &planned.plan;
+        let parts = planned.objects.iter().zip(&plan.parts);
+        let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
+        let placed = self.geometry.lock()?.place(read)?;
+        let pipelines = self.device.pipelines()?;
+        let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
+        let mut steps = Vec::with_capacity(plan.steps.len());
+        for step in &plan.steps {
+            let object = &planned.objects[step.object as usize];
+            let entry = self.objects.at(object.number).ok_or_else(gone)?;
+            let prepared = entry.prepared.as_ref().ok_or_else(gone)?;
+            let tables = object
+                .surface
+                .as_ref()
+                .filter(|_| step.variant.own_tables != 0);
+            let part = match step.kind {
+                Kind::TileLists | Kind::TilePatches => Part::Patches,
+                _ => Part::Tables,
+            };
+            let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
+            steps.push(BoundStep {
+                pipeline: pipelines.get(step.variant, step.kind, &self.output, self.owner)?,
+                textures: prepared.textures.clone(),
+                offsets: [16 * begin, object.number * SOLID_STRIDE],
+            });
+        }
+        Ok(Bound {
+            planned: planned.clone(),
+            steps,
+            placed,
+        })
+    }
+
+    /// Writes what of a slot is older than the renderer, or of another view.
+    fn write(&mut self, slot: usize, view: &View, planned: &Planned) -> Result<()> {
+        let casts = self.lighting.shadow != Shadow::Off;
+        let to = &mut self.slots[slot];
+        to.fit(self.objects.places(), self.objects.instances())?;
+        to.write_plan(&planned.plan)?;
+        // Instances are as the eye sees them.
+        let known = to.written.take().filter(|(before, _)| before == view);
+        let known = known.map_or(0, |(_, version)| version);
+        let mut throwing: Vec<SolidBlock> = Vec::new();
+        for (object, copies) in planned.objects.iter().zip(&planned.plan.copies) {
+            let number = object.number;
+            let Some(entry) = self.objects.at(number) else {
+                continue;
+            };
+            let Some(block) = entry.block(number, object.surface.as_deref(), &self.settings) else {
+                continue;
+            };
+            let placements = entry.drawn().placements();
+            to.write_solid(number, &block)?;
+            if casts {
+                throwing.push(block);
+            }
+            let mut write = |copy: u32| {
+                let placement = &placements[copy as usize];
+                let block = instance_block(entry.drawn(), placement, number, view);
+                to.write_instance(entry.instances.start + copy, &block)
+            };
+            match copies {
+                Some(shown) => shown.iter().try_for_each(|&copy| write(copy))?,
+                None if entry.version > known => {
+                    (0..placements.len() as u32).try_for_each(write)?;
+                }
+                None => {}
+            }
+        }
+        if casts {
+            to.write_shadows(&throwing)?;
+        }
+        to.written = Some((*view, planned.version));
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! From the bytes of a target to a frame.
+
+use crate::antialias::{self, Solids};
+use crate::error::Result;
+use crate::frame::{Frame, linear_from_srgb};
+use crate::plan::View;
+use crate::scene::CameraFrame;
+use crate::settings::{Planes, Settings};
+use crate::shader::generated::EXHAUSTED_BIT;
+
+/// `planes` as [`Target::read`](crate::gpu::frame::target::Target::read) gives them.
+pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]]) -> Result<Frame> {
+    let mut frame = Frame::new(settings.width, settings.height, background)?;
+    match settings.planes {
+        Planes::Color => {
+            let linear = Linear::new();
+            let bytes = planes.first().copied().unwrap_or_default();
+            for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks().0) {
+                *color = linear.color(rgba);
+            }
+        }
+        Planes::Depth { .. } => {}
+        Planes::All => {
+            let [color, normal, shading, albedo, steps, ..] = planes else {
+                return Ok(frame);
+            };
+            for (i, value) in frame.color.iter_mut().enumerate() {
+                *value = vec4(color, i);
+                let [x, y, z, distance] = vec4(normal, i);
+                frame.normal[i] = [x, y, z];
+                frame.distance[i] = distance;
+                let [x, y, z, u] = vec4(shading, i);
+                frame.shading_normal[i] = [x, y, z];
+                let [r, g, b, v] = vec4(albedo, i);
+                frame.albedo[i] = [r, g, b];
+                frame.uv[i] = [u, v];
+                let word: u32 = bytemuck::pod_read_unaligned(&steps[4 * i..4 * i + 4]);
+                frame.exhausted += usize::from(word & EXHAUSTED_BIT != 0);
+                let count = word & !EXHAUSTED_BIT;
+                #[allow(clippy::cast_precision_loss)] // look-ups of a pixel stay far below 2^24
+                {
+                    frame.steps[i] = count as f32;
+                }
+            }
+        }
+    }
+    Ok(frame)
+}
+
+/// The same with smoothed silhouettes, by depths where these are read beside colours.
+pub(crate) fn smoothed(
+    settings: &Settings,
+    background: [f32; 4],
+    planes: &[&[u8]],
+    (solids, camera): &(Solids, CameraFrame),
+    view: &View,
+) -> Result<Frame> {
+    let [colors, depths] = planes else {
+        let mut frame = frame(settings, background, planes)?;
+        solids.smooth(camera, &mut frame);
+        return Ok(frame);
+    };
+    let (colors, depths) = (colors.as_chunks().0, depths.as_chunks().0);
+    let linear = Linear::new();
+    let color = |pixel: usize| linear.color(&colors[pixel]);
+    let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
+    let size = (settings.width, settings.height);
+    let mut changes = Vec::new();
+    // Neither needs the other. The frame is made on this thread, which is to free it: memory that
+    // goes from one to another is slow to take again.
+    let mut frame = rayon::in_place_scope(|scope| {
+        scope.spawn(|_| changes = solids.changes(camera, size, &depth, &color));
+        frame(settings, background, planes)
+    })?;
+    antialias::apply(&changes, &mut frame);
+    Ok(frame)
+}
+
+/// Linear values of 8-bit ones.
+struct Linear([f32; 256]);
+
+impl Linear {
+    fn new() -> Self {
+        Self(std::array::from_fn(|byte| {
+            linear_from_srgb(byte as f64 / 255.0) as f32
+        }))
+    }
+
+    /// The colour of a pixel.
+    fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
+        let [r, g, b] = [r, g, b].map(|byte| self.0[usize::from(byte)]);
+        [r, g, b, f32::from(a) / 255.0]
+    }
+}
+
+fn vec4(bytes: &[u8], pixel: usize) -> [f32; 4] {
+    bytemuck::pod_read_unaligned(&bytes[16 * pixel..16 * pixel + 16])
+}

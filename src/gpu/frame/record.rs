@@ -1,0 +1,229 @@
+//! The commands of a frame: its plan's steps, translated. Their number follows the pipelines and
+//! sets of textures that are in use, and the size of the picture.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::frame::prepare::PreparedFrame;
+use crate::gpu::frame::slot::{Bound, BoundStep, FrameSlot};
+use crate::gpu::renderer::Renderer;
+use crate::gpu::vk::usage::{Usage, buffer_barrier};
+use crate::plan::{Call, IndexedDraw, Pushed, Step};
+use ash::vk;
+
+/// Bytes of one indirect draw.
+const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
+
+impl Renderer {
+    /// Records the draws of a prepared frame, within a pass of the output's formats.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for a frame of another renderer or of a slot that was prepared again:
+    /// nothing is recorded.
+    ///
+    /// # Safety
+    /// This call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. It sets
+    /// neither viewport nor scissor, which are dynamic.
+    ///
+    /// The caller must see to it that
+    /// * `cmd` is recording, within a pass that is compatible with the output, with the view's
+    ///   viewport and a scissor set;
+    /// * the renderer lives, and the frame's slot is not prepared again, until the commands have
+    ///   run.
+    pub unsafe fn record(&self, cmd: vk::CommandBuffer, frame: &PreparedFrame) -> Result<()> {
+        let (slot, bound) = self.frame(frame)?;
+        let raw = &self.device.raw;
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        let large_points = self.device.constants.large_points;
+        let vertices = if large_points { 1 } else { 6 };
+        // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the
+        // caller promised.
+        unsafe {
+            let indices = bound.placed.indices.raw;
+            raw.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
+            for (n, step) in bound.planned.plan.steps.iter().enumerate() {
+                self.bind_step(cmd, point, slot, bound, n)?;
+                match &step.call {
+                    Call::Draws(range) => self.draw(cmd, slot, bound, range.start, range.end),
+                    Call::Quads(range) => {
+                        let count = vertices * (range.end - range.start);
+                        raw.cmd_draw(cmd, count, 1, vertices * range.start, 0);
+                    }
+                    Call::Dispatch(..) | Call::Indirect(..) => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Records the dispatches of a prepared frame, outside of a pass, into a target that was
+    /// cleared.
+    ///
+    /// # Errors
+    /// As [`Renderer::record`].
+    ///
+    /// # Safety
+    /// This call binds compute pipelines and sets, dispatches, and records barriers between its own
+    /// dispatches. It records none before its first and after its last write to the target.
+    ///
+    /// The caller must see to it that
+    /// * `cmd` is recording, outside of a pass; writes to the target before are made available to
+    ///   compute shaders;
+    /// * the renderer lives, and the frame's slot is not prepared again, until the commands have
+    ///   run.
+    pub unsafe fn record_compute(
+        &self,
+        cmd: vk::CommandBuffer,
+        frame: &PreparedFrame,
+    ) -> Result<()> {
+        let (slot, bound) = self.frame(frame)?;
+        let raw = &self.device.raw;
+        let plan = &bound.planned.plan;
+        let barrier = |from, to| buffer_barrier(&self.device, cmd, &slot.lists, from, to);
+        if plan.list_heads > 0 {
+            let bytes = 4 * u64::from(plan.list_heads);
+            // SAFETY: `cmd` is recording outside of a pass, and the words lie within the buffer.
+            unsafe { raw.cmd_fill_buffer(cmd, slot.lists.raw, 0, bytes, 0) };
+            barrier(Usage::TransferWrite, Usage::ComputeWrite);
+        }
+        let mut phase = plan.steps.first().map_or(0, |step| step.phase);
+        for (n, step) in plan.steps.iter().enumerate() {
+            if step.phase != phase {
+                match phase {
+                    0 => barrier(Usage::ComputeWrite, Usage::TileRead),
+                    // What is next reads the depths that were written before.
+                    _ => self.wait_for_writes(cmd),
+                }
+                phase = step.phase;
+            }
+            self.bind_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n)?;
+            // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as
+            // the caller promised.
+            unsafe { self.dispatch(cmd, slot, step) };
+        }
+        Ok(())
+    }
+
+    /// The slot of a frame, and what it binds.
+    pub(in crate::gpu) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &Bound)> {
+        let slot = self.slots.get(frame.slot);
+        let own =
+            |slot: &&FrameSlot| frame.renderer == self.identity && slot.serial == frame.serial;
+        slot.filter(own)
+            .and_then(|slot| Some((slot, slot.bound.as_ref()?)))
+            .ok_or_else(|| {
+                Error::new(
+                    ErrorKind::Usage,
+                    "the frame is another renderer's, or its slot was prepared again; record what prepare returned last",
+                )
+            })
+    }
+
+    /// Draws of a plan, by one command where the device takes that.
+    unsafe fn draw(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        bound: &Bound,
+        first: u32,
+        end: u32,
+    ) {
+        let raw = &self.device.raw;
+        let most = self.device.most_draws;
+        if most == 0 {
+            let draws = &bound.planned.plan.draws[first as usize..end as usize];
+            for &[indices, instances, first, _, instance] in draws {
+                // SAFETY: as the caller promised.
+                unsafe { raw.cmd_draw_indexed(cmd, indices, instances, first, 0, instance) };
+            }
+            return;
+        }
+        for start in (first..end).step_by(most as usize) {
+            let count = most.min(end - start);
+            let at = u64::from(start * DRAW_BYTES);
+            // SAFETY: as the caller promised; the draws lie within the buffer.
+            unsafe {
+                raw.cmd_draw_indexed_indirect(cmd, slot.draws.raw, at, count, DRAW_BYTES);
+            }
+        }
+    }
+
+    unsafe fn dispatch(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, step: &Step) {
+        let raw = &self.device.raw;
+        // SAFETY: as the caller promised; heads lie within the buffer.
+        unsafe {
+            match &step.call {
+                Call::Dispatch(groups, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch(cmd, *groups, 1, 1);
+                }
+                Call::Indirect(head, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch_indirect(cmd, slot.lists.raw, 4 * u64::from(*head));
+                }
+                Call::Draws(_) | Call::Quads(_) => {}
+            }
+        }
+    }
+
+    /// Between two dispatches of which one reads, or writes again, what the other wrote.
+    pub(in crate::gpu) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
+        let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
+        let barrier = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(access);
+        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let none = vk::DependencyFlags::empty();
+        let raw = &self.device.raw;
+        // SAFETY: `cmd` is recording, outside a render pass.
+        unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
+    }
+
+    pub(in crate::gpu) fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
+        let stage = vk::ShaderStageFlags::COMPUTE;
+        let bytes = bytemuck::bytes_of(pushed);
+        let raw = &self.device.raw;
+        let layout = self
+            .device
+            .pipelines()
+            .map_or(vk::PipelineLayout::null(), |p| p.layout);
+        // SAFETY: `cmd` is recording.
+        unsafe { raw.cmd_push_constants(cmd, layout, stage, 0, bytes) };
+    }
+
+    /// Binds the pipeline and the sets of a step.
+    fn bind_step(
+        &self,
+        cmd: vk::CommandBuffer,
+        point: vk::PipelineBindPoint,
+        slot: &FrameSlot,
+        bound: &Bound,
+        step: usize,
+    ) -> Result<()> {
+        let BoundStep {
+            pipeline,
+            textures,
+            offsets,
+        } = &bound.steps[step];
+        self.bind_sets(cmd, point, slot, *pipeline, textures.set, offsets)
+    }
+
+    pub(in crate::gpu) fn bind_sets(
+        &self,
+        cmd: vk::CommandBuffer,
+        point: vk::PipelineBindPoint,
+        slot: &FrameSlot,
+        pipeline: vk::Pipeline,
+        textures: vk::DescriptorSet,
+        offsets: &[u32; 2],
+    ) -> Result<()> {
+        let layout = self.device.pipelines()?.layout;
+        let sets = [slot.frame_set, textures, slot.target_set];
+        let raw = &self.device.raw;
+        // SAFETY: the sets fit the layout, and all they name lives as long as the caller of
+        // `record` promised.
+        unsafe {
+            raw.cmd_bind_pipeline(cmd, point, pipeline);
+            raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, offsets);
+        }
+        Ok(())
+    }
+}

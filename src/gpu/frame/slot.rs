@@ -1,0 +1,214 @@
+//! What one prepared frame reads and no other: its blocks, instances, tiles and draws, the sets that
+//! bind them, and hold of all else that its commands read.
+
+use crate::error::Result;
+use crate::gpu::device::Shared;
+use crate::gpu::frame::planned::Planned;
+use crate::gpu::frame::target::ComputeTarget;
+use crate::gpu::memory::Buffer;
+use crate::gpu::memory::buffers::{indirect, lists, storage, uniform, write, write_slice};
+use crate::gpu::memory::uploads::Upload;
+use crate::gpu::resources::blocks::{
+    FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
+};
+use crate::gpu::resources::geometry::Placed;
+use crate::gpu::resources::textures::TextureSet;
+use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
+use crate::plan::{FramePlan, View};
+use ash::vk;
+use std::sync::Arc;
+
+/// The buffers and descriptor sets of one prepared frame.
+pub(crate) struct FrameSlot {
+    pub frame_set: vk::DescriptorSet,
+    pub target_set: vk::DescriptorSet,
+    frame: Buffer,
+    solids: Buffer,
+    instances: Buffer,
+    shadows: Buffer,
+    tiles: Buffer,
+    pub lists: Buffer,
+    pub draws: Buffer,
+    /// What is recorded, once it is prepared.
+    pub bound: Option<Bound>,
+    /// Counts its frames: a token of an earlier one records nothing.
+    pub serial: u64,
+    /// The view and the renderer's version that solids and instances were written for; none: all
+    /// must be written.
+    pub written: Option<(View, u64)>,
+    /// Copies that the frame's commands make.
+    pub staging: Vec<Upload>,
+    /// What the sets name: the tables, and how often the target was set.
+    named: Option<(vk::Buffer, u64)>,
+    pool: vk::DescriptorPool,
+    device: Arc<Shared>,
+}
+
+/// A plan with all that its commands bind.
+pub(crate) struct Bound {
+    pub planned: Arc<Planned>,
+    /// One a step.
+    pub steps: Vec<BoundStep>,
+    pub placed: Placed,
+}
+
+/// What a step binds.
+pub(crate) struct BoundStep {
+    pub pipeline: vk::Pipeline,
+    pub textures: Arc<TextureSet>,
+    /// Bytes at which the only tables and the only solid begin.
+    pub offsets: [u32; 2],
+}
+
+impl FrameSlot {
+    pub fn new(device: &Arc<Shared>) -> Result<Self> {
+        let mut slot = Self {
+            frame_set: vk::DescriptorSet::null(),
+            target_set: vk::DescriptorSet::null(),
+            frame: uniform(device, "frame block", size_of::<FrameBlock>() as u64)?,
+            solids: storage(device, "objects", u64::from(SOLID_STRIDE))?,
+            instances: storage(device, "instances", 0)?,
+            shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
+            tiles: storage(device, "tiles", 0)?,
+            lists: lists(device, 0)?,
+            draws: indirect(device, 0)?,
+            bound: None,
+            serial: 0,
+            written: None,
+            staging: Vec::new(),
+            named: None,
+            pool: vk::DescriptorPool::null(),
+            device: device.clone(),
+        };
+        let layouts = &device.pipelines()?.set_layouts;
+        let sets = [FRAME_SET, TARGET_SET];
+        let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
+        slot.pool = pool;
+        slot.frame_set = sets.first().copied().unwrap_or_default();
+        slot.target_set = sets.get(1).copied().unwrap_or_default();
+        Ok(slot)
+    }
+
+    /// Sees to it that so many solids and instances fit. Whoever calls this knows that no frame
+    /// reads the buffers.
+    pub fn fit(&mut self, solids: usize, instances: u32) -> Result<()> {
+        let solids = solids as u64 * u64::from(SOLID_STRIDE);
+        let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
+        for (buffer, bytes, name) in [
+            (&mut self.solids, solids, "objects"),
+            (&mut self.instances, instances, "instances"),
+        ] {
+            if buffer.bytes < bytes {
+                *buffer = roomy(&self.device, name, bytes)?;
+                self.written = None;
+                self.named = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes of its buffers.
+    pub fn bytes(&self) -> u64 {
+        let all = [
+            &self.frame,
+            &self.solids,
+            &self.instances,
+            &self.shadows,
+            &self.tiles,
+            &self.lists,
+            &self.draws,
+        ];
+        all.iter().map(|buffer| buffer.bytes).sum()
+    }
+
+    pub fn write_frame(&mut self, block: &FrameBlock) -> Result<()> {
+        write(&mut self.frame, 0, block)
+    }
+
+    pub fn write_solid(&mut self, number: u32, block: &SolidBlock) -> Result<()> {
+        let at = number as usize * SOLID_STRIDE as usize;
+        write(&mut self.solids, at, block)
+    }
+
+    pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
+        let at = number as usize * size_of::<InstanceBlock>();
+        write(&mut self.instances, at, instance)
+    }
+
+    pub fn write_shadows(&mut self, blocks: &[SolidBlock]) -> Result<()> {
+        let mut all: ShadowBlock = bytemuck::Zeroable::zeroed();
+        all.shadow_batches[0] = u32::try_from(blocks.len()).unwrap_or(0);
+        for (to, block) in all.shadow_solids.iter_mut().zip(blocks) {
+            *to = *block;
+        }
+        write(&mut self.shadows, 0, &all)
+    }
+
+    /// Writes a plan's tiles and draws, and makes room for its lists.
+    pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
+        let words = 4 * plan.words.len() as u64;
+        if self.tiles.bytes < words {
+            self.tiles = roomy(&self.device, "tiles", words)?;
+            self.named = None;
+        }
+        let listed = 4 * u64::from(plan.list_words);
+        if self.lists.bytes < listed {
+            self.lists = lists(&self.device, listed + listed / 2)?;
+            self.named = None;
+        }
+        let draws = size_of_val(plan.draws.as_slice()) as u64;
+        if self.draws.bytes < draws {
+            self.draws = indirect(&self.device, draws.next_power_of_two())?;
+        }
+        write_slice(&mut self.tiles, &plan.words)?;
+        write_slice(&mut self.draws, &plan.draws)
+    }
+
+    /// Points the sets to their buffers, where those have changed.
+    pub fn name(&mut self, tables: &Buffer, target: Option<(&ComputeTarget, u64)>) {
+        let now = (tables.raw, target.map_or(0, |t| t.1));
+        if self.named == Some(now) {
+            return;
+        }
+        let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
+        let window = 16 * u64::from(self.device.constants.own_vectors);
+        let frame = [
+            whole(&self.frame),
+            whole(&self.solids),
+            whole(&self.instances),
+            whole(&self.shadows),
+            whole(tables),
+            Resource::Buffer(tables.raw, window),
+            Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
+        ];
+        let frame: Vec<_> = (0u32..).zip(frame).collect();
+        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.lists))];
+        if let Some((target, _)) = target {
+            of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
+            let images = target.images.iter().map(|view| Resource::Image(*view));
+            of_target.extend((2u32..).zip(images));
+        }
+        let raw = &self.device.raw;
+        // SAFETY: the frame that used the sets before is done; what they name lives as long as the
+        // slot, or as long as the host promised.
+        unsafe {
+            descriptors::write(raw, self.frame_set, FRAME_SET, &frame);
+            descriptors::write(raw, self.target_set, TARGET_SET, &of_target);
+        }
+        self.named = Some(now);
+    }
+}
+
+/// A storage buffer with half as much again to spare: what moves grows in small steps.
+fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
+    let limit = u64::from(device.limits.max_storage_buffer_range);
+    storage(device, name, bytes.max((bytes + bytes / 2).min(limit)))
+}
+
+impl Drop for FrameSlot {
+    fn drop(&mut self) {
+        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null
+        // pool may be destroyed.
+        unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
+    }
+}

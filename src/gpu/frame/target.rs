@@ -1,0 +1,409 @@
+//! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading
+//! them back.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::Shared;
+use crate::gpu::frame::srgb::pack_srgb;
+use crate::gpu::memory::buffers::{device_local, read_back};
+use crate::gpu::memory::{Buffer, Image, ImageKind};
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::commands::Commands;
+use crate::gpu::vk::render_pass::{DEPTH_FORMAT, color_formats};
+use crate::gpu::vk::usage::{Usage, buffer_barrier, image_barrier};
+use crate::settings::{DrawStage, Planes};
+use ash::vk;
+use std::sync::Arc;
+
+/// What compute shaders write to, and fragments of all planes besides their attachments.
+#[derive(Clone, Debug)]
+pub struct ComputeTarget {
+    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
+    /// pixels, as bits of floats; then a second word of each, which is the colour, packed as
+    /// `R8G8B8A8_SRGB`, where colour alone is drawn, else a count of look-ups. The host clears it
+    /// before a frame, depths to 1.0 and colours to its background, or fills in what is already
+    /// drawn.
+    pub words: vk::Buffer,
+    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where
+    /// colour alone is drawn, or fragments draw.
+    pub images: Vec<vk::ImageView>,
+    /// Whether depths count: compute compares with those that are there, and leaves its own. If
+    /// not, they may hold anything, and are read and written only where objects have to be told
+    /// apart ([`PreparedFrame::reads_depths`](super::PreparedFrame::reads_depths)).
+    pub depths: bool,
+}
+
+impl ComputeTarget {
+    /// The second word of a pixel of this linear colour, where colour alone is drawn.
+    #[must_use]
+    pub fn color_word(linear: [f32; 4]) -> u32 {
+        pack_srgb(linear)
+    }
+}
+
+/// The images of an off-screen frame.
+pub(crate) struct Target {
+    pub width: u32,
+    pub height: u32,
+    stage: DrawStage,
+    planes: Planes,
+    /// The fragment path's attachments, or the compute path's storage images; none where compute
+    /// draws colour alone.
+    pub images: Vec<Image>,
+    depth: Option<Image>,
+    framebuffer: vk::Framebuffer,
+    /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where
+    /// fragments draw colour alone.
+    pub words: Option<Buffer>,
+    /// Whether depths are read beside colours.
+    keeps_depths: bool,
+    /// What is read is copied to it; made by the first reading.
+    host: Option<Buffer>,
+    device: Arc<Shared>,
+}
+
+/// What is copied to the host as a whole.
+enum Part<'a> {
+    Image(&'a Image),
+    /// Half of the words: depths are the first.
+    Words(&'a Buffer, u64),
+}
+
+impl Target {
+    pub fn new(
+        device: &Arc<Shared>,
+        render_pass: vk::RenderPass,
+        stage: DrawStage,
+        planes: Planes,
+        keeps_depths: bool,
+        (width, height): (u32, u32),
+    ) -> Result<Self> {
+        let limits = &device.limits;
+        let (most_x, most_y) = (
+            limits
+                .max_framebuffer_width
+                .min(limits.max_image_dimension2_d),
+            limits
+                .max_framebuffer_height
+                .min(limits.max_image_dimension2_d),
+        );
+        let pixels = u64::from(width) * u64::from(height);
+        let needs_words = stage == DrawStage::Compute || planes == Planes::All;
+        let words_fit = 8 * pixels <= u64::from(limits.max_storage_buffer_range);
+        if width > most_x || height > most_y || (needs_words && !words_fit) {
+            return Err(Error::new(
+                ErrorKind::TooLarge,
+                format!(
+                    "{width}x{height} pixels are more than {} takes ({most_x}x{most_y}, and {} in all for this kind of picture); make it smaller",
+                    device.report.name,
+                    limits.max_storage_buffer_range / 8
+                ),
+            )
+            .at_key("size"));
+        }
+        let mut target = Self {
+            width,
+            height,
+            stage,
+            planes,
+            images: Vec::new(),
+            depth: None,
+            framebuffer: vk::Framebuffer::null(),
+            words: None,
+            keeps_depths,
+            host: None,
+            device: device.clone(),
+        };
+        let image = |name, format, usage| {
+            let kind = ImageKind {
+                format,
+                width,
+                height,
+                mips: 1,
+                usage,
+            };
+            Image::new(device, name, kind)
+        };
+        use vk::ImageUsageFlags as U;
+        let usage = match stage {
+            DrawStage::Compute => U::STORAGE | U::TRANSFER_DST | U::TRANSFER_SRC,
+            _ => U::COLOR_ATTACHMENT | U::TRANSFER_SRC,
+        };
+        if stage != DrawStage::Compute || planes == Planes::All {
+            for format in color_formats(planes) {
+                target.images.push(image("plane", *format, usage)?);
+            }
+        }
+        if stage != DrawStage::Compute {
+            let copied = if keeps_depths {
+                U::TRANSFER_SRC
+            } else {
+                U::empty()
+            };
+            let usage = U::DEPTH_STENCIL_ATTACHMENT | copied;
+            let depth = image("depth", DEPTH_FORMAT, usage)?;
+            let views: Vec<_> = target
+                .images
+                .iter()
+                .chain([&depth])
+                .map(|i| i.view)
+                .collect();
+            target.depth = Some(depth);
+            let info = vk::FramebufferCreateInfo::default()
+                .render_pass(render_pass)
+                .attachments(&views)
+                .width(width)
+                .height(height)
+                .layers(1);
+            // SAFETY: the views live as long as the framebuffer.
+            target.framebuffer = unsafe { device.raw.create_framebuffer(&info, None) }
+                .call("vkCreateFramebuffer")?;
+        }
+        if needs_words {
+            use vk::BufferUsageFlags as B;
+            let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
+            target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
+        }
+        Ok(target)
+    }
+
+    /// What shaders write to besides attachments.
+    pub fn for_shaders(&self) -> Option<ComputeTarget> {
+        let storage = |i: &&Image| i.kind.usage.contains(vk::ImageUsageFlags::STORAGE);
+        Some(ComputeTarget {
+            words: self.words.as_ref()?.raw,
+            images: self.images.iter().filter(storage).map(|i| i.view).collect(),
+            depths: self.keeps_depths,
+        })
+    }
+
+    /// Records the clearing of what no render pass clears.
+    pub fn clear(&self, cmd: vk::CommandBuffer, background: [f32; 4], depths: bool) {
+        let raw = &self.device.raw;
+        let next = self.shader_use();
+        if let Some(words) = &self.words {
+            let half = 4 * u64::from(self.width) * u64::from(self.height);
+            let second = match self.planes {
+                Planes::Color => pack_srgb(background),
+                Planes::Depth { .. } | Planes::All => 0,
+            };
+            buffer_barrier(
+                &self.device,
+                cmd,
+                words,
+                Usage::TransferRead,
+                Usage::TransferWrite,
+            );
+            // SAFETY: `cmd` is recording and both ranges lie within the buffer.
+            unsafe {
+                if depths {
+                    raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
+                }
+                raw.cmd_fill_buffer(cmd, words.raw, half, half, second);
+            }
+            buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, next);
+        }
+        if self.stage == DrawStage::Compute {
+            for (image, value) in self
+                .images
+                .iter()
+                .zip(clear_values(self.planes, background))
+            {
+                image_barrier(
+                    &self.device,
+                    cmd,
+                    image,
+                    Usage::Nothing,
+                    Usage::TransferWrite,
+                );
+                // SAFETY: as above; the image was made for transfers.
+                unsafe {
+                    raw.cmd_clear_color_image(
+                        cmd,
+                        image.raw,
+                        vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                        &value,
+                        &[image.kind.range()],
+                    );
+                }
+                image_barrier(&self.device, cmd, image, Usage::TransferWrite, next);
+            }
+        }
+    }
+
+    /// How shaders use images and words.
+    fn shader_use(&self) -> Usage {
+        if self.stage == DrawStage::Compute {
+            Usage::ComputeWrite
+        } else {
+            Usage::FragmentAtomic
+        }
+    }
+
+    /// Begins the render pass of the fragment path, cleared to `background`.
+    pub fn begin(&self, cmd: vk::CommandBuffer, pass: vk::RenderPass, background: [f32; 4]) {
+        let area = vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent: vk::Extent2D {
+                width: self.width,
+                height: self.height,
+            },
+        };
+        let mut clears: Vec<_> = clear_values(self.planes, background)
+            .into_iter()
+            .take(self.images.len())
+            .map(|color| vk::ClearValue { color })
+            .collect();
+        clears.push(vk::ClearValue {
+            depth_stencil: vk::ClearDepthStencilValue {
+                depth: 1.0,
+                stencil: 0,
+            },
+        });
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(pass)
+            .framebuffer(self.framebuffer)
+            .render_area(area)
+            .clear_values(&clears);
+        #[allow(clippy::cast_precision_loss)] // sizes are far below 2^24
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: self.width as f32,
+            height: self.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: `cmd` is recording, outside a render pass; the framebuffer fits the pass.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE);
+            raw.cmd_set_viewport(cmd, 0, &[viewport]);
+            raw.cmd_set_scissor(cmd, 0, &[area]);
+        }
+    }
+
+    /// What is read, in order: the planes' images or the colours among the words; of all planes the
+    /// counts of look-ups; depths that are kept.
+    fn parts(&self) -> Vec<Part<'_>> {
+        let mut parts: Vec<_> = self.images.iter().map(Part::Image).collect();
+        if let Some(words) = &self.words {
+            parts.push(Part::Words(words, words.bytes / 2));
+        }
+        if self.keeps_depths {
+            parts.extend(match (&self.depth, &self.words) {
+                (Some(depth), _) => Some(Part::Image(depth)),
+                (None, Some(words)) => Some(Part::Words(words, 0)),
+                (None, None) => None,
+            });
+        }
+        parts
+    }
+
+    /// Copies what [`Target::parts`] names to the host: the bytes of each.
+    pub fn read(&mut self, commands: &Commands) -> Result<Vec<&[u8]>> {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let bytes = |part: &Part| match part {
+            Part::Image(image) if image.kind.format == vk::Format::R32G32B32A32_SFLOAT => 16,
+            Part::Image(_) | Part::Words(..) => 4,
+        } * pixels;
+        let kept = self.host.take();
+        let parts = self.parts();
+        let sizes: Vec<u64> = parts.iter().map(bytes).collect();
+        let host = match kept {
+            Some(host) => host,
+            None => read_back(&self.device, "read back", sizes.iter().sum())?,
+        };
+        commands.run(|cmd| {
+            let mut at = 0;
+            for (part, size) in parts.iter().zip(&sizes) {
+                self.copy(cmd, part, &host, at);
+                at += size;
+            }
+            let (from, to) = (Usage::TransferWrite, Usage::HostRead);
+            buffer_barrier(&self.device, cmd, &host, from, to);
+        })?;
+        drop(parts);
+        let mut rest: &[u8] = self.host.insert(host).mapped()?;
+        let mut out = Vec::with_capacity(sizes.len());
+        for size in sizes {
+            let (part, more) = rest.split_at(usize::try_from(size).unwrap_or(usize::MAX));
+            out.push(part);
+            rest = more;
+        }
+        Ok(out)
+    }
+
+    /// Records the copy of one part to `host`, from its byte `at` on.
+    fn copy(&self, cmd: vk::CommandBuffer, part: &Part, host: &Buffer, at: u64) {
+        let raw = &self.device.raw;
+        match part {
+            Part::Image(image) => {
+                let in_compute = self.stage == DrawStage::Compute;
+                if in_compute {
+                    let (from, to) = (Usage::ComputeWrite, Usage::TransferRead);
+                    image_barrier(&self.device, cmd, image, from, to);
+                }
+                let region = vk::BufferImageCopy::default()
+                    .buffer_offset(at)
+                    .image_subresource(
+                        vk::ImageSubresourceLayers::default()
+                            .aspect_mask(image.kind.aspect())
+                            .layer_count(1),
+                    )
+                    .image_extent(vk::Extent3D {
+                        width: self.width,
+                        height: self.height,
+                        depth: 1,
+                    });
+                // SAFETY: the region is the whole image, the buffer holds it from there on.
+                unsafe {
+                    raw.cmd_copy_image_to_buffer(
+                        cmd,
+                        image.raw,
+                        vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                        host.raw,
+                        &[region],
+                    );
+                }
+                if in_compute {
+                    let (from, to) = (Usage::TransferRead, Usage::ComputeWrite);
+                    image_barrier(&self.device, cmd, image, from, to);
+                }
+            }
+            Part::Words(words, from) => {
+                let (used, to) = (self.shader_use(), Usage::TransferRead);
+                buffer_barrier(&self.device, cmd, words, used, to);
+                let region = vk::BufferCopy::default()
+                    .src_offset(*from)
+                    .dst_offset(at)
+                    .size(words.bytes / 2);
+                // SAFETY: both buffers hold the region.
+                unsafe { raw.cmd_copy_buffer(cmd, words.raw, host.raw, &[region]) };
+            }
+        }
+    }
+}
+
+/// What a pixel holds where nothing is hit: the background; no normal, at infinity; nothing else.
+fn clear_values(planes: Planes, background: [f32; 4]) -> Vec<vk::ClearColorValue> {
+    let color = |float32| vk::ClearColorValue { float32 };
+    match planes {
+        Planes::Color => vec![color(background)],
+        Planes::Depth { .. } => Vec::new(),
+        Planes::All => vec![
+            color(background),
+            color([0.0, 0.0, 0.0, f32::INFINITY]),
+            color([0.0; 4]),
+            color([0.0; 4]),
+        ],
+    }
+}
+
+impl Drop for Target {
+    fn drop(&mut self) {
+        // SAFETY: every submission was waited for; a null framebuffer may be destroyed.
+        unsafe {
+            self.device.raw.destroy_framebuffer(self.framebuffer, None);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! What an object's shader samples: colour and displacement maps, each on the device once, and the
+//! sets that bind them.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::Shared;
+use crate::gpu::memory::Image;
+use crate::gpu::memory::uploads::Uploads;
+use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
+use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
+use crate::gpu::vk::sampler::{Sampler, Wrap};
+use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use crate::scene::Texturing;
+use crate::shader::generated::MAX_SHADOW_MAPS;
+use crate::solid::kept::Kept;
+use ash::vk;
+use std::sync::{Arc, Mutex};
+
+/// A colour or displacement map on the device. It keeps the map, whose address is its key.
+struct Covering<M> {
+    _map: Arc<M>,
+    image: Arc<Image>,
+}
+
+/// The textures of one object or of many that look alike, and the descriptor set that binds them.
+pub(crate) struct TextureSet {
+    pub set: vk::DescriptorSet,
+    color: Option<Arc<Covering<ColorMap>>>,
+    slopes: Option<Arc<Covering<DisplacementMap>>>,
+    shape: Option<Arc<ShapeTexture>>,
+    arc: Option<Arc<ArcTexture>>,
+    shadows: Arc<ShadowMaps>,
+    pool: Arc<SetPool>,
+}
+
+/// The shape maps that shadows read, in the order of their numbers.
+#[derive(Default)]
+pub(crate) struct ShadowMaps {
+    pub maps: Vec<Arc<ShapeTexture>>,
+}
+
+/// What a set is made of, by address.
+type Key = ([usize; 5], bool);
+
+/// All textures of a renderer.
+pub(crate) struct Textures {
+    colors: Kept<usize, Covering<ColorMap>>,
+    slopes: Kept<usize, Covering<DisplacementMap>>,
+    sets: Kept<Key, TextureSet>,
+    /// Bound where an object has no texture of a kind.
+    blank: Arc<Image>,
+    map_sampler: Sampler,
+    /// Around and along repeated; around repeated and along clamped.
+    surface_samplers: [Sampler; 2],
+    pool: Arc<SetPool>,
+}
+
+/// What an object binds.
+pub(crate) struct Bound<'a> {
+    pub look: &'a Texturing,
+    pub shape: Option<Arc<ShapeTexture>>,
+    pub arc: Option<Arc<ArcTexture>>,
+    pub shadows: &'a Arc<ShadowMaps>,
+}
+
+impl Textures {
+    pub fn new(device: &Arc<Shared>, uploads: &mut Uploads, format: MapFormat) -> Result<Self> {
+        let wrap = if format == MapFormat::Rgba8 {
+            Wrap::MapLinear
+        } else {
+            Wrap::MapNearest
+        };
+        let texel = vk::Format::R32_SFLOAT;
+        Ok(Self {
+            colors: Kept::default(),
+            slopes: Kept::default(),
+            sets: Kept::default(),
+            blank: uploads.image(device, "blank", texel, (1, 1), &[&[0; 4]])?,
+            map_sampler: Sampler::new(device, wrap)?,
+            surface_samplers: [
+                Sampler::new(device, Wrap::SurfaceRepeated)?,
+                Sampler::new(device, Wrap::SurfaceAround)?,
+            ],
+            pool: Arc::new(SetPool::new(device)),
+        })
+    }
+
+    /// The set of an object, shared by all that bind the same.
+    pub fn set(
+        &mut self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        bound: Bound,
+    ) -> Result<Arc<TextureSet>> {
+        let Bound {
+            look,
+            shape,
+            arc,
+            shadows,
+        } = bound;
+        let around =
+            (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
+        let address = |of: Option<usize>| of.unwrap_or(0);
+        let key = (
+            [
+                address(shape.as_ref().map(|s| Arc::as_ptr(s) as usize)),
+                address(look.color_map.as_ref().map(|m| Arc::as_ptr(m) as usize)),
+                address(
+                    look.displacement_map
+                        .as_ref()
+                        .map(|m| Arc::as_ptr(m) as usize),
+                ),
+                address(arc.as_ref().map(|a| Arc::as_ptr(a) as usize)),
+                Arc::as_ptr(shadows) as usize,
+            ],
+            around,
+        );
+        if let Some(known) = self.sets.known(&key) {
+            return Ok(known);
+        }
+        let color = match &look.color_map {
+            Some(map) => Some(self.color(device, uploads, map)?),
+            None => None,
+        };
+        let slopes = match &look.displacement_map {
+            Some(map) => Some(self.slopes(device, uploads, map)?),
+            None => None,
+        };
+        let made = TextureSet {
+            set: self.pool.take()?,
+            color,
+            slopes,
+            shape,
+            arc,
+            shadows: shadows.clone(),
+            pool: self.pool.clone(),
+        };
+        self.write(device, &made, around);
+        let made = self.sets.keep(key, made);
+        Ok(made)
+    }
+
+    fn color(
+        &mut self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        map: &Arc<ColorMap>,
+    ) -> Result<Arc<Covering<ColorMap>>> {
+        covering(&mut self.colors, map, || {
+            let levels: Vec<&[u8]> = map
+                .levels
+                .iter()
+                .map(|l| bytemuck::cast_slice(&l.texels))
+                .collect();
+            let [w, h] = map.size();
+            let format = vk::Format::R8G8B8A8_SRGB;
+            uploads.image(device, "colour map", format, (w, h), &levels)
+        })
+    }
+
+    fn slopes(
+        &mut self,
+        device: &Arc<Shared>,
+        uploads: &mut Uploads,
+        map: &Arc<DisplacementMap>,
+    ) -> Result<Arc<Covering<DisplacementMap>>> {
+        covering(&mut self.slopes, map, || {
+            let encoded = map.encode();
+            let levels: Vec<&[u8]> = encoded
+                .iter()
+                .map(|l| bytemuck::cast_slice(&l.texels))
+                .collect();
+            let [w, h] = map.size();
+            let format = vk::Format::R16G16_SFLOAT;
+            uploads.image(device, "displacement map", format, (w, h), &levels)
+        })
+    }
+
+    /// Points a new set to its textures: four of the object's own, then those that shadows read.
+    fn write(&self, device: &Shared, made: &TextureSet, around: bool) {
+        let info = |image: &Image, sampler: &Sampler| {
+            vk::DescriptorImageInfo::default()
+                .image_view(image.view)
+                .sampler(sampler.raw)
+                .image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+        };
+        let (map, surface) = (
+            &self.map_sampler,
+            &self.surface_samplers[usize::from(around)],
+        );
+        let blank = info(&self.blank, map);
+        let shape = |s: &Arc<ShapeTexture>| info(&s.texture, map);
+        let own = [
+            made.shape.as_ref().map_or(blank, shape),
+            made.color
+                .as_ref()
+                .map_or(blank, |c| info(&c.image, surface)),
+            made.slopes
+                .as_ref()
+                .map_or(blank, |c| info(&c.image, surface)),
+            made.arc.as_ref().map_or(blank, |a| info(&a.texture, map)),
+        ];
+        let shadows: Vec<_> = made
+            .shadows
+            .maps
+            .iter()
+            .map(shape)
+            .chain(std::iter::repeat(blank))
+            .take(MAX_SHADOW_MAPS as usize)
+            .collect();
+        let writes: Vec<_> = (0u32..)
+            .zip(own.chunks(1))
+            .chain([(4, shadows.as_slice())])
+            .map(|(binding, infos)| {
+                vk::WriteDescriptorSet::default()
+                    .dst_set(made.set)
+                    .dst_binding(binding)
+                    .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+                    .image_info(infos)
+            })
+            .collect();
+        // SAFETY: the set is new, or all frames that used it are done.
+        unsafe { device.raw.update_descriptor_sets(&writes, &[]) };
+    }
+
+    /// Bytes of colour and displacement maps on the device.
+    pub fn bytes(&self) -> u64 {
+        let colors = self.colors.living().map(|c| c.image.bytes());
+        let slopes = self.slopes.living().map(|c| c.image.bytes());
+        colors.chain(slopes).sum()
+    }
+}
+
+fn covering<M>(
+    all: &mut Kept<usize, Covering<M>>,
+    map: &Arc<M>,
+    upload: impl FnOnce() -> Result<Arc<Image>>,
+) -> Result<Arc<Covering<M>>> {
+    all.get(Arc::as_ptr(map) as usize, || {
+        Ok(Covering {
+            _map: map.clone(),
+            image: upload()?,
+        })
+    })
+}
+
+impl Drop for TextureSet {
+    fn drop(&mut self) {
+        self.pool.give_back(self.set);
+    }
+}
+
+/// Descriptor sets of textures: pools grow as sets are wanted, and sets that were given back are
+/// taken again.
+struct SetPool {
+    state: Mutex<Sets>,
+    device: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Sets {
+    pools: Vec<vk::DescriptorPool>,
+    free: Vec<vk::DescriptorSet>,
+}
+
+/// Sets of one pool.
+const SETS: u32 = 64;
+
+impl SetPool {
+    fn new(device: &Arc<Shared>) -> Self {
+        Self {
+            state: Mutex::default(),
+            device: device.clone(),
+        }
+    }
+
+    fn take(&self) -> Result<vk::DescriptorSet> {
+        let mut state = self
+            .state
+            .lock()
+            .map_err(|_| Error::new(ErrorKind::Other, "the pool of textures is poisoned"))?;
+        if let Some(set) = state.free.pop() {
+            return Ok(set);
+        }
+        let layouts = &self.device.pipelines()?.set_layouts;
+        let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
+        state.pools.push(pool);
+        state.free = sets;
+        state
+            .free
+            .pop()
+            .ok_or_else(|| Error::new(ErrorKind::Other, "a pool of textures gave no set"))
+    }
+
+    fn give_back(&self, set: vk::DescriptorSet) {
+        if let Ok(mut state) = self.state.lock() {
+            state.free.push(set);
+        }
+    }
+}
+
+impl Drop for SetPool {
+    fn drop(&mut self) {
+        let Ok(state) = self.state.get_mut() else {
+            return;
+        };
+        for pool in state.pools.drain(..) {
+            // SAFETY: the renderer's frames are done; the sets go with their pool.
+            unsafe { self.device.raw.destroy_descriptor_pool(pool, None) };
+        }
+    }
+}

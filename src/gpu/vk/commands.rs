@@ -1,0 +1,120 @@
+//! Recording, submitting, waiting.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::Shared;
+use crate::gpu::vk::call::Call;
+use ash::vk;
+use std::sync::Arc;
+
+/// One command buffer and the fence that tells when it has run.
+pub(crate) struct Commands {
+    pool: vk::CommandPool,
+    buffer: vk::CommandBuffer,
+    fence: vk::Fence,
+    device: Arc<Shared>,
+}
+
+impl Commands {
+    pub fn new(device: &Arc<Shared>) -> Result<Self> {
+        let mut commands = Self {
+            pool: vk::CommandPool::null(),
+            buffer: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+            device: device.clone(),
+        };
+        let pool = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(device.family)
+            .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
+        // SAFETY: plain creations, destroyed in Drop; a half-made value drops its null handles.
+        unsafe {
+            commands.pool = device
+                .raw
+                .create_command_pool(&pool, None)
+                .call("vkCreateCommandPool")?;
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(commands.pool)
+                .command_buffer_count(1);
+            commands.buffer = device
+                .raw
+                .allocate_command_buffers(&info)
+                .call("vkAllocateCommandBuffers")?
+                .into_iter()
+                .next()
+                .unwrap_or_default();
+            commands.fence = device
+                .raw
+                .create_fence(&vk::FenceCreateInfo::default(), None)
+                .call("vkCreateFence")?;
+        }
+        Ok(commands)
+    }
+
+    /// Records by `record`, submits, and waits until the GPU is done.
+    pub fn run(&self, record: impl FnOnce(vk::CommandBuffer)) -> Result<()> {
+        self.record(|cmd| {
+            record(cmd);
+            Ok(())
+        })?;
+        self.submit_and_wait()
+    }
+
+    /// Records by `record`; [`Commands::submit_and_wait`] runs it, as often as wanted.
+    pub fn record(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
+        let raw = &self.device.raw;
+        // SAFETY: the last submission was waited for, so the buffer is free to record; what failed
+        // half way is taken back, and its pool allows that.
+        unsafe {
+            raw.begin_command_buffer(self.buffer, &vk::CommandBufferBeginInfo::default())
+                .call("vkBeginCommandBuffer")?;
+            let recorded = record(self.buffer).and_then(|()| {
+                raw.end_command_buffer(self.buffer)
+                    .call("vkEndCommandBuffer")
+            });
+            if recorded.is_err() {
+                raw.reset_command_buffer(self.buffer, vk::CommandBufferResetFlags::empty())
+                    .call("vkResetCommandBuffer")?;
+            }
+            recorded
+        }
+    }
+
+    /// Runs what was recorded last and waits for it.
+    pub fn submit_and_wait(&self) -> Result<()> {
+        let raw = &self.device.raw;
+        let buffers = [self.buffer];
+        let submit = vk::SubmitInfo::default().command_buffers(&buffers);
+        let queue = self
+            .device
+            .queue
+            .as_ref()
+            .and_then(|queue| queue.lock().ok())
+            .ok_or_else(|| {
+                Error::new(
+                    ErrorKind::Usage,
+                    "the device has no queue to submit to; borrow it with one",
+                )
+            })?;
+        // SAFETY: the buffer is recorded and not pending; queue access is serialised by the lock.
+        unsafe {
+            raw.queue_submit(*queue, &[submit], self.fence)
+                .call("vkQueueSubmit")?;
+        }
+        drop(queue);
+        // SAFETY: the fence is live and was just submitted.
+        unsafe {
+            raw.wait_for_fences(&[self.fence], true, u64::MAX)
+                .call("vkWaitForFences")?;
+            raw.reset_fences(&[self.fence]).call("vkResetFences")
+        }
+    }
+}
+
+impl Drop for Commands {
+    fn drop(&mut self) {
+        // SAFETY: every submission was waited for; null handles may be destroyed.
+        unsafe {
+            self.device.raw.destroy_fence(self.fence, None);
+            self.device.raw.destroy_command_pool(self.pool, None);
+        }
+    }
+}

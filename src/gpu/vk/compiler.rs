@@ -1,0 +1,270 @@
+//! What a driver's compiler says of the pipelines: registers, spills, instructions. For the report of
+//! the program alone.
+//!
+//! This makes an instance, a device and pipelines, and no image, memory or fence. Some drivers
+//! compile for GPUs that are not there and can do nothing else, not even destroy their device: it
+//! is left to the end of the process.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::create;
+use crate::gpu::device::instance::Instance;
+use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
+use crate::gpu::frame::output::{Output, PassFormats, PassKind};
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::pipelines::DeviceConstants;
+use crate::gpu::vk::pipelines::Pipelines;
+use crate::maps::MapFormat;
+use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
+use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
+use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
+use crate::shader::{Kind, ShadowCasters, Variant, listed};
+use ash::{khr, vk};
+use std::mem::ManuallyDrop;
+
+/// What is drawn, as far as pipelines depend on it.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The object.
+    pub object: Object,
+    /// Its light.
+    pub lighting: Lighting,
+    /// The format of its map.
+    pub format: MapFormat,
+    /// What is stored.
+    pub planes: Planes,
+}
+
+/// A pipeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PipelineChoice(Variant, Kind);
+
+impl PipelineChoice {
+    /// What is drawn or dispatched: `cells`, `boxes`, `tiles of one copy`, ...
+    #[must_use]
+    pub fn path(&self) -> String {
+        let Self(variant, kind) = *self;
+        let name = match kind {
+            Kind::Boxes => "boxes",
+            Kind::Cells => "cells",
+            Kind::Quads => "quads of tiles",
+            Kind::TileLists => "lists of patches",
+            Kind::TilePatches => return format!("tiles of {} patches", variant.list_length),
+            Kind::TileTree => "tiles of one copy",
+            Kind::TileCopies => "tiles of several copies",
+        };
+        name.to_owned()
+    }
+}
+
+/// One shader of a pipeline, as compiled.
+#[derive(Clone, Debug)]
+pub struct Executable {
+    /// The driver's name of the shader: `vertex`, `fragment`, `compute`.
+    pub shader: String,
+    /// The SPIR-V module that it was compiled from; of a search of another crate the one that it was
+    /// asked for.
+    pub module: String,
+    /// Invocations in a subgroup.
+    pub subgroup_size: u32,
+    /// What the driver says, in its order and by its names; hashes are left out.
+    pub statistics: Vec<(String, f64)>,
+}
+
+/// A device that compiles, and is never destroyed.
+pub struct PipelineCompiler {
+    /// The device.
+    pub report: DeviceReport,
+    /// Of a device that does everything.
+    conditions: Conditions,
+    asked: khr::pipeline_executable_properties::Device,
+    // Never destroyed.
+    pipelines: ManuallyDrop<Pipelines>,
+    _instance: ManuallyDrop<Instance>,
+}
+
+impl PipelineCompiler {
+    /// The device, chosen as by [`Device::open`](super::Device::open).
+    ///
+    /// # Errors
+    /// As `open`; [`ErrorKind::Unsupported`] for a driver without
+    /// `VK_KHR_pipeline_executable_properties`; of Vulkan.
+    pub fn open(choice: Option<&str>) -> Result<Self> {
+        let instance = ManuallyDrop::new(Instance::from_environment()?);
+        let variable = variable();
+        let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
+        let extension = khr::pipeline_executable_properties::NAME;
+        if !chosen.offers(extension) {
+            let (name, extension) = (&chosen.report.name, extension.to_string_lossy());
+            let message =
+                format!("{name} lacks {extension}, by which its compiler reports; choose another");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("device"));
+        }
+        let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+            .pipeline_executable_info(true);
+        let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
+        let constants = DeviceConstants::of(&chosen);
+        let pipelines = Pipelines::new(raw.clone(), None, constants)?;
+        let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
+        Ok(Self {
+            conditions: Conditions {
+                compute: false,
+                passes_cells: true,
+                clips: chosen.clips(),
+                software: false,
+                subgroup_size: chosen.subgroup_size,
+                most_storage: u32::MAX,
+                own_vectors: 0,
+                least_pixels: 0,
+                occlusion_culling: true,
+                casts: false,
+                host_depths: false,
+            },
+            report: chosen.report,
+            asked,
+            pipelines: ManuallyDrop::new(pipelines.capturing_statistics()),
+            _instance: instance,
+        })
+    }
+
+    /// The pipelines that draw a look.
+    #[must_use]
+    pub fn pipelines(&self, look: &Look, stage: DrawStage, solver: Solver) -> Vec<PipelineChoice> {
+        let depth_alone = matches!(look.planes, Planes::Depth { .. });
+        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        if (depth_alone && (stage == DrawStage::Compute || !exact))
+            || (look.format == MapFormat::Rgba8 && !solver.reads_map())
+        {
+            return Vec::new();
+        }
+        let settings = SearchSettings {
+            solver,
+            map_format: look.format,
+            ..SearchSettings::default()
+        };
+        let (lighting, object) = (&look.lighting, &look.object);
+        let casters = ShadowCasters::default();
+        let variant = Variant::new(&settings, look.planes, solver, lighting, object, casters);
+        let conditions = Conditions {
+            compute: stage == DrawStage::Compute,
+            casts: lighting.shadow != Shadow::Off,
+            ..self.conditions
+        };
+        let alone = Variant {
+            one_solid: 1,
+            ..variant
+        };
+        let outside = u32::from(object.clip != Clip::Box);
+        let (mut copies, mut all) = (object.clone(), Vec::new());
+        copies.instances = vec![Placement::default(); 2].into();
+        for object in [object, &copies] {
+            let of = PlanObject {
+                object,
+                number: 0,
+                first_instance: 0,
+                variant,
+                textures: 0,
+                surface: None,
+                takes_patches: solver == Solver::Hull,
+                shape: shape_of(object, [0.0; 4]),
+                outline: None,
+            };
+            for (v, kind) in conditions.reachable(&of, alone) {
+                // What other values of the parameters lead to is another look's, and so are tables
+                // that are too large and many solids.
+                let own = variant.of_kind(kind);
+                let look_of = |v: &Variant| (v.more_lights, v.beveled, v.external);
+                let seen = Variant { outside, ..v }.of_kind(kind) == v;
+                let choice = PipelineChoice(v, kind);
+                if look_of(&own) == look_of(&v) && seen && !all.contains(&choice) {
+                    all.push(choice);
+                }
+            }
+        }
+        all
+    }
+
+    /// Where a stage draws.
+    fn output(&self, stage: DrawStage, planes: Planes) -> Result<Output> {
+        Ok(match stage {
+            DrawStage::Compute => Output::Compute(planes),
+            DrawStage::Fragment => Output::Pass(PassFormats {
+                begun: PassKind::RenderPass {
+                    pass: self.pipelines.own_pass(planes, false)?,
+                    subpass: 0,
+                },
+                samples: 1,
+                depth: DepthOrder::Normal,
+                planes,
+            }),
+        })
+    }
+
+    /// Compiles a pipeline, and asks the driver about its shaders.
+    ///
+    /// # Errors
+    /// Of Vulkan.
+    pub fn compile(
+        &self,
+        choice: PipelineChoice,
+        stage: DrawStage,
+        planes: Planes,
+    ) -> Result<Vec<Executable>> {
+        let PipelineChoice(variant, kind) = choice;
+        let output = self.output(stage, planes)?;
+        let pipeline = self.pipelines.get(variant, kind, &output, 0)?;
+        let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
+        // SAFETY: the pipeline was made with statistics captured, and is never destroyed.
+        let executables =
+            unsafe { self.asked.get_pipeline_executable_properties(&info) }.call(EXECUTABLES)?;
+        let mut shaders = Vec::new();
+        for (executable, index) in executables.iter().zip(0..) {
+            let info = vk::PipelineExecutableInfoKHR::default()
+                .pipeline(pipeline)
+                .executable_index(index);
+            // SAFETY: as above; the index is that of an executable.
+            let said = unsafe { self.asked.get_pipeline_executable_statistics(&info) }
+                .call("vkGetPipelineExecutableStatisticsKHR")?;
+            let vertices = executable.stages.contains(vk::ShaderStageFlags::VERTEX);
+            let module = match variant.vertices(kind) {
+                Some(module) if vertices => module,
+                _ => variant.module(kind),
+            };
+            shaders.push(Executable {
+                shader: stage_name(&text(&executable.name)),
+                module: match variant.external {
+                    Some(external) if !vertices => external.name(&module),
+                    _ => listed(&module).unwrap_or(module).name(),
+                },
+                subgroup_size: executable.subgroup_size,
+                statistics: said.iter().filter_map(statistic).collect(),
+            });
+        }
+        Ok(shaders)
+    }
+}
+
+const EXECUTABLES: &str = "vkGetPipelineExecutablePropertiesKHR";
+
+/// Versions of a driver say `Fragment Shader` or `fragment`.
+fn stage_name(name: &str) -> String {
+    let name = name.to_lowercase();
+    name.strip_suffix(" shader").unwrap_or(&name).to_owned()
+}
+
+/// A number by its name, unless it is a hash.
+fn statistic(said: &vk::PipelineExecutableStatisticKHR<'_>) -> Option<(String, f64)> {
+    use vk::PipelineExecutableStatisticFormatKHR as F;
+    let name = text(&said.name);
+    // SAFETY: the format says which of the values is there.
+    #[allow(clippy::cast_precision_loss)]
+    let value = unsafe {
+        match said.format {
+            F::BOOL32 => f64::from(said.value.b32),
+            F::INT64 => said.value.i64 as f64,
+            F::UINT64 => said.value.u64 as f64,
+            F::FLOAT64 => said.value.f64,
+            _ => return None,
+        }
+    };
+    (!name.to_lowercase().contains("hash")).then_some((name, value))
+}

@@ -1,0 +1,177 @@
+//! The one table of descriptors: layouts, pools and writes follow from it, and a test compares it
+//! with the shaders.
+
+use crate::error::Result;
+use crate::gpu::vk::call::Call;
+use crate::shader::generated::MAX_SHADOW_MAPS;
+use ash::vk;
+
+/// One binding of a set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Binding {
+    pub kind: vk::DescriptorType,
+    pub count: u32,
+    pub stages: vk::ShaderStageFlags,
+}
+
+const EVERY: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw()
+        | vk::ShaderStageFlags::FRAGMENT.as_raw()
+        | vk::ShaderStageFlags::COMPUTE.as_raw(),
+);
+const PIXEL: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::FRAGMENT.as_raw() | vk::ShaderStageFlags::COMPUTE.as_raw(),
+);
+
+const fn one(kind: vk::DescriptorType, stages: vk::ShaderStageFlags) -> Binding {
+    Binding {
+        kind,
+        count: 1,
+        stages,
+    }
+}
+
+const TEXTURE: Binding = one(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, PIXEL);
+const PLANE: Binding = one(
+    vk::DescriptorType::STORAGE_IMAGE,
+    vk::ShaderStageFlags::COMPUTE,
+);
+
+/// Set 0: buffers of a frame.
+pub(crate) const FRAME_SET: usize = 0;
+/// Set 1: textures of an object.
+pub(crate) const TEXTURE_SET: usize = 1;
+/// Set 2: tiles, and the target of a compute pass.
+pub(crate) const TARGET_SET: usize = 2;
+
+/// The bindings of every set, by their numbers.
+pub(crate) const SETS: [&[Binding]; 3] = [
+    &[
+        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // the frame
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // solids
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // instances
+        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // solids that may throw shadows
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tables of all solids
+        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
+        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only solid
+    ],
+    &[
+        TEXTURE, // shape map
+        TEXTURE, // colours
+        TEXTURE, // slopes
+        TEXTURE, // lengths along the outline
+        Binding {
+            count: MAX_SHADOW_MAPS,
+            ..TEXTURE
+        }, // shape maps that shadows read
+    ],
+    &[
+        one(vk::DescriptorType::STORAGE_BUFFER, PIXEL), // words of pixels
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tiles
+        PLANE,
+        PLANE,
+        PLANE,
+        PLANE,
+        one(
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::ShaderStageFlags::COMPUTE,
+        ), // lists of tiles
+    ],
+];
+
+/// The layout of a set.
+pub(crate) fn layout(raw: &ash::Device, set: usize) -> Result<vk::DescriptorSetLayout> {
+    let bindings: Vec<_> = (0u32..)
+        .zip(SETS[set])
+        .map(|(number, binding)| {
+            vk::DescriptorSetLayoutBinding::default()
+                .binding(number)
+                .descriptor_type(binding.kind)
+                .descriptor_count(binding.count)
+                .stage_flags(binding.stages)
+        })
+        .collect();
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+    // SAFETY: a plain creation, which the caller destroys.
+    unsafe { raw.create_descriptor_set_layout(&info, None) }.call("vkCreateDescriptorSetLayout")
+}
+
+/// A pool of `count` of each of these sets, and the sets, in order.
+pub(crate) fn allocate(
+    raw: &ash::Device,
+    layouts: &[vk::DescriptorSetLayout; 3],
+    sets: &[usize],
+    count: u32,
+) -> Result<(vk::DescriptorPool, Vec<vk::DescriptorSet>)> {
+    let bindings = sets.iter().flat_map(|&set| SETS[set]);
+    let sizes: Vec<_> = bindings
+        .map(|binding| {
+            vk::DescriptorPoolSize::default()
+                .ty(binding.kind)
+                .descriptor_count(binding.count * count)
+        })
+        .collect();
+    let info = vk::DescriptorPoolCreateInfo::default()
+        .max_sets(sets.len() as u32 * count)
+        .pool_sizes(&sizes);
+    // SAFETY: a plain creation, which the caller destroys.
+    let pool = unsafe { raw.create_descriptor_pool(&info, None) }.call("vkCreateDescriptorPool")?;
+    let wanted: Vec<_> = (0..count)
+        .flat_map(|_| sets.iter().map(|&set| layouts[set]))
+        .collect();
+    let info = vk::DescriptorSetAllocateInfo::default()
+        .descriptor_pool(pool)
+        .set_layouts(&wanted);
+    // SAFETY: the pool was sized for these sets.
+    match unsafe { raw.allocate_descriptor_sets(&info) }.call("vkAllocateDescriptorSets") {
+        Ok(made) => Ok((pool, made)),
+        Err(error) => {
+            // SAFETY: nothing was allocated from it.
+            unsafe { raw.destroy_descriptor_pool(pool, None) };
+            Err(error)
+        }
+    }
+}
+
+/// What a binding is pointed to.
+#[derive(Clone, Copy)]
+pub(crate) enum Resource {
+    /// A buffer and how much of it.
+    Buffer(vk::Buffer, u64),
+    /// A storage image.
+    Image(vk::ImageView),
+}
+
+/// Points bindings of a set of this number to resources.
+///
+/// # Safety
+/// This call writes to the set. The caller must see to it that the resources live while the set is
+/// used, and that no frame that is recorded or in flight reads it.
+pub(crate) unsafe fn write(
+    raw: &ash::Device,
+    set: vk::DescriptorSet,
+    number: usize,
+    resources: &[(u32, Resource)],
+) {
+    for &(binding, resource) in resources {
+        let kind = SETS[number][binding as usize].kind;
+        let to = vk::WriteDescriptorSet::default()
+            .dst_set(set)
+            .dst_binding(binding)
+            .descriptor_type(kind);
+        let mut buffer = [vk::DescriptorBufferInfo::default()];
+        let mut image = [vk::DescriptorImageInfo::default().image_layout(vk::ImageLayout::GENERAL)];
+        let to = match resource {
+            Resource::Buffer(raw, range) => {
+                buffer[0] = buffer[0].buffer(raw).range(range);
+                to.buffer_info(&buffer)
+            }
+            Resource::Image(view) => {
+                image[0] = image[0].image_view(view);
+                to.image_info(&image)
+            }
+        };
+        // SAFETY: as the caller promised.
+        unsafe { raw.update_descriptor_sets(&[to], &[]) };
+    }
+}

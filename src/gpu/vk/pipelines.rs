@@ -1,0 +1,276 @@
+//! Pipelines, one per variant, use and output: shared by all renderers of a device, compiled once
+//! and kept.
+
+mod compile;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::report::Candidate;
+use crate::gpu::frame::output::{Output, PassFormats, PassKind};
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::descriptors;
+use crate::gpu::vk::render_pass::render_pass;
+use crate::plan::Pushed;
+use crate::settings::Planes;
+use crate::shader::generated::{LARGE_POINTS_ID, OWN_VECTORS_ID};
+use crate::shader::{Kind, Variant};
+use crate::solid::tables::own_vectors;
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard};
+
+/// Specialisation constants that are the same for all pipelines of a device.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DeviceConstants {
+    /// Vectors of one solid's tables that its uniform buffers hold.
+    pub own_vectors: u32,
+    /// Whether squares of pixels are drawn as points.
+    pub large_points: bool,
+}
+
+impl DeviceConstants {
+    pub fn of(device: &Candidate) -> Self {
+        Self {
+            own_vectors: own_vectors(&device.properties.limits),
+            large_points: device.large_points(),
+        }
+    }
+
+    /// `(constant_id, value)`.
+    fn values(self) -> [(u32, u32); 2] {
+        [
+            (OWN_VECTORS_ID, self.own_vectors),
+            (LARGE_POINTS_ID, u32::from(self.large_points)),
+        ]
+    }
+}
+
+/// Set layouts, the pipeline layout, and the pipelines made so far.
+pub(crate) struct Pipelines {
+    /// Those of [`descriptors::SETS`].
+    pub set_layouts: [vk::DescriptorSetLayout; 3],
+    pub layout: vk::PipelineLayout,
+    cache: vk::PipelineCache,
+    /// Whether `cache` is ours to destroy.
+    owns_cache: bool,
+    made: Mutex<HashMap<Key, vk::Pipeline>>,
+    compiled: AtomicU64,
+    owners: AtomicU64,
+    /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
+    passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
+    flags: vk::PipelineCreateFlags,
+    /// Those of the device, of every pipeline.
+    constants: DeviceConstants,
+    /// Where modules come from that are not those embedded.
+    #[cfg(feature = "other-shaders")]
+    pub source: Option<ShaderSource>,
+    raw: ash::Device,
+}
+
+/// Gives the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros; `None`:
+/// the words that the library holds.
+#[cfg(feature = "other-shaders")]
+pub type ShaderSource =
+    Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Key {
+    variant: Variant,
+    kind: Kind,
+    output: Output,
+    /// The renderer whose host's pass it is for; 0 where all may share it.
+    owner: u64,
+}
+
+impl Pipelines {
+    /// `cache`: a host's.
+    pub fn new(
+        raw: ash::Device,
+        cache: Option<vk::PipelineCache>,
+        constants: DeviceConstants,
+    ) -> Result<Self> {
+        let mut all = Self {
+            set_layouts: [vk::DescriptorSetLayout::null(); 3],
+            layout: vk::PipelineLayout::null(),
+            cache: cache.unwrap_or_default(),
+            owns_cache: cache.is_none(),
+            made: Mutex::default(),
+            compiled: AtomicU64::new(0),
+            owners: AtomicU64::new(0),
+            passes: Mutex::default(),
+            flags: vk::PipelineCreateFlags::empty(),
+            constants,
+            #[cfg(feature = "other-shaders")]
+            source: None,
+            raw,
+        };
+        let raw = &all.raw;
+        for (set, layout) in all.set_layouts.iter_mut().enumerate() {
+            *layout = descriptors::layout(raw, set)?;
+        }
+        let pushed = [vk::PushConstantRange::default()
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            .size(size_of::<Pushed>() as u32)];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&all.set_layouts)
+            .push_constant_ranges(&pushed);
+        // SAFETY: plain creations, destroyed in Drop.
+        unsafe {
+            all.layout = raw
+                .create_pipeline_layout(&info, None)
+                .call("vkCreatePipelineLayout")?;
+            if all.owns_cache {
+                let empty = vk::PipelineCacheCreateInfo::default();
+                all.cache = raw
+                    .create_pipeline_cache(&empty, None)
+                    .call("vkCreatePipelineCache")?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// The driver keeps its compiler's statistics of what is compiled from now on.
+    #[cfg(feature = "other-shaders")]
+    pub fn capturing_statistics(mut self) -> Self {
+        self.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
+        self
+    }
+
+    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of
+    /// [`Pipelines::owner`].
+    pub fn get(
+        &self,
+        variant: Variant,
+        kind: Kind,
+        output: &Output,
+        owner: u64,
+    ) -> Result<vk::Pipeline> {
+        let key = Key {
+            variant,
+            kind,
+            output: output.clone(),
+            owner,
+        };
+        if let Some(made) = self.made()?.get(&key) {
+            return Ok(*made);
+        }
+        // Compiled without the lock: others compile meanwhile.
+        let made = self.compile(&variant, kind, output)?;
+        let mut all = self.made()?;
+        if let Some(before) = all.get(&key) {
+            // SAFETY: nobody has seen the new one.
+            unsafe { self.raw.destroy_pipeline(made, None) };
+            return Ok(*before);
+        }
+        all.insert(key, made);
+        self.compiled.fetch_add(1, Ordering::Relaxed);
+        Ok(made)
+    }
+
+    /// Who owns pipelines for an output: nobody, or a new owner. A host may destroy its render pass
+    /// once its renderer is gone, and make another of the same handle.
+    pub fn owner(&self, output: &Output) -> u64 {
+        match output {
+            Output::Pass(PassFormats {
+                begun: PassKind::RenderPass { pass, .. },
+                ..
+            }) if !self.is_own(*pass) => self.owners.fetch_add(1, Ordering::Relaxed) + 1,
+            _ => 0,
+        }
+    }
+
+    /// Destroys what is owned by `owner`, whose frames are done.
+    pub fn forget(&self, owner: u64) {
+        if owner == 0 {
+            return;
+        }
+        if let Ok(mut made) = self.made.lock() {
+            made.retain(|key, pipeline| {
+                if key.owner == owner {
+                    // SAFETY: the frames that used it are done.
+                    unsafe { self.raw.destroy_pipeline(*pipeline, None) };
+                }
+                key.owner != owner
+            });
+        }
+    }
+
+    fn is_own(&self, pass: vk::RenderPass) -> bool {
+        let passes = self.passes.lock();
+        passes.is_ok_and(|passes| passes.values().any(|own| *own == pass))
+    }
+
+    /// The render pass of off-screen frames.
+    pub fn own_pass(&self, planes: Planes, keeps_depths: bool) -> Result<vk::RenderPass> {
+        let mut passes = self
+            .passes
+            .lock()
+            .map_err(|_| Error::new(ErrorKind::Other, "the render passes' lock is poisoned"))?;
+        if let Some(known) = passes.get(&(planes, keeps_depths)) {
+            return Ok(*known);
+        }
+        let made = render_pass(&self.raw, planes, keeps_depths)?;
+        passes.insert((planes, keeps_depths), made);
+        Ok(made)
+    }
+
+    /// How many have been compiled.
+    pub fn compiled(&self) -> u64 {
+        self.compiled.load(Ordering::Relaxed)
+    }
+
+    /// Adds what [`Pipelines::cache_data`] gave another time.
+    pub fn add_cache(&self, data: &[u8]) -> Result<()> {
+        let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: drivers look at the data's header and pass over what is not theirs; the second
+        // cache is gone again.
+        unsafe {
+            let other = self
+                .raw
+                .create_pipeline_cache(&with, None)
+                .call("vkCreatePipelineCache")?;
+            let merged = self.raw.merge_pipeline_caches(self.cache, &[other]);
+            self.raw.destroy_pipeline_cache(other, None);
+            merged.call("vkMergePipelineCaches")
+        }
+    }
+
+    /// What the driver wants to be kept for another process.
+    pub fn cache_data(&self) -> Result<Vec<u8>> {
+        // SAFETY: the cache is live.
+        unsafe { self.raw.get_pipeline_cache_data(self.cache) }.call("vkGetPipelineCacheData")
+    }
+
+    fn made(&self) -> Result<MutexGuard<'_, HashMap<Key, vk::Pipeline>>> {
+        self.made
+            .lock()
+            .map_err(|_| Error::new(ErrorKind::Other, "the pipelines' lock is poisoned"))
+    }
+}
+
+impl Drop for Pipelines {
+    fn drop(&mut self) {
+        let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
+        let passes = self
+            .passes
+            .get_mut()
+            .map(std::mem::take)
+            .unwrap_or_default();
+        // SAFETY: the device's last user is gone; null handles may be destroyed.
+        unsafe {
+            for pipeline in made.into_values() {
+                self.raw.destroy_pipeline(pipeline, None);
+            }
+            for pass in passes.into_values() {
+                self.raw.destroy_render_pass(pass, None);
+            }
+            if self.owns_cache {
+                self.raw.destroy_pipeline_cache(self.cache, None);
+            }
+            self.raw.destroy_pipeline_layout(self.layout, None);
+            for layout in self.set_layouts {
+                self.raw.destroy_descriptor_set_layout(layout, None);
+            }
+        }
+    }
+}

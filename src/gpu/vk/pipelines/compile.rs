@@ -1,0 +1,224 @@
+//! One pipeline: its modules, constants and fixed state.
+
+use super::Pipelines;
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::frame::output::{Output, PassFormats, PassKind};
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::render_pass::color_formats;
+use crate::plan::DepthOrder;
+use crate::shader::{Kind, Module, Search, Variant, depth_less, words};
+use ash::vk;
+
+impl Pipelines {
+    pub(super) fn compile(
+        &self,
+        variant: &Variant,
+        kind: Kind,
+        output: &Output,
+    ) -> Result<vk::Pipeline> {
+        let own = variant.constants();
+        let constants = || own.into_iter().chain(self.constants.values());
+        let entries: Vec<_> = constants()
+            .zip(0u32..)
+            .map(|((id, _), n)| {
+                vk::SpecializationMapEntry::default()
+                    .constant_id(id)
+                    .offset(4 * n)
+                    .size(4)
+            })
+            .collect();
+        let values: Vec<u32> = constants().map(|(_, value)| value).collect();
+        let specialization = vk::SpecializationInfo::default()
+            .map_entries(&entries)
+            .data(bytemuck::cast_slice(&values));
+        let module = variant.module(kind);
+        match (variant.vertices(kind), output) {
+            (None, _) => self.compute(variant, &module, &specialization),
+            (Some(vertices), Output::Pass(pass)) => {
+                self.graphics((variant, kind), pass, [&vertices, &module], &specialization)
+            }
+            (Some(_), Output::Compute(_)) => Err(Error::new(
+                ErrorKind::Other,
+                "fragments are drawn in a pass, not in compute",
+            )),
+        }
+    }
+
+    fn words(&self, variant: &Variant, module: &Module) -> Result<Vec<u32>> {
+        if let (Some(external), Search::External) = (variant.external, module.search)
+            && module.entry.searches()
+        {
+            return external.words(module);
+        }
+        #[cfg(feature = "other-shaders")]
+        if let Some(source) = &self.source {
+            let module = crate::shader::listed(module).unwrap_or(*module);
+            if let Some(words) = source(module.entry.file(), &module.macros())? {
+                return Ok(words);
+            }
+        }
+        let none = || Error::new(ErrorKind::Other, format!("no shader is {}", module.name()));
+        words(module).ok_or_else(none)
+    }
+
+    fn module(
+        &self,
+        variant: &Variant,
+        module: &Module,
+        order: DepthOrder,
+    ) -> Result<ShaderModule<'_>> {
+        let mut words = self.words(variant, module)?;
+        if order == DepthOrder::Reversed {
+            words = depth_less(&words);
+        }
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are SPIR-V made by build.rs, those that the host promised, or a search's.
+        let raw =
+            unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
+        Ok(ShaderModule {
+            raw,
+            device: &self.raw,
+        })
+    }
+
+    fn compute(
+        &self,
+        variant: &Variant,
+        module: &Module,
+        specialization: &vk::SpecializationInfo<'_>,
+    ) -> Result<vk::Pipeline> {
+        let module = self.module(variant, module, DepthOrder::Normal)?;
+        let info = vk::ComputePipelineCreateInfo::default()
+            .flags(self.flags)
+            .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
+            .layout(self.layout);
+        // SAFETY: `info` and all it points to live until the call returns.
+        let made = unsafe { self.raw.create_compute_pipelines(self.cache, &[info], None) };
+        first(made, "vkCreateComputePipelines")
+    }
+
+    fn graphics(
+        &self,
+        (variant, kind): (&Variant, Kind),
+        pass: &PassFormats,
+        modules: [&Module; 2],
+        specialization: &vk::SpecializationInfo<'_>,
+    ) -> Result<vk::Pipeline> {
+        let [vertex, fragment] = modules;
+        let vertex = self.module(variant, vertex, DepthOrder::Normal)?;
+        let fragment = self.module(variant, fragment, pass.depth)?;
+        let stages = [
+            vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
+            fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
+        ];
+        // Proxies and quads have no vertices: their corners are made from numbers.
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        let is_quads = kind == Kind::Quads;
+        let topology = if is_quads && self.constants.large_points {
+            vk::PrimitiveTopology::POINT_LIST
+        } else {
+            vk::PrimitiveTopology::TRIANGLE_LIST
+        };
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(if is_quads {
+                vk::CullModeFlags::NONE
+            } else {
+                vk::CullModeFlags::BACK
+            })
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .line_width(1.0);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(true)
+            .depth_write_enable(true)
+            .depth_compare_op(match pass.depth {
+                DepthOrder::Normal => vk::CompareOp::LESS,
+                DepthOrder::Reversed => vk::CompareOp::GREATER,
+            });
+        let blends = vec![
+            vk::PipelineColorBlendAttachmentState::default()
+                .color_write_mask(vk::ColorComponentFlags::RGBA);
+            color_formats(pass.planes).len()
+        ];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
+            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
+            .flags(self.flags)
+            .stages(&stages)
+            .vertex_input_state(&vertices)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&samples)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(self.layout);
+        match &pass.begun {
+            PassKind::RenderPass { pass, subpass } => {
+                info = info.render_pass(*pass).subpass(*subpass);
+            }
+            PassKind::Dynamic {
+                color,
+                depth,
+                stencil,
+            } => {
+                rendering = rendering
+                    .color_attachment_formats(color)
+                    .depth_attachment_format(*depth)
+                    .stencil_attachment_format(*stencil);
+                info = info.push_next(&mut rendering);
+            }
+        }
+        // SAFETY: `info` and all it points to live until the call returns; a render pass lives by
+        // the output's promise.
+        let made = unsafe {
+            self.raw
+                .create_graphics_pipelines(self.cache, &[info], None)
+        };
+        first(made, "vkCreateGraphicsPipelines")
+    }
+}
+
+fn first(
+    made: std::result::Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+    name: &str,
+) -> Result<vk::Pipeline> {
+    made.map(|all| all.first().copied().unwrap_or_default())
+        .map_err(|(_, code)| code)
+        .call(name)
+}
+
+struct ShaderModule<'a> {
+    raw: vk::ShaderModule,
+    device: &'a ash::Device,
+}
+
+impl ShaderModule<'_> {
+    fn stage<'i>(
+        &self,
+        stage: vk::ShaderStageFlags,
+        specialization: &'i vk::SpecializationInfo<'i>,
+    ) -> vk::PipelineShaderStageCreateInfo<'i> {
+        vk::PipelineShaderStageCreateInfo::default()
+            .stage(stage)
+            .module(self.raw)
+            .name(c"main")
+            .specialization_info(specialization)
+    }
+}
+
+impl Drop for ShaderModule<'_> {
+    fn drop(&mut self) {
+        // SAFETY: pipelines made of a module do not need it afterwards.
+        unsafe { self.device.destroy_shader_module(self.raw, None) };
+    }
+}

@@ -1,0 +1,128 @@
+//! The usage table: for each use of a resource its stages, accesses and image layout, so that a
+//! barrier is named by what was done and what comes next.
+
+use crate::gpu::device::Shared;
+use crate::gpu::memory::{Buffer, Image};
+use ash::vk;
+
+/// What a resource is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Usage {
+    /// Contents do not matter.
+    Nothing,
+    /// Copied or cleared into.
+    TransferWrite,
+    /// Copied from.
+    TransferRead,
+    /// Sampled by any shader.
+    Sampled,
+    /// Written, and perhaps read, by compute shaders.
+    ComputeWrite,
+    /// Read by compute shaders and as the groups of an indirect dispatch.
+    TileRead,
+    /// Added to by fragment shaders.
+    FragmentAtomic,
+    /// Read by the host.
+    HostRead,
+}
+
+impl Usage {
+    fn stages(self) -> vk::PipelineStageFlags {
+        use vk::PipelineStageFlags as S;
+        match self {
+            Self::Nothing => S::TOP_OF_PIPE,
+            Self::TransferWrite | Self::TransferRead => S::TRANSFER,
+            Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
+            Self::ComputeWrite => S::COMPUTE_SHADER,
+            Self::TileRead => S::COMPUTE_SHADER | S::DRAW_INDIRECT,
+            Self::FragmentAtomic => S::FRAGMENT_SHADER,
+            Self::HostRead => S::HOST,
+        }
+    }
+
+    fn access(self) -> vk::AccessFlags {
+        use vk::AccessFlags as A;
+        match self {
+            Self::Nothing => A::empty(),
+            Self::TransferWrite => A::TRANSFER_WRITE,
+            Self::TransferRead => A::TRANSFER_READ,
+            Self::Sampled => A::SHADER_READ,
+            Self::ComputeWrite | Self::FragmentAtomic => A::SHADER_READ | A::SHADER_WRITE,
+            Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
+            Self::HostRead => A::HOST_READ,
+        }
+    }
+
+    fn layout(self) -> vk::ImageLayout {
+        use vk::ImageLayout as L;
+        match self {
+            Self::Nothing => L::UNDEFINED,
+            Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
+            Self::TransferRead => L::TRANSFER_SRC_OPTIMAL,
+            Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
+            Self::ComputeWrite | Self::TileRead | Self::FragmentAtomic | Self::HostRead => {
+                L::GENERAL
+            }
+        }
+    }
+}
+
+/// Records a barrier on one image.
+pub(crate) fn image_barrier(
+    device: &Shared,
+    cmd: vk::CommandBuffer,
+    image: &Image,
+    from: Usage,
+    to: Usage,
+) {
+    let barrier = vk::ImageMemoryBarrier::default()
+        .src_access_mask(from.access())
+        .dst_access_mask(to.access())
+        .old_layout(from.layout())
+        .new_layout(to.layout())
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .image(image.raw)
+        .subresource_range(image.kind.range());
+    // SAFETY: `cmd` is recording, outside a render pass, and the image lives until it has run.
+    unsafe {
+        device.raw.cmd_pipeline_barrier(
+            cmd,
+            from.stages(),
+            to.stages(),
+            vk::DependencyFlags::empty(),
+            &[],
+            &[],
+            &[barrier],
+        );
+    }
+}
+
+/// Records a barrier on one buffer.
+pub(crate) fn buffer_barrier(
+    device: &Shared,
+    cmd: vk::CommandBuffer,
+    buffer: &Buffer,
+    from: Usage,
+    to: Usage,
+) {
+    let barrier = vk::BufferMemoryBarrier::default()
+        .src_access_mask(from.access())
+        .dst_access_mask(to.access())
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .buffer(buffer.raw)
+        .size(vk::WHOLE_SIZE);
+    // SAFETY: as for images.
+    unsafe {
+        device.raw.cmd_pipeline_barrier(
+            cmd,
+            from.stages(),
+            to.stages(),
+            vk::DependencyFlags::empty(),
+            &[],
+            &[barrier],
+            &[],
+        );
+    }
+}

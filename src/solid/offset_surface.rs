@@ -1,0 +1,188 @@
+//! Surfaces under an offset: the boundary as quadrics or as another search's table, and what is made of
+//! them for the GPU.
+
+use crate::error::Result;
+use crate::scene::Offset;
+use crate::search::{Reads, Search, SearchTable};
+use crate::solid::outline_cache::OutlineCache;
+use crate::solid::proxy_hull::GpuProxyHull;
+use crate::solid::table_slot::{Part, Slot};
+use crate::solid::tables::{self, GpuTables};
+use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
+use std::sync::{Arc, OnceLock};
+
+/// One surface, made when first wanted, shared by all objects that show it.
+pub(crate) struct OffsetSurface {
+    recipe: Recipe,
+    made: OnceLock<Result<Made>>,
+    tables: OnceLock<GpuTables>,
+    listed: OnceLock<Vec<[u32; 4]>>,
+    hull: OnceLock<GpuProxyHull>,
+    inner: OnceLock<InnerCylinders>,
+    outer: OnceLock<OuterCylinders>,
+    slots: [OnceLock<Slot>; 3],
+}
+
+/// What a surface is made from.
+pub(crate) enum Recipe {
+    /// Quadrics that follow the outline under an offset, of this level, within this distance in
+    /// object units.
+    Patches(Arc<OutlineCache>, Offset, u8, f64),
+    /// The table of a search, of so many rows.
+    Search(&'static Search, Arc<OutlineCache>, Offset, u32),
+}
+
+enum Made {
+    /// And their largest radius, least and largest `z`.
+    Patches(Vec<QuadricPatch>, [f64; 3]),
+    Table(SearchTable),
+}
+
+impl OffsetSurface {
+    pub fn new(recipe: Recipe) -> Self {
+        Self {
+            recipe,
+            made: OnceLock::new(),
+            tables: OnceLock::new(),
+            listed: OnceLock::new(),
+            hull: OnceLock::new(),
+            inner: OnceLock::new(),
+            outer: OnceLock::new(),
+            slots: [const { OnceLock::new() }; 3],
+        }
+    }
+
+    /// Whether it is made, or has failed to be.
+    pub fn is_made(&self) -> bool {
+        self.made.get().is_some()
+    }
+
+    /// Makes it, if it is not made yet.
+    pub fn make(&self) {
+        let _ = self.made();
+    }
+
+    /// Why there is no such surface.
+    pub fn failure(&self) -> Option<&crate::error::Error> {
+        self.made().err()
+    }
+
+    fn made(&self) -> std::result::Result<&Made, &crate::error::Error> {
+        self.made.get_or_init(|| self.recipe.follow()).as_ref()
+    }
+
+    /// What the search walks.
+    pub fn tables(&self) -> &GpuTables {
+        self.tables.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => GpuTables::patches(patches),
+            Ok(Made::Table(table)) => GpuTables::of_search(table),
+            Err(_) => GpuTables::patches(&[]),
+        })
+    }
+
+    /// What lists of patches are made from; nothing where there are none, or too many.
+    pub fn listed(&self) -> &[[u32; 4]] {
+        self.listed.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => tables::listed(patches),
+            _ => Vec::new(),
+        })
+    }
+
+    /// What the rasteriser draws; of another search's table nothing.
+    pub fn hull(&self) -> &GpuProxyHull {
+        self.hull.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => GpuProxyHull::new(patches),
+            _ => GpuProxyHull::new(&[]),
+        })
+    }
+
+    /// What its solid is sure to hide; of patches alone.
+    pub fn inner(&self) -> Option<&InnerCylinders> {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => {
+                Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Where its solid can be; of patches alone.
+    pub fn outer(&self) -> Option<&OuterCylinders> {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => {
+                Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it is made of patches.
+    pub fn is_of_patches(&self) -> bool {
+        matches!(self.recipe, Recipe::Patches(..))
+    }
+
+    /// Largest radius, least and largest `z`; of patches alone.
+    pub fn extent(&self) -> [f64; 3] {
+        match self.made() {
+            Ok(Made::Patches(_, extent)) => *extent,
+            _ => [0.0; 3],
+        }
+    }
+
+    /// By how much it may bulge beyond the contour: as much of a coarse level, nothing of the exact
+    /// one.
+    pub fn slack(&self) -> f64 {
+        match self.recipe {
+            Recipe::Patches(_, _, level, tolerance) if level > 0 => tolerance,
+            _ => 0.0,
+        }
+    }
+
+    /// How many patches it has.
+    pub fn patches(&self) -> usize {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => patches.len(),
+            _ => 0,
+        }
+    }
+
+    pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
+        match part {
+            Part::Tables => &self.tables().vectors,
+            Part::Frusta => &self.hull().vectors,
+            Part::Patches => self.listed(),
+        }
+    }
+
+    pub fn slot(&self, part: Part) -> Option<&Slot> {
+        self.slots[part as usize].get()
+    }
+
+    /// Keeps the place of a part; returns the vector with which it begins.
+    pub fn keep_slot(&self, part: Part, slot: Slot) -> u32 {
+        self.slots[part as usize].get_or_init(|| slot).begin()
+    }
+}
+
+impl Recipe {
+    fn follow(&self) -> Result<Made> {
+        match self {
+            Self::Patches(outline, offset, _, tolerance) => {
+                let contour = outline.contour(offset)?;
+                let options = FitOptions {
+                    tolerance: *tolerance,
+                };
+                let patches = fit_patches(&contour, &options);
+                let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
+                let extent = patches.iter().fold(none, |m, p| {
+                    [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+                });
+                Ok(Made::Patches(patches, extent))
+            }
+            Self::Search(search, outline, offset, rows) => match search.reads {
+                Reads::Table(make) => Ok(Made::Table(make(&outline.contour(offset)?, *rows)?)),
+                Reads::Map { .. } => Ok(Made::Table(SearchTable::default())),
+            },
+        }
+    }
+}
