@@ -41,7 +41,7 @@
 //!
 //! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are
 //!   equal to the last bit, but for those of the default, which each stage finds in its own way.
-//! * The default search, [`Solver::Hull`](settings::Solver::Hull), meets the exact boundary: what
+//! * The default search, [`Solver::Exact`](settings::Solver::Exact), meets the exact boundary: what
 //!   it draws differs from the reference in double precision (the crate `revmap-reference`) by
 //!   hundredths of a texel of a map of 512 rows.
 //! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand

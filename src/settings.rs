@@ -47,20 +47,20 @@ pub enum Solver {
     /// The boundary as patches of quadrics under a tree of rows, solved exactly; rebuilt when
     /// parameters change.
     Quadric,
-    /// The same patches, found by what the stage does best: in the fragment stage the rasteriser
-    /// finds them with proxy hulls, in compute tiles of pixels are first asked as a whole. Objects
-    /// for which that cannot be done are searched as by [`Quadric`](Self::Quadric).
-    Hull,
+    /// The same patches, found by what the stage does best: the rasteriser finds them by proxies in
+    /// the fragment stage, lists of tiles in compute. Objects without either are searched as by
+    /// [`Quadric`](Self::Quadric). Scripts may call it `hull`.
+    Exact,
     /// One of another crate.
     Other(&'static Search),
 }
 
 impl Solver {
     /// The library's own, in the order in which reports list them.
-    pub const ALL: [Self; 3] = [Self::Live, Self::Quadric, Self::Hull];
+    pub const ALL: [Self; 3] = [Self::Live, Self::Quadric, Self::Exact];
 
     /// What is taken where none is named.
-    pub const DEFAULT: Self = Self::Hull;
+    pub const DEFAULT: Self = Self::Exact;
 
     /// Its name in options and results.
     #[must_use]
@@ -68,17 +68,18 @@ impl Solver {
         match self {
             Self::Live => "live",
             Self::Quadric => "quadric",
-            Self::Hull => "hull",
+            Self::Exact => "exact",
             Self::Other(search) => search.name,
         }
     }
 
-    /// The search of this name among `known`.
+    /// The search of this name among `known`; `hull` is another name of `exact`.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] where none has it.
     pub fn named(name: &str, known: &[Self]) -> Result<Self> {
-        let found = known.iter().find(|s| s.name() == name);
+        let wanted = if name == "hull" { "exact" } else { name };
+        let found = known.iter().find(|s| s.name() == wanted);
         found.copied().ok_or_else(|| {
             let names: Vec<_> = known.iter().map(|s| s.name()).collect();
             let names = names.join(", ");
@@ -98,7 +99,7 @@ impl Solver {
     pub const fn reads_map(self) -> bool {
         match self {
             Self::Live => true,
-            Self::Quadric | Self::Hull => false,
+            Self::Quadric | Self::Exact => false,
             Self::Other(search) => matches!(search.reads, Reads::Map { .. }),
         }
     }
@@ -107,7 +108,7 @@ impl Solver {
     /// ignore it.
     #[must_use]
     pub const fn follows_tolerance(self) -> bool {
-        matches!(self, Self::Quadric | Self::Hull)
+        matches!(self, Self::Quadric | Self::Exact)
     }
 
     /// The bound on its steps; `None` where it ends by itself, as patches do.
@@ -121,7 +122,7 @@ impl Solver {
                 most: Steps::MOST,
                 may_run_out: true,
             }),
-            Self::Quadric | Self::Hull => None,
+            Self::Quadric | Self::Exact => None,
             Self::Other(search) => search.steps,
         }
     }
@@ -196,10 +197,10 @@ pub struct Settings {
     pub map_format: MapFormat,
     /// What to draw.
     pub planes: Planes,
-    /// Pixels that an object's box covers for each frustum of its hull that may be seen, from which
-    /// on [`Solver::Hull`] draws the hull, and [`Solver::Live`] the convex one: triangles cost the
-    /// same however small they are. A single hull of patches takes five times as many on a software
-    /// driver. `u32::MAX`: boxes alone, and no beams either.
+    /// Least pixels of an object's box for each visible frustum of its cells at which the fragment
+    /// stage draws the cells: triangles cost the same however small they are. Smaller objects are
+    /// drawn by tiles. Software drivers multiply it by 2 or 11. `u32::MAX`: no cells and no lists of
+    /// patches.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,

@@ -155,7 +155,7 @@ impl Renderer {
                 })
             })
             .collect();
-        let falls_back = matches!(solver, Solver::Quadric | Solver::Hull);
+        let falls_back = matches!(solver, Solver::Quadric | Solver::Exact);
         let mut all: Vec<(Variant, Kind, vk::DescriptorSet)> = Vec::new();
         for ((entry, set, _), (object, variant)) in
             prepared.iter().zip(own.iter().zip(variants(&own, &with)))

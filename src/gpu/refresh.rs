@@ -343,7 +343,7 @@ impl Renderer {
                 .into_iter()
                 .collect(),
             solver,
-            takes_patches: solver == Solver::Hull && settings.proxy_min_pixels != u32::MAX,
+            takes_patches: solver == Solver::Exact && settings.proxy_min_pixels != u32::MAX,
             map,
             facts,
             arc,

@@ -140,7 +140,7 @@ impl Path {
     fn public(&self) -> DrawPath {
         match self {
             Self::Box => DrawPath::Box,
-            Self::Cells { .. } => DrawPath::Hull,
+            Self::Cells { .. } => DrawPath::Cells,
             Self::Tiles => DrawPath::Tiles,
         }
     }

@@ -4,6 +4,7 @@ use super::proxy;
 use super::tiles::{Cylinder, Placements};
 use super::view::View;
 use crate::scene::Object;
+use crate::shader::Search;
 use crate::shader::generated::{LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST};
 use crate::shader::{Kind, Variant};
 use crate::solid::offset_surface::OffsetSurface;
@@ -23,7 +24,7 @@ pub enum DrawPath {
     /// Fragment stage: its shape boxes are rasterised, and fragments search.
     Box,
     /// Fragment stage: cells of its surface are rasterised, and fragments solve their patches.
-    Hull,
+    Cells,
     /// Tiles of the screen in which its copies may show are drawn: in the fragment stage several
     /// copies, in compute everything.
     Tiles,
@@ -97,10 +98,11 @@ const MOST_PROXIES: usize = 64;
 /// over lists; llvmpipe has 8 and takes two thirds.
 const LEAST_SUBGROUP: u32 = 8;
 
-/// What a frustum costs a software driver, over what `proxy_min_pixels` says: its triangles are set
-/// up by the processor that shades. Of five solids the box with its tree is as fast at 600 to 800
-/// pixels a frustum.
-const SOFTWARE_FRUSTUM: u32 = 5;
+/// Factors on `proxy_min_pixels` of software drivers, whose triangles are set up by the processor
+/// that shades: of subgroups of [`LEAST_SUBGROUP`] and of smaller ones, which take three times as
+/// long over a tree. Counted in instructions: llvmpipe draws a solid by cells as fast as by tiles at
+/// 1,650 pixels a frustum, SwiftShader at 340.
+const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
 
 /// Lengths of lists of patches; longer ones walk the tree.
 pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
@@ -113,7 +115,9 @@ impl Conditions {
         let copies = of.object.placements().len();
         let wraps = of.takes_patches && of.object.repeat == [1; 3] && !self.compute;
         let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
-        let tiles = self.compute || (copies > 1 && of.variant.is_shaded());
+        // The box is as good for one copy whose outline is not looked at.
+        let outlined = of.variant.search != Search::External && self.occlusion_culling;
+        let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
         let cells_of = |cut| Path::Cells {
             frusta: Vec::new(),
             cut,
@@ -136,7 +140,7 @@ impl Conditions {
             match candidate {
                 Path::Cells { cut, .. } => {
                     let seen = of.surface.and_then(|s| {
-                        let least = self.least_pixels(of.object);
+                        let least = self.least_pixels();
                         proxy::frusta(of.object, s, view, least).filter(|found| found.1 == cut)
                     });
                     if let Some((frusta, cut)) = seen {
@@ -153,14 +157,12 @@ impl Conditions {
         chosen
     }
 
-    /// Pixels that the box covers for each frustum from which on cells are cheaper. Measured of
-    /// single solids; others keep the setting as it is.
-    fn least_pixels(&self, object: &Object) -> u32 {
-        if self.software && object.placements().len() == 1 {
-            self.least_pixels.saturating_mul(SOFTWARE_FRUSTUM)
-        } else {
-            self.least_pixels
-        }
+    /// Pixels that the box covers for each frustum from which on cells are cheaper.
+    fn least_pixels(&self) -> u32 {
+        let small = self.subgroup_size < LEAST_SUBGROUP;
+        let factor = SOFTWARE_FRUSTUM[usize::from(small)];
+        let factor = if self.software { factor } else { 1 };
+        self.least_pixels.saturating_mul(factor)
     }
 
     /// Whether patches may be listed for tiles of an object.
@@ -213,7 +215,7 @@ impl Conditions {
                 }
             }
         }
-        let lights: &[u32] = if self.casts { &[0] } else { &[0, 1] };
+        let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
         // An offset may move the size of tables across the limit.
         let large = of
             .surface
@@ -234,11 +236,11 @@ impl Conditions {
             vec![0]
         };
         let mut data = Vec::new();
-        for &more_lights in lights {
+        for &lights in counts {
             for &own_tables in own {
                 for &depths in depths {
                     for &list_length in &lengths {
-                        data.push((more_lights, own_tables, u32::from(depths), list_length));
+                        data.push((lights, own_tables, u32::from(depths), list_length));
                     }
                 }
             }
@@ -250,10 +252,10 @@ impl Conditions {
                 .iter()
                 .flat_map(|f| outside.iter().map(move |o| (f, o)))
             {
-                for &(more_lights, own_tables, depths, list_length) in &data {
+                for &(lights, own_tables, depths, list_length) in &data {
                     let variant = Variant {
                         outside,
-                        more_lights,
+                        lights,
                         own_tables,
                         list_length,
                         depth_test: depths,

@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
 /// 99.9 % of the pixels stay within the tolerance (measured).
 ///
-/// Searches on patches ([`Solver::Hull`](super::Solver::Hull),
+/// Searches on patches ([`Solver::Exact`](super::Solver::Exact),
 /// [`Solver::Quadric`](super::Solver::Quadric)) follow it; all others ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Tolerance(f64);

@@ -186,7 +186,7 @@ fn constants_of(words: &[u32]) -> BTreeSet<u32> {
 
 #[test]
 fn a_variant_sets_every_specialisation_constant() {
-    let set: BTreeSet<u32> = any(Solver::Hull, Planes::Color)
+    let set: BTreeSet<u32> = any(Solver::Exact, Planes::Color)
         .constants()
         .iter()
         .map(|(id, _)| *id)
@@ -289,7 +289,7 @@ fn reachable_variants_have_modules() {
     ];
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
-            let patches = matches!(solver, Solver::Hull);
+            let patches = matches!(solver, Solver::Exact);
             for kind in kinds.into_iter().filter(|k| k.walks() || patches) {
                 for outside in [0, 1] {
                     let variant = Variant {
@@ -376,7 +376,7 @@ fn depth_is_promised_greater_or_less() {
             .filter(|mode| [14, 15].contains(mode))
             .collect()
     };
-    let hull = any(Solver::Hull, Planes::Color);
+    let hull = any(Solver::Exact, Planes::Color);
     let hull = words(&hull.module(Kind::Cells)).unwrap();
     let less = depth_less(&hull);
     assert_eq!(promises(&hull), [14]);

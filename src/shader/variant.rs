@@ -76,8 +76,8 @@ pub struct Variant {
     pub depth_test: u32,
     /// 0 where nothing will be drawn after, of the compute stage.
     pub depth_keep: u32,
-    /// 1 where there may be more than two lights.
-    pub more_lights: u32,
+    /// Most lights: 1, 2, or any number, 3. With shadows, whose lights share one loop: 3.
+    pub lights: u32,
     /// Patches that each pixel of a listed tile tests; of tiles that walk the tree 1. 0: tiles come
     /// from no list.
     pub list_length: u32,
@@ -106,7 +106,7 @@ impl Variant {
         external: None,
         depth_test: 1,
         depth_keep: 1,
-        more_lights: 0,
+        lights: 3,
         list_length: 0,
         outside: 0,
         own_tables: 0,
@@ -177,8 +177,11 @@ impl Variant {
             },
             depth_test: 1,
             depth_keep: 1,
-            // With shadows all are in one loop.
-            more_lights: u32::from(lighting.lights.len() > 2 && !casts),
+            lights: if casts {
+                3
+            } else {
+                lighting.lights.len().clamp(1, 3) as u32
+            },
             list_length: 0,
             outside: 0,
             own_tables: 0,
@@ -330,7 +333,7 @@ impl Variant {
             (g::SEARCH_FORM_ID, form),
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
-            (g::MORE_LIGHTS_ID, self.more_lights),
+            (g::LIGHTS_ID, self.lights),
             (g::LIST_LENGTH_ID, self.list_length),
             (g::KNOWN_STEPS_ID, known_steps),
             (g::OUTSIDE_ID, self.outside),
@@ -346,7 +349,7 @@ fn search(settings: &SearchSettings, solver: Solver) -> Search {
     match solver {
         Solver::Live if settings.map_format == MapFormat::Rgba8 => Search::LiveRgba8,
         Solver::Live => Search::Live,
-        Solver::Quadric | Solver::Hull => Search::Quadric,
+        Solver::Quadric | Solver::Exact => Search::Quadric,
         Solver::Other(_) => Search::External,
     }
 }

@@ -122,3 +122,8 @@ pub fn all() -> Vec<(&'static str, Profile)> {
         ("jewel", jewel()),
     ]
 }
+
+/// A plain column of this radius.
+pub fn column_of(radius: f64) -> Profile {
+    polygon(&[[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]], 0.5)
+}

@@ -1,4 +1,4 @@
-//! How objects are drawn, by hulls, tiles or boxes, and how far two frames are apart.
+//! How objects are drawn, by cells, tiles or boxes, and how far two frames are apart.
 
 use super::device;
 use revmap::frame::Frame;
@@ -11,9 +11,9 @@ pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 /// How a scene's objects are to be drawn, in either stage.
 pub type Ways<'a> = [&'a [DrawPath]; 2];
 
-/// By what is tested here, and by what it falls back to.
-pub const WRAPPED: Ways<'static> = [&[DrawPath::Hull], &[DrawPath::Tiles]];
-pub const BOXED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Tiles]];
+/// By cells where the stage has them, and by the tree alone.
+pub const WRAPPED: Ways<'static> = [&[DrawPath::Cells], &[DrawPath::Tiles]];
+pub const WALKED: Ways<'static> = [&[DrawPath::Tiles], &[DrawPath::Tiles]];
 
 /// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart
 /// than half a texel of 512 rows.
@@ -29,15 +29,14 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     (hits, edge, far)
 }
 
-/// Draws by hulls or tiles and wants every object drawn in that way: what falls back to the box
-/// would be right too, and say nothing.
+/// Draws, and wants every object drawn in that way: another would be right too, and test nothing.
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
     let drawn = gpu::draw(device(), scene, settings).unwrap();
     let stage = usize::from(settings.stage == DrawStage::Compute);
-    // SwiftShader runs few invocations together: there boxes draw what the box cuts.
+    // SwiftShader clips no triangles: there tiles draw what the box cuts.
     let narrow = device().report().name.contains("SwiftShader");
-    if !(narrow && drawn.draw_paths == BOXED[stage]) {
+    if !(narrow && drawn.draw_paths == WALKED[stage]) {
         assert_eq!(
             drawn.draw_paths, ways[stage],
             "{name}, {:?}",

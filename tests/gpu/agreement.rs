@@ -81,7 +81,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
         // both have tests of their own.
         let others: Vec<_> = revmap_searches::ALL
             .into_iter()
-            .filter(|s| !s.reads_own_table() && *s != Solver::Hull)
+            .filter(|s| !s.reads_own_table() && *s != Solver::Exact)
             .collect();
         let second = others[n % others.len()];
         [(*n, scene, Solver::Quadric), (*n, scene, second)]

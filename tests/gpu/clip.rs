@@ -40,7 +40,7 @@ fn an_extended_sphere_is_whole() {
     let bounds = scene.objects[0].profile.outline.bounds().unwrap();
     let (radius, middle) = (bounds.r_max + 0.15, 0.5 * (bounds.z_min + bounds.z_max));
     for stage in STAGES {
-        let frame = draw(&scene, &settings(stage, Solver::Hull));
+        let frame = draw(&scene, &settings(stage, Solver::Exact));
         let camera = &scene.camera;
         let rays = revmap::scene::CameraFrame::new(camera, 200, 150).unwrap();
         let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
@@ -78,8 +78,8 @@ fn searches_agree_with_the_reference() {
             [3.0, 0.1, 0.5],
         ] {
             let scene = with(profile.clone(), offset);
-            let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
-            for solver in [Solver::Hull, Solver::Quadric, Solver::Live] {
+            let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Exact));
+            for solver in [Solver::Exact, Solver::Quadric, Solver::Live] {
                 for stage in STAGES {
                     let c = errors(&truth, &draw(&scene, &settings(stage, solver)), 512);
                     let what = format!(
@@ -112,9 +112,9 @@ fn textures_stay_where_they_are() {
     for projection in Projection::ALL {
         let mut scene = with(shapes::vase(), [0.1, 0.05, 0.5]);
         scene.objects[0].texturing.projection = projection;
-        let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+        let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Exact));
         for stage in STAGES {
-            let frame = draw(&scene, &settings(stage, Solver::Hull));
+            let frame = draw(&scene, &settings(stage, Solver::Exact));
             let mut off: Vec<f64> = (truth.uv.iter().zip(&frame.uv))
                 .zip(truth.distance.iter().zip(&frame.distance))
                 .filter(|(_, (a, b))| a.is_finite() && b.is_finite())
@@ -177,10 +177,10 @@ fn boxes_grow_by_what_offsets_need() {
 
     let mut scene = with(shapes::column(), [0.15, 0.0, 1.0]);
     scene.objects[0].clip = Clip::Box;
-    let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Hull));
-    let cut = draw(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+    let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Exact));
+    let cut = draw(&scene, &settings(DrawStage::Fragment, Solver::Exact));
     scene.objects[0].clip = Clip::None;
-    let whole = draw(&scene, &settings(DrawStage::Fragment, Solver::Hull));
+    let whole = draw(&scene, &settings(DrawStage::Fragment, Solver::Exact));
     let c = errors(&truth, &cut, 512);
     assert!(c.missed + c.ghost <= 2);
     let hits =
@@ -191,7 +191,7 @@ fn boxes_grow_by_what_offsets_need() {
 /// The offset moves, the object is moved, copies come: the picture is that of a new renderer.
 #[test]
 fn growing_follows_every_change() {
-    let settings = settings(DrawStage::Fragment, Solver::Hull);
+    let settings = settings(DrawStage::Fragment, Solver::Exact);
     let mut scene = with(shapes::vase(), [0.0, 0.0, 1.0]);
     let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
     let copy = placement([0.5, 0.4, 0.1], [0.0; 3], [0.5; 3]);

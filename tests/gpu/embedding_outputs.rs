@@ -44,7 +44,7 @@ pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
     }
 }
 
-fn barrier(host: &Host, cmd: vk::CommandBuffer) {
+pub fn barrier(host: &Host, cmd: vk::CommandBuffer) {
     let access = vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::MEMORY_READ;
     let barrier = [vk::MemoryBarrier::default()
         .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
@@ -130,7 +130,7 @@ fn depths(
         // output's formats.
         unsafe {
             let frame = renderer.prepare(cmd, 0, view).unwrap();
-            let by_hulls = renderer.draw_paths().iter().all(|p| *p == DrawPath::Hull);
+            let by_hulls = renderer.draw_paths().iter().all(|p| *p == DrawPath::Cells);
             assert!(by_hulls || settings.proxy_min_pixels > 0, "not by hulls");
             to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
             let depth = vk::RenderingAttachmentInfo::default()

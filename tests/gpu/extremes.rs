@@ -129,7 +129,7 @@ fn a_tip_has_a_normal() {
     above.camera.up = DVec3::Y;
     for (name, scene) in [("level", level), ("above", above)] {
         for stage in STAGES {
-            for solver in [Solver::Hull, Solver::Quadric] {
+            for solver in [Solver::Exact, Solver::Quadric] {
                 let frame = draw(
                     &scene,
                     &Settings {
@@ -162,7 +162,7 @@ fn outlines_that_cross_themselves_have_no_slivers() {
         let mut scene = scene_of(crossing(), eye(elevation, 1.6));
         scene.camera.target.z = 0.25;
         scene.camera.fov_y = 30.0;
-        assert_eq!(path(&scene), DrawPath::Box);
+        assert_eq!(path(&scene), DrawPath::Tiles);
         let settings = |stage| Settings {
             width: 400,
             height: 300,
@@ -182,14 +182,14 @@ fn outlines_that_cross_themselves_have_no_slivers() {
 }
 
 #[test]
-fn flat_solids_are_drawn_by_their_boxes() {
+fn flat_solids_are_drawn_by_the_tree() {
     for width in [1.0, 100.0, 1000.0] {
         let mut scene = scene_of(shapes::vase(), DVec3::new(1.5, 0.6, 0.6) * width);
         scene.objects[0].placement.scale = DVec3::new(width, width, 1.0);
         let expected = if width > 32.0 {
-            DrawPath::Box
+            DrawPath::Tiles
         } else {
-            DrawPath::Hull
+            DrawPath::Cells
         };
         assert_eq!(path(&scene), expected, "{width}");
         in_both_stages(&scene, (3, 0.2 * width), &format!("{width}:1"));

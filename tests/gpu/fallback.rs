@@ -101,7 +101,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
         scene.objects.truncate(1);
         let wanted = draw(&scene, &settings);
         scene.objects.push(alone.clone());
-        for solver in [Solver::Quadric, Solver::Hull] {
+        for solver in [Solver::Quadric, Solver::Exact] {
             let settings = Settings { solver, ..settings };
             let drawn = gpu::draw(device(), &scene, &settings).unwrap();
             let [note] = drawn.notes.as_slice() else {

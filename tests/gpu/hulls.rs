@@ -2,7 +2,7 @@
 //! fragment stage, tiles in compute. They draw what the same search draws from the box's sides, in
 //! every case that they take and in every case that they leave to the box.
 
-use crate::common::ways::{BOXED, STAGES, WRAPPED, Ways, apart, draw_by};
+use crate::common::ways::{STAGES, WALKED, WRAPPED, Ways, apart, draw_by};
 use crate::common::{device, draw, errors, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu::DrawPath;
@@ -29,7 +29,7 @@ pub struct Search {
 /// 38,661 of the torus from its rim; normals 0.98 degrees rms on the many creases of the discs from
 /// below (fragments), 0.54 elsewhere. The bound on pixels is for other devices' roundings.
 pub const EXACT: Search = Search {
-    solver: Solver::Hull,
+    solver: Solver::Exact,
     from_box: Solver::Quadric,
     tolerated: 0.0005,
     normals: (|spread| spread.rms, 1.0),
@@ -66,12 +66,13 @@ impl Search {
         // A map has no cells.
         let copies = scene.objects.iter().all(|o| o.placements().len() > 1);
         let ways = match (self.solver, copies) {
-            (Solver::Hull, _) => ways,
+            (Solver::Exact, _) => ways,
             (_, true) => [&[DrawPath::Tiles][..]; 2],
-            (_, false) => BOXED,
+            (_, false) => WALKED,
         };
         let from_box = Settings {
             proxy_min_pixels: u32::MAX,
+            occlusion_culling: false,
             ..settings(self.from_box, DrawStage::Fragment)
         };
         let boxes = draw(scene, &from_box);
@@ -204,8 +205,8 @@ fn eyes_anywhere() {
             scene.camera.target = DVec3::new(-0.3, 0.1, 0.45);
             let ways = match (search.solver, name, place) {
                 (_, _, "close to the surface" | "the rim" | "the box's edge") => WRAPPED,
-                (Solver::Hull, "torus", "the axis") => WRAPPED,
-                _ => BOXED,
+                (Solver::Exact, "torus", "the axis") => WRAPPED,
+                _ => WALKED,
             };
             search.assert_same(&format!("{name} from {place}"), &scene, ways);
         }
@@ -222,7 +223,7 @@ fn lists_of_every_length() {
     for distance in [1.6, 2.4, 5.0, 8.0] {
         let scene = scene_of(shapes::discs(), eye(25.0, distance));
         EXACT.assert_same(&format!("discs from {distance}"), &scene, WRAPPED);
-        let settings = settings(Solver::Hull, DrawStage::Compute);
+        let settings = settings(Solver::Exact, DrawStage::Compute);
         let frame = draw_by("discs", &scene, &settings, WRAPPED);
         for (steps, _) in frame
             .steps
@@ -253,10 +254,10 @@ fn all_that_the_box_draws() {
     let mut replicas = scene_of(shapes::vase(), eye(25.0, 2.4));
     replicas.objects[0].repeat = [2, 2, 2];
     EXACT.assert_same("cut by its box", &cut, WRAPPED);
-    EXACT.assert_same("replicas", &replicas, BOXED);
+    EXACT.assert_same("replicas", &replicas, WALKED);
     let mut all: Vec<(&str, Scene, Ways)> = Vec::new();
     all.push(("cut by its box", cut, WRAPPED));
-    all.push(("replicas", replicas, BOXED));
+    all.push(("replicas", replicas, WALKED));
     let mut flat = scene_of(shapes::jewel(), eye(35.0, 2.6));
     flat.objects[0].placement = placement([0.1, 0.2, 0.3], [0.7, -0.4, 1.1], [1.5, 0.5, 0.8]);
     all.push(("flattened", flat, WRAPPED));
@@ -292,7 +293,7 @@ fn all_that_the_box_draws() {
     let points = [[0.0, -0.5], [0.4, -0.5], [0.4, -0.05], [0.0, -0.05]];
     let mut below = scene_of(Profile::polygon(&points, 0.5).unwrap(), eye(25.0, 2.2));
     below.objects[0].offset.extend = 0.15;
-    all.push(("from below its box", below, BOXED));
+    all.push(("from below its box", below, WALKED));
     for (name, scene, ways) in all {
         LIVE.assert_same(name, &scene, ways);
     }
@@ -317,13 +318,19 @@ fn where_there_is_none() {
             map_format: MapFormat::Rgba8,
             ..settings(Solver::Live, stage)
         };
-        draw_by("8 bits", &scene, &papers, BOXED);
-        for solver in [Solver::Live, Solver::Hull] {
+        draw_by("8 bits", &scene, &papers, WALKED);
+        for solver in [Solver::Live, Solver::Exact] {
             let boxes = Settings {
                 proxy_min_pixels: u32::MAX,
+                occlusion_culling: false,
                 ..settings(solver, stage)
             };
-            draw_by("boxes", &scene, &boxes, BOXED);
+            draw_by(
+                "boxes",
+                &scene,
+                &boxes,
+                [&[DrawPath::Box], &[DrawPath::Tiles]],
+            );
         }
     }
     let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();
@@ -332,7 +339,7 @@ fn where_there_is_none() {
         proxy_min_pixels: Settings::exact().proxy_min_pixels,
         ..settings(Solver::Live, DrawStage::Fragment)
     };
-    draw_by("small", &small, &small_enough, BOXED);
+    draw_by("small", &small, &small_enough, WALKED);
 }
 
 /// The comparison notices a solid that is a fiftieth larger, and rays that begin a twentieth of the
@@ -345,13 +352,14 @@ fn a_wrong_solid_is_noticed() {
         other.objects[0].offset.extend = extend;
         let from_box = Settings {
             proxy_min_pixels: u32::MAX,
+            occlusion_culling: false,
             ..settings(search.from_box, DrawStage::Fragment)
         };
         let hull = settings(search.solver, DrawStage::Fragment);
-        let ways = if search.solver == Solver::Hull {
+        let ways = if search.solver == Solver::Exact {
             WRAPPED
         } else {
-            BOXED
+            WALKED
         };
         let frame = draw_by("another", &other, &hull, ways);
         let (hits, edge, far) = apart(&draw(&scene, &from_box), &frame);

@@ -14,6 +14,8 @@ mod bumps;
 #[allow(unsafe_code)]
 mod calls;
 mod clip;
+#[allow(unsafe_code)]
+mod commands;
 mod crowds;
 mod embedding;
 mod embedding_crowds;
@@ -29,6 +31,8 @@ mod hulls;
 mod limits;
 mod memory_types;
 mod offsets;
+#[allow(unsafe_code)]
+mod plans;
 mod proxy_hulls;
 mod refusals;
 mod replicas;

@@ -2,7 +2,7 @@
 //! faces of the box, and the truth itself.
 
 use super::hulls::{EXACT, settings};
-use crate::common::ways::{BOXED, STAGES, WRAPPED, draw_by};
+use crate::common::ways::{STAGES, WALKED, WRAPPED, draw_by};
 use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu::{DrawPath, Offscreen};
@@ -49,9 +49,9 @@ fn a_crowd_in_one_depth_buffer() {
         }
         crowd.objects.push(object);
         let [fragment, compute] = [
-            [DrawPath::Hull, DrawPath::Tiles],
-            [DrawPath::Hull, DrawPath::Tiles],
-            [DrawPath::Box, DrawPath::Tiles],
+            [DrawPath::Cells, DrawPath::Tiles],
+            [DrawPath::Cells, DrawPath::Tiles],
+            [DrawPath::Tiles, DrawPath::Tiles],
         ][n % 3];
         ways[0].push(fragment);
         ways[1].push(compute);
@@ -88,7 +88,7 @@ fn copies_of_a_lone_object() {
 
     // The depths of a frame are none of the next one's business.
     for stage in STAGES {
-        let settings = settings(Solver::Hull, stage);
+        let settings = settings(Solver::Exact, stage);
         let mut renderer = Offscreen::new(device(), &few, &settings).unwrap();
         renderer.draw().unwrap();
         let mut far = few.clone();
@@ -112,7 +112,7 @@ fn the_reference_is_met() {
     for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
         let scene = scene_of(profile, eye(25.0, 2.2));
         for stage in STAGES {
-            let wanted = settings(Solver::Hull, stage);
+            let wanted = settings(Solver::Exact, stage);
             let truth = reference(&scene, &wanted);
             let frame = draw_by(name, &scene, &wanted, WRAPPED);
             let found = errors(&truth, &frame, 512);
@@ -149,15 +149,15 @@ fn faces_of_the_box_itself() {
         let truth = reference(&scene, &settings(Solver::Quadric, DrawStage::Fragment));
         for (solver, stage) in [
             (Solver::Quadric, DrawStage::Fragment),
-            (Solver::Hull, DrawStage::Fragment),
-            (Solver::Hull, DrawStage::Compute),
+            (Solver::Exact, DrawStage::Fragment),
+            (Solver::Exact, DrawStage::Compute),
         ] {
             let settings = settings(solver, stage);
             let name = format!("{distance} away, scale {flat}: {solver}");
-            let ways = if solver == Solver::Hull {
+            let ways = if solver == Solver::Exact {
                 WRAPPED
             } else {
-                BOXED
+                WALKED
             };
             let frame = draw_by(&name, &scene, &settings, ways);
             let found = errors(&truth, &frame, 512);

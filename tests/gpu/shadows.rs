@@ -149,7 +149,7 @@ fn every_column_of_a_tile_is_lit_alike() {
     for shadow in [Shadow::Soft, Shadow::Hard] {
         scene.shadow = shadow;
         for (width, height) in [(161, 123), (203, 77)] {
-            for solver in [CIRCLE, Solver::Live, Solver::Quadric, Solver::Hull] {
+            for solver in [CIRCLE, Solver::Live, Solver::Quadric, Solver::Exact] {
                 let fragment = Settings {
                     width,
                     height,

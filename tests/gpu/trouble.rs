@@ -64,7 +64,7 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
     let host = open();
     let raw = layer.device(&host.instance, &host.device);
     for (stage, solver) in [
-        (DrawStage::Fragment, Solver::Hull),
+        (DrawStage::Fragment, Solver::Exact),
         (DrawStage::Compute, Solver::Live),
     ] {
         let settings = Settings {
@@ -333,9 +333,12 @@ fn a_device_without_what_is_optional_draws_the_same() {
             let times = drawn.draw().unwrap();
             assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
             if mask.varyings && stage == DrawStage::Fragment {
-                // Hulls hand over more than that: boxes are drawn, and the same solids are seen.
+                // Cells pass more than that: tiles are drawn, and the same solids are seen.
                 let paths = drawn.draw_paths();
-                assert!(paths.iter().all(|path| *path == DrawPath::Box), "{paths:?}");
+                assert!(
+                    paths.iter().all(|path| *path == DrawPath::Tiles),
+                    "{paths:?}"
+                );
                 let frame = drawn.read().unwrap();
                 let differ = |&i: &usize| frame.hits(i) != wanted.hits(i);
                 let differ = (0..frame.pixels()).filter(differ).count();

@@ -37,13 +37,13 @@ fn vase() -> Scene {
 fn what_is_refused_changes_nothing() {
     type Case = (&'static str, Solver, fn(&mut Scene));
     let cases: [Case; 4] = [
-        ("up", Solver::Hull, |s| {
+        ("up", Solver::Exact, |s| {
             s.camera.up = s.camera.target - s.camera.eye;
         }),
-        ("lights", Solver::Hull, |s| {
+        ("lights", Solver::Exact, |s| {
             s.lights = vec![s.lights[0]; 9];
         }),
-        ("NaN", Solver::Hull, |s| {
+        ("NaN", Solver::Exact, |s| {
             s.objects.push(s.objects[0].clone());
             s.objects[1].offset.extend = f64::NAN;
         }),
@@ -160,8 +160,8 @@ fn three() -> Scene {
 #[test]
 fn only_what_has_changed_is_cut() {
     for (solver, stage) in [
-        (Solver::Hull, DrawStage::Fragment),
-        (Solver::Hull, DrawStage::Compute),
+        (Solver::Exact, DrawStage::Fragment),
+        (Solver::Exact, DrawStage::Compute),
         (Solver::Quadric, DrawStage::Fragment),
         (CONE, DrawStage::Fragment),
         (Solver::Live, DrawStage::Fragment),
@@ -181,9 +181,9 @@ fn only_what_has_changed_is_cut() {
                 "{solver}, {stage:?}: {what}"
             );
             let way = match (solver, stage) {
-                (Solver::Hull, DrawStage::Fragment) => DrawPath::Hull,
+                (Solver::Exact, DrawStage::Fragment) => DrawPath::Cells,
                 (_, DrawStage::Compute) => DrawPath::Tiles,
-                _ => DrawPath::Box,
+                _ => DrawPath::Tiles,
             };
             assert_eq!(renderer.draw_paths(), [way; 3], "{solver}: {what}");
             let fresh = draw(scene, &settings);
@@ -245,7 +245,7 @@ fn no_update_compiles_a_pipeline() {
         }),
     ];
     for stage in STAGES {
-        for solver in [Solver::Hull, Solver::Quadric, Solver::Live, CIRCLE] {
+        for solver in [Solver::Exact, Solver::Quadric, Solver::Live, CIRCLE] {
             let settings = Settings {
                 solver,
                 proxy_min_pixels: 150,
@@ -272,11 +272,11 @@ fn no_update_compiles_a_pipeline() {
 #[test]
 fn no_cut_compiles_a_pipeline() {
     let device = Device::open_validated(None).unwrap();
-    for (stage, path) in STAGES.into_iter().zip([DrawPath::Hull, DrawPath::Tiles]) {
+    for (stage, path) in STAGES.into_iter().zip([DrawPath::Cells, DrawPath::Tiles]) {
         let mut scene = vase();
         scene.objects[0].clip = Clip::Box;
         let settings = Settings {
-            solver: Solver::Hull,
+            solver: Solver::Exact,
             proxy_min_pixels: 0,
             ..settings(stage)
         };
@@ -316,7 +316,7 @@ fn pipelines_of_large_tables_are_compiled() {
         .flat_map(|stage| [(&goblet, 16_384, stage), (&large, 65_536, stage)])
     {
         let settings = Settings {
-            solver: Solver::Hull,
+            solver: Solver::Exact,
             tolerance: revmap::settings::Tolerance::EXACT,
             ..settings(stage)
         };

@@ -23,7 +23,7 @@ pub enum RevmapAxis {
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapSolver {
-    /// What this version takes where none is named: REVMAP_SOLVER_HULL.
+    /// What this version takes where none is named: REVMAP_SOLVER_EXACT.
     Default = 0,
     /// Equal steps along the ray.
     Linear = 1,
@@ -42,7 +42,7 @@ pub enum RevmapSolver {
     /// The boundary as pieces of quadrics, solved exactly.
     Quadric = 8,
     /// The same pieces, found by the rasteriser or by tiles of pixels.
-    Hull = 9,
+    Exact = 9,
 }
 
 /// Where the distances of a shape map come from.
@@ -211,7 +211,7 @@ numbers! {
     solver: RevmapSolver => Solver {
         Default => Solver::DEFAULT, Linear => LINEAR, Relief => RELIEF, Secant => SECANT,
         Circle => CIRCLE, Live => Solver::Live, Cone => CONE, Relaxed => RELAXED,
-        Quadric => Solver::Quadric, Hull => Solver::Hull,
+        Quadric => Solver::Quadric, Exact => Solver::Exact,
     }
     map_source: RevmapMapSource => Option<MapSource> {
         Default => None, Binary => Some(MapSource::Binary), Coverage => Some(MapSource::Coverage),

@@ -36,7 +36,7 @@ const TECHNIQUES: [(&str, Techniques); 2] = [
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap bench --quick --out out/bench\n  \
-    revmap bench assets/scenes/vase.toml --solver hull,live,mesh:64x128 --size 800x600,1920x1080\n  \
+    revmap bench assets/scenes/vase.toml --solver exact,live,mesh:64x128 --size 800x600,1920x1080\n  \
     revmap bench --compare results/old results/new")]
 pub struct Bench {
     #[command(flatten)]

@@ -30,7 +30,7 @@ const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 1] = {
 /// RADV_FORCE_FAMILY names the one to compile for.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
-    revmap shaders --solver hull,live\n  \
+    revmap shaders --solver exact,live\n  \
     revmap shaders --stage compute --json | jq '.shaders[] | {technique, solver, statistics}'\n  \
     RADV_FORCE_FAMILY=navi21 revmap shaders --csv > navi21.csv")]
 pub struct Shaders {

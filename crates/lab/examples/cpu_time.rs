@@ -20,12 +20,13 @@ const ROUNDS: usize = 8;
 const LEAST_MS: f64 = 60.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (mut stage, mut close) = (DrawStage::Fragment, false);
+    let (mut stage, mut close, mut counted) = (DrawStage::Fragment, false, None);
     let (mut only, mut methods, mut crowds) = (Vec::new(), Vec::new(), Vec::new());
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         match arg.as_str() {
             "--close" => close = true,
+            "--count" => counted = Some(args.next().unwrap_or_default().parse::<u32>()?),
             "--view" => only.extend(args.next()),
             "--crowd" => crowds.push(crowds::army(args.next().unwrap_or_default().parse()?)?),
             "--distant" => crowds.extend(budget::distant()?),
@@ -35,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     if methods.is_empty() {
-        methods = [Solver::Hull, Solver::Quadric, Solver::Live]
+        methods = [Solver::Exact, Solver::Quadric, Solver::Live]
             .map(Method::from)
             .to_vec();
     }
@@ -79,6 +80,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             renderer.draw()?;
             let frames = (LEAST_MS / (start.elapsed().as_secs_f64() * 1e3)).ceil() as usize;
             drawn.push((renderer, frames.clamp(4, 400), Vec::new(), Vec::new()));
+        }
+        if let Some(count) = counted {
+            let renderer = &mut drawn.last_mut().ok_or("no method")?.0;
+            for _ in 0..count {
+                renderer.draw()?;
+            }
+            continue;
         }
         for _ in 0..ROUNDS {
             for (renderer, frames, cpu, wall) in &mut drawn {

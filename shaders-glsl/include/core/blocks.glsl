@@ -1,5 +1,5 @@
-// What the CPU gives the GPU for each frame, object and instance. Mirrored by src/gpu/blocks.rs;
-// a test compares the offsets.
+// What the CPU gives the GPU for each frame, object and instance. src/gpu/resources/blocks.rs has the
+// same; a test compares the offsets.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
 #include "core/variant.glsl"

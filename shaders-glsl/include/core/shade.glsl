@@ -108,9 +108,11 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     // Shadows are so long that all lights share one loop.
     if (SHADOW == SHADOW_OFF) {
         color += blinn_phong(look, look.light_0, lit, view, s.albedo);
-        color += blinn_phong(look, look.light_1, lit, view, s.albedo);
+        if (LIGHTS > 1u) {
+            color += blinn_phong(look, look.light_1, lit, view, s.albedo);
+        }
     }
-    if (SHADOW != SHADOW_OFF || MORE_LIGHTS != 0u) {
+    if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
             color += lit_by(look, light_seen(look.rotation, n), lit, facing * turned, view, s.albedo, point);
         }

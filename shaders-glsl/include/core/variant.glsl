@@ -72,7 +72,7 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // bound on steps; 0: what
 #endif
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
-layout(constant_id = 8) const uint MORE_LIGHTS = 0u; // 1: there may be more than two
+layout(constant_id = 8) const uint LIGHTS = 3u; // most lights: 1, 2, or any number, 3
 // 1: the box cuts nothing of the solid, and the eye is outside of it. Of cells and listed patches, whose eye is always
 // outside: the first alone.
 layout(constant_id = 11) const uint OUTSIDE = 0u;

@@ -74,7 +74,7 @@ impl Output {
 
     /// Fails for what cannot be drawn into, or not by this search.
     pub(crate) fn check(&self, device: &Shared, solver: Solver) -> Result<()> {
-        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
         let in_pass = matches!(self, Self::Pass(_));
         if matches!(self.planes(), Planes::Depth { .. }) && !(in_pass && exact) {
             let message =

@@ -151,8 +151,8 @@ impl Renderer {
         new.sort_unstable_by_key(|s| Arc::as_ptr(s));
         new.dedup_by_key(|s| Arc::as_ptr(s));
         let part = match (self.settings.solver, self.is_compute()) {
-            (Solver::Hull, false) => Part::Frusta,
-            (Solver::Hull, true) => Part::Patches,
+            (Solver::Exact, false) => Part::Frusta,
+            (Solver::Exact, true) => Part::Patches,
             _ => Part::Tables,
         };
         new.par_iter().for_each(|surface| {

@@ -130,7 +130,7 @@ impl PipelineCompiler {
     #[must_use]
     pub fn pipelines(&self, look: &Look, stage: DrawStage, solver: Solver) -> Vec<PipelineChoice> {
         let depth_alone = matches!(look.planes, Planes::Depth { .. });
-        let exact = matches!(solver, Solver::Hull | Solver::Quadric | Solver::Live);
+        let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
         if (depth_alone && (stage == DrawStage::Compute || !exact))
             || (look.format == MapFormat::Rgba8 && !solver.reads_map())
         {
@@ -164,7 +164,7 @@ impl PipelineCompiler {
                 variant,
                 textures: 0,
                 surface: None,
-                takes_patches: solver == Solver::Hull,
+                takes_patches: solver == Solver::Exact,
                 shape: shape_of(object, [0.0; 4]),
                 outline: None,
             };
@@ -172,7 +172,7 @@ impl PipelineCompiler {
                 // What other values of the parameters lead to is another look's, and so are tables
                 // that are too large and many solids.
                 let own = variant.of_kind(kind);
-                let look_of = |v: &Variant| (v.more_lights, v.beveled, v.external);
+                let look_of = |v: &Variant| (v.lights, v.beveled, v.external);
                 let seen = Variant { outside, ..v }.of_kind(kind) == v;
                 let choice = PipelineChoice(v, kind);
                 if look_of(&own) == look_of(&v) && seen && !all.contains(&choice) {

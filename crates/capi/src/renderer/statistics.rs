@@ -50,7 +50,7 @@ impl Recorder {
             texture_bytes,
             drawn_not: drawn(DrawPath::Nothing),
             drawn_by_box: drawn(DrawPath::Box),
-            drawn_by_hull: drawn(DrawPath::Hull),
+            drawn_by_hull: drawn(DrawPath::Cells),
             drawn_by_tiles: drawn(DrawPath::Tiles),
             notes: number(self.renderer.notes().len()),
         }

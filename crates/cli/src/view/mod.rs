@@ -42,7 +42,7 @@ pub struct View {
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&DrawStage::NAMES))]
     stage: DrawStage,
     /// How the first hit along a ray is found
-    #[arg(long, value_name = "NAME", default_value = "hull", value_parser = revmap_searches::named)]
+    #[arg(long, value_name = "NAME", default_value = "exact", value_parser = revmap_searches::named)]
     solver: Solver,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact
     #[arg(long, value_name = "PIXELS", default_value = "0.25", value_parser = super::options::tolerance)]

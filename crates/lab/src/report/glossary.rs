@@ -18,7 +18,7 @@ pub fn meaning(method: Method) -> &'static str {
         Method::Search(Solver::Quadric) => {
             "no map: the outline as quadric patches, solved exactly, found by a tree"
         }
-        Method::Search(Solver::Hull) => {
+        Method::Search(Solver::Exact) => {
             "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
         }
         Method::MeshLevels => {

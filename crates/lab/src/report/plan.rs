@@ -223,14 +223,14 @@ pub const USUAL: [Method; 5] = [
     Method::Search(CONE),
     Method::Search(Solver::Live),
     Method::Search(Solver::Quadric),
-    Method::Search(Solver::Hull),
+    Method::Search(Solver::Exact),
 ];
 
 /// The searches of a look: the RBM baseline is there anyhow.
 pub const FEW: [Method; 3] = [
     Method::Search(Solver::Live),
     Method::Search(Solver::Quadric),
-    Method::Search(Solver::Hull),
+    Method::Search(Solver::Exact),
 ];
 
 /// The tessellations that are measured where none is named, segments and rings: one that a game

@@ -25,7 +25,7 @@ fn search(method: Method) -> Style {
         },
         Method::Search(Solver::Live) => (color::NAVY, Marker::Up, Dash::DashDot),
         Method::Search(Solver::Quadric) => (color::VIOLET, Marker::Down, Dash::Long),
-        Method::Search(Solver::Hull) => (color::ORANGE, Marker::Disk, Dash::Solid),
+        Method::Search(Solver::Exact) => (color::ORANGE, Marker::Disk, Dash::Solid),
         Method::MeshLevels => (color::BLUE, Marker::Cross, Dash::Long),
         Method::Mesh { .. } => (color::BLUE, Marker::Square, Dash::Solid),
         Method::Floor => (color::BLACK, Marker::Plus, Dash::Solid),

@@ -152,7 +152,7 @@ mod tests {
             }
         };
         let ours = MethodSettings {
-            method: Method::Search(Solver::Hull),
+            method: Method::Search(Solver::Exact),
             ..MethodSettings::default()
         };
         [

@@ -29,7 +29,7 @@ fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Fra
 fn is_first_possible_point(scene: &Scene) {
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let floor = drawn(scene, Method::Floor, stage, Planes::All);
-        let found = drawn(scene, Solver::Hull.into(), stage, Planes::All);
+        let found = drawn(scene, Solver::Exact.into(), stage, Planes::All);
         let (mut nearer, mut farther) = (0, 0);
         for (k, (first, hit)) in floor.distance.iter().zip(&found.distance).enumerate() {
             assert!(

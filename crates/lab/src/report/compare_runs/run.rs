@@ -4,6 +4,7 @@ use crate::report::row::{COLUMNS, CONTRACT};
 use crate::report::stats;
 use crate::report::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap::settings::Solver;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -26,7 +27,7 @@ const BASELINE: [(&str, &[&str]); 4] = [
 impl Run {
     /// Reads the folder of a run.
     pub(super) fn load(folder: &Path) -> Result<Self> {
-        let results = Table::load(&folder.join("results.csv"))?;
+        let mut results = Table::load(&folder.join("results.csv"))?;
         // Later versions may add columns.
         if !results.header.starts_with(&CONTRACT.map(str::to_owned)) {
             return Err(Error::new(
@@ -34,6 +35,13 @@ impl Run {
                 "has other columns than this version writes; measure again",
             )
             .in_file(folder.join("results.csv")));
+        }
+        let solver = results.column("solver")?;
+        for record in &mut results.records {
+            // Its name in runs of earlier versions.
+            if record[solver] == "hull" {
+                Solver::Exact.name().clone_into(&mut record[solver]);
+            }
         }
         let raw_file = folder.join("raw.csv");
         let raw = Table::load(&raw_file)?;

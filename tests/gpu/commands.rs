@@ -1,0 +1,201 @@
+//! Commands of a frame, counted between the renderer and Vulkan: they follow pipelines and sets of
+//! textures, whatever the number of objects and copies.
+
+use crate::common::host::{lent, open};
+use crate::common::{placement, scene_of, shapes};
+use crate::embedding::assert_silent;
+use ash::vk;
+use glam::DVec3;
+use revmap::gpu::{Device, HostDevice, Offscreen};
+use revmap::scene::{Object, Scene};
+use revmap::settings::{DrawStage, Planes, Settings, Tolerance};
+use std::ffi::c_void;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::SeqCst};
+
+/// Wraps commands: each counts its calls and passes them on.
+macro_rules! counted {
+    ($($command:ident($pointer:ty, $name:literal, $($parameter:ident: $of:ty),*);)*) => {
+        /// Calls of each command in one frame.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        struct Counts {
+            $($command: u32,)*
+        }
+
+        mod calls {
+            use super::*;
+            $(pub mod $command {
+                use super::*;
+                pub static REAL: AtomicUsize = AtomicUsize::new(0);
+                pub static COUNT: AtomicU32 = AtomicU32::new(0);
+
+                pub unsafe extern "system" fn call($($parameter: $of),*) {
+                    COUNT.fetch_add(1, SeqCst);
+                    // SAFETY: the driver's function of this name, with what the caller gave.
+                    unsafe {
+                        let real: $pointer = std::mem::transmute(REAL.load(SeqCst));
+                        real($($parameter),*);
+                    }
+                }
+            })*
+        }
+
+        /// What was counted since the last call.
+        fn taken() -> Counts {
+            Counts { $($command: calls::$command::COUNT.swap(0, SeqCst),)* }
+        }
+
+        /// The device with this layer above it.
+        fn layer(instance: &ash::Instance, device: &ash::Device) -> ash::Device {
+            let get = instance.fp_v1_0().get_device_proc_addr;
+            let handle = device.handle();
+            let load = |name: &std::ffi::CStr| {
+                // SAFETY: the device is live.
+                let real = unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
+                match name.to_str() {
+                    $(Ok($name) => {
+                        calls::$command::REAL.store(real, SeqCst);
+                        calls::$command::call as *const c_void
+                    })*
+                    _ => real as *const c_void,
+                }
+            };
+            // SAFETY: each wrapper takes what the function takes that it stands for.
+            unsafe { ash::Device::load_with(load, handle) }
+        }
+    };
+}
+
+counted! {
+    barriers(vk::PFN_vkCmdPipelineBarrier, "vkCmdPipelineBarrier",
+        cmd: vk::CommandBuffer, from: vk::PipelineStageFlags, to: vk::PipelineStageFlags,
+        flags: vk::DependencyFlags, count: u32, memory: *const vk::MemoryBarrier,
+        buffers: u32, of_buffers: *const vk::BufferMemoryBarrier,
+        images: u32, of_images: *const vk::ImageMemoryBarrier);
+    updates(vk::PFN_vkCmdUpdateBuffer, "vkCmdUpdateBuffer",
+        cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, size: u64, data: *const c_void);
+    fills(vk::PFN_vkCmdFillBuffer, "vkCmdFillBuffer",
+        cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, size: u64, value: u32);
+    copies(vk::PFN_vkCmdCopyBuffer, "vkCmdCopyBuffer",
+        cmd: vk::CommandBuffer, from: vk::Buffer, to: vk::Buffer, count: u32,
+        regions: *const vk::BufferCopy);
+    pipelines(vk::PFN_vkCmdBindPipeline, "vkCmdBindPipeline",
+        cmd: vk::CommandBuffer, point: vk::PipelineBindPoint, pipeline: vk::Pipeline);
+    draws(vk::PFN_vkCmdDraw, "vkCmdDraw",
+        cmd: vk::CommandBuffer, vertices: u32, instances: u32, first: u32, first_instance: u32);
+    indexed(vk::PFN_vkCmdDrawIndexed, "vkCmdDrawIndexed",
+        cmd: vk::CommandBuffer, indices: u32, instances: u32, first: u32, offset: i32,
+        first_instance: u32);
+    indirect(vk::PFN_vkCmdDrawIndexedIndirect, "vkCmdDrawIndexedIndirect",
+        cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, count: u32, stride: u32);
+    dispatches(vk::PFN_vkCmdDispatch, "vkCmdDispatch",
+        cmd: vk::CommandBuffer, x: u32, y: u32, z: u32);
+    indirect_dispatches(vk::PFN_vkCmdDispatchIndirect, "vkCmdDispatchIndirect",
+        cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64);
+}
+
+static ONE: Mutex<()> = Mutex::new(());
+
+/// Upper bound of a frame's barriers, those of the off-screen target among them.
+const MOST_BARRIERS: u32 = 6;
+
+/// On a square field that a camera above looks at: `copies` of each of `objects` solids that look
+/// alike and differ in size.
+fn field(objects: u32, copies: u32) -> Scene {
+    let mut scene = scene_of(shapes::vase(), DVec3::new(9.0, 2.0, 9.0));
+    scene.camera.target = DVec3::ZERO;
+    let side = f64::from(objects * copies).sqrt().ceil() as u32;
+    let place = |n: u32| {
+        let at = |k: u32| 8.0 * (f64::from(k) + 0.5) / f64::from(side) - 4.0;
+        placement(
+            [at(n % side), at(n / side), 0.0],
+            [0.0; 3],
+            [4.0 / f64::from(side); 3],
+        )
+    };
+    scene.objects = (0..objects)
+        .map(|n| {
+            let profile = shapes::column_of(0.3 + 0.1 * f64::from(n) / f64::from(objects));
+            let mut object = Object::new(format!("solid {n}"), Arc::new(profile));
+            if copies == 1 {
+                object.placement = place(n);
+            } else {
+                let all: Vec<_> = (0..copies).map(|k| place(n * copies + k)).collect();
+                object.instances = all.into();
+            }
+            object
+        })
+        .collect();
+    scene
+}
+
+/// The commands of a frame whose camera has moved, and the pixels that it shows.
+fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
+    let settings = Settings {
+        width: 160,
+        height: 120,
+        stage,
+        planes: Planes::Color,
+        tolerance: Tolerance::EXACT,
+        ..Settings::default()
+    };
+    let mut scene = scene.clone();
+    let mut drawn = Offscreen::new(device, &scene, &settings).unwrap();
+    for _ in 0..2 {
+        scene.camera.eye.x += 0.01;
+        drawn.update(&scene).unwrap();
+        drawn.draw().unwrap();
+    }
+    scene.camera.eye.x += 0.01;
+    drawn.update(&scene).unwrap();
+    taken();
+    drawn.draw().unwrap();
+    let counts = taken();
+    let frame = drawn.read().unwrap();
+    let shown = frame.color.iter().filter(|c| c[3] > 0.0).count();
+    (counts, shown)
+}
+
+#[test]
+fn commands_follow_pipelines() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let host = open();
+    let raw = layer(&host.instance, &host.device);
+    let of_host = HostDevice {
+        device: &raw,
+        ..lent(&host)
+    };
+    // SAFETY: the host's own handles; the device is dropped before the host.
+    let device = unsafe { Device::borrow(&of_host) }.unwrap();
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let of = |objects, copies| {
+            let (counts, shown) = counts(&device, &field(objects, copies), stage);
+            println!("{stage:?}, {objects} objects of {copies} copies: {counts:?}");
+            assert!(shown > 1000, "{shown} pixels");
+            assert!(counts.barriers <= MOST_BARRIERS, "{counts:?}");
+            assert_eq!((counts.updates, counts.copies), (0, 0), "{counts:?}");
+            counts
+        };
+        of(1, 1);
+        // In compute tiles of several copies are one dispatch more.
+        let several = of(64, 1);
+        assert!(several.pipelines <= 8, "{several:?}");
+        for objects in [200, 1000] {
+            assert_eq!(of(objects, 1), several);
+        }
+        let copies = of(1, 100);
+        assert_eq!(of(1, 10_000), copies);
+        // One copy more than proxies are drawn for: no cliff of commands.
+        let (below, above) = (of(1, 64), of(1, 65));
+        let all = |c: &Counts| c.barriers + c.pipelines + c.indirect + c.dispatches;
+        assert!(
+            all(&below).abs_diff(all(&above)) <= 4,
+            "{below:?}, {above:?}"
+        );
+    }
+    drop(device);
+    assert_silent(&host);
+}
