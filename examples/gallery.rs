@@ -3,8 +3,12 @@
 //!
 //! Each scene of assets/gallery/ becomes one picture. Pixels are the mean light of 3 x 3 rays. The
 //! line `# size WIDTHxHEIGHT`, with which a scene begins, says how large; each line `# beside
-//! KEY=VALUE` adds the same scene once more to the right, with that key set.
+//! KEY=VALUE` adds the same scene once more to the right, with that key set. Two pictures have no
+//! scene: `maps`, and `method` of the README.
 #![allow(clippy::expect_used)]
+
+#[path = "gallery/method.rs"]
+mod method;
 
 use image::{GrayImage, Luma, RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};
@@ -43,6 +47,9 @@ fn main() -> Result<()> {
     }
     if takes("maps") {
         maps(root, &pictures.join("maps.png"))?;
+    }
+    if takes("method") {
+        method::draw(&device, root, &pictures.join("method.png"))?;
     }
     Ok(())
 }
