@@ -1,4 +1,5 @@
-//! Simple scenes stay simple: the smallest scene and the smallest program of the README.
+//! Simple scenes stay simple: the smallest scene of the README and the smallest program of
+//! docs/embedding.md.
 
 use crate::common::draw;
 use revmap::settings::Settings;
@@ -8,6 +9,7 @@ use revmap::settings::Settings;
 mod program;
 
 const README: &str = include_str!("../../README.md");
+const EMBEDDING: &str = include_str!("../../docs/embedding.md");
 
 #[test]
 fn the_smallest_scene_is_three_lines() {
@@ -24,7 +26,7 @@ fn the_smallest_program_is_under_thirty_lines() {
     let text = include_str!("../../examples/smallest.rs");
     assert!(text.lines().count() < 30);
     let code = text.split_once('\n').map_or("", |(_, code)| code);
-    assert!(README.contains(code.trim()));
+    assert!(EMBEDDING.contains(code.trim()));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("pawn.png");
     program::picture(file.to_str().unwrap()).unwrap();
