@@ -86,8 +86,8 @@ void main()
     }
     bool shows = present && runs.any && outer.x <= outer.y;
     if (shows && cut) {
-        append(LIST_LENGTHS, record, 0u);
+        append(LIST_LENGTHS, uvec2(place, number), 0u);
     } else if (shows) {
-        append_runs(record, runs);
+        append_runs(uvec2(place, number), runs);
     }
 }

@@ -5,10 +5,13 @@
 
 void main()
 {
-    share_patches(share_tile());
+    share_record();
+    barrier();
+    share_instance();
+    share_patches();
     barrier();
     begin_tile();
-    uvec2 pixel = tile_corner + gl_LocalInvocationID.xy;
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     bool found = search_listed(pixel, nearest);
     store_tile(pixel, found, nearest);

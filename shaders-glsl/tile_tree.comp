@@ -6,10 +6,12 @@
 
 void main()
 {
-    share_tile();
+    share_record();
+    barrier();
+    share_instance();
     barrier();
     begin_tile();
-    uvec2 pixel = tile_corner + gl_LocalInvocationID.xy;
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     nearest.instance = 0u;
     bool found = trace(ray_origin(tile_rays, pixel), ray_direction(tile_rays, pixel), tile_rays.base, nearest.hit);

@@ -1,9 +1,7 @@
-//! Revolution mapping on Vulkan: solids of revolution drawn from one 2D map, without a mesh.
+//! Solids of revolution on Vulkan, drawn from a flat outline without a stored mesh.
 //!
-//! A flat **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`.
-//! Nothing is tessellated: a **shape box** is rasterised (or its rectangle of the screen handed to
-//! a compute shader), and in each pixel the ray `o + t v` is followed in the half-plane, where it
-//! is the branch of a hyperbola
+//! A **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`. Each pixel
+//! follows its ray `o + t v` in that half-plane, where the ray is the branch of a hyperbola
 //!
 //! ```text
 //! r(t) = sqrt(a t^2 + 2 b t + c),   z(t) = o_z + t v_z,     a = v_x^2 + v_y^2,  b = o_x v_x + o_y v_y,  c = o_x^2 + o_y^2,
@@ -12,11 +10,13 @@
 //! until it meets the surface
 //!
 //! ```text
-//! F(r, z) = d(r, z) - w(z) = 0,     w = e + b min(1 - z, c),
+//! F(r, z) = d(r, z) - w(z) = 0,     w = e + b min(1 - z, c).
 //! ```
 //!
-//! with `d` the signed distance to the profile's boundary and `e`, `b`, `c` the extension, bevel
-//! and chamfer. All three may change from frame to frame; no map is computed again.
+//! `d` is the signed distance to the profile's boundary; `e`, `b` and `c` are the extension, bevel
+//! and chamfer, which may change from frame to frame. The default search solves the boundary as
+//! quadrics of revolution and reads no map; [`Solver::Live`](settings::Solver::Live) steps along a
+//! map of `d`.
 //!
 //! The method, its extensions and its choice of projections are those of
 //!
@@ -33,21 +33,21 @@
 //!   *Revolution-bump mapping with texture function adjustment according to the geometry of the
 //!   revolved object*. Journal of Graphic Engineering and Design, 2025.
 //!
-//! The last two are "the papers" of this documentation. Their search is
-//! `circle` of the crate `revmap-searches`; with 20 steps over the distances of a binary image
-//! in 8 bits it is the **RBM baseline** (revolution-bump mapping) of reports.
+//! The last two are "the papers" of this documentation. Their search is `circle` of the crate
+//! `revmap-searches`. With 20 steps over the distances of a binary image in 8 bits it is the **RBM
+//! baseline** (revolution-bump mapping) of reports.
 //!
 //! # What holds
 //!
-//! * Both stages call one tracer: on a device without fused rounding (llvmpipe) their frames are
-//!   equal to the last bit, but for those of the default, which each stage finds in its own way.
-//! * The default search, [`Solver::Exact`](settings::Solver::Exact), meets the exact boundary: what
-//!   it draws differs from the reference in double precision (the crate `revmap-reference`) by
-//!   hundredths of a texel of a map of 512 rows.
-//! * A solid that reaches past its box is cut by the box, and the cut is closed; a camera may stand
+//! * Both stages call one tracer. On a device without fused rounding (llvmpipe) their frames are
+//!   equal to the last bit, except for those of the default, which each stage finds in its own way.
+//! * The default search, [`Solver::Exact`](settings::Solver::Exact), meets the exact boundary. It
+//!   differs from the reference in double precision (the crate `revmap-reference`) by hundredths of
+//!   a texel of a map of 512 rows.
+//! * A solid that reaches past its box is cut by the box, and the cut is closed. A camera may stand
 //!   anywhere.
-//! * What fails is an [`Error`] that names stage, file, key and remedy. Nothing panics, no file is
-//!   left half written.
+//! * A failure is an [`Error`] that names its kind, file, key and remedy. Nothing panics, and no
+//!   file is left half written.
 //!
 //! # A picture
 //!
@@ -117,6 +117,8 @@
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`search`] | searches that other crates bring, for comparison |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | `solid` | all that is made from one outline under an offset, without Vulkan |
+//! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
 //! | [`frame`] | the planes of a picture, PNG and EXR |

@@ -94,6 +94,14 @@ impl Solver {
         matches!(self, Self::Other(search) if matches!(search.reads, Reads::Table(_)))
     }
 
+    /// The search of another crate that it is.
+    pub(crate) const fn external(self) -> Option<&'static Search> {
+        match self {
+            Self::Other(search) => Some(search),
+            _ => None,
+        }
+    }
+
     /// Whether it reads the shape map. The others search tables made from the boundary itself.
     #[must_use]
     pub const fn reads_map(self) -> bool {

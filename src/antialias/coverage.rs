@@ -103,11 +103,8 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
         let turned = |p: DVec2| if steep { p.yx() } else { p };
         let (a, b) = if turned(way).x < 0.0 { (b, a) } else { (a, b) };
         let (from, to) = (turned(a.at), turned(b.at));
-        let (length, width) = if steep {
-            (self.height, self.width)
-        } else {
-            (self.width, self.height)
-        };
+        let sides = [[self.width, self.height], [self.height, self.width]];
+        let [length, width] = sides[usize::from(steep)];
         // Pixels whose middle lies between the ends: of lines that join each once.
         let first = (from.x - 0.5).ceil().max(0.0);
         let last = (to.x - 0.5).ceil().min(f64::from(length));
@@ -123,11 +120,7 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
                 continue;
             }
             let number = |across: u32| {
-                let (x, y) = if steep {
-                    (across, along)
-                } else {
-                    (along, across)
-                };
+                let [x, y] = [[along, across], [across, along]][usize::from(steep)];
                 y * self.width + x
             };
             let (mut low, mut rest) = (across as u32, across.fract());

@@ -1,4 +1,4 @@
-//! What a renderer keeps of an object: its values, and what is prepared from them.
+//! A renderer's record of an object: its values, and the resources that are prepared from them.
 
 use crate::gpu::resources::block::{note_growth, solid_block};
 use crate::gpu::resources::blocks::SolidBlock;
@@ -18,33 +18,34 @@ use std::sync::Arc;
 /// One object.
 pub(super) struct Entry {
     pub object: Object,
-    /// What was set since it was prepared last.
+    /// Values that were set since the last preparation.
     pub wanted: Option<Object>,
-    /// What is drawn in its place, in a box that has grown with the offset.
+    /// The object that is drawn in its place, in a box that has grown with the offset.
     pub grown: Option<GrownObject>,
-    /// None before the first frame, and where that failed.
+    /// `None` before the first frame, and if the first preparation failed.
     pub prepared: Option<Prepared>,
     pub instances: Range<u32>,
-    /// The renderer's version when it changed last.
+    /// The renderer's version at the last change.
     pub version: u64,
 }
 
-/// What follows from an object's values, whatever the view.
+/// Resources that follow from an object's values, whatever the view.
 pub(super) struct Prepared {
-    /// Kept, as the cache keeps nothing.
+    /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
-    /// Surfaces by level, those that views asked for; of a search on the map none.
+    /// Surfaces by level, for levels that views needed. Empty for a search on the map.
     pub levels: Vec<(u8, Arc<OffsetSurface>)>,
-    /// Whether its contour does not close, so that another search stands in.
+    /// True if the contour does not close, so that another search replaces the search of the
+    /// settings.
     pub fails: bool,
-    /// What it is drawn by, which is not always what the settings say.
+    /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
-    /// Whether cells and lists of patches may take the place of the tree.
+    /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
     pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
     pub arc: Option<Arc<ArcTexture>>,
-    /// Its map's number among those that shadows read.
+    /// The number of the object's map among the maps that shadows read.
     pub shadow_map: u32,
     pub textures: Arc<TextureSet>,
     pub variant: Variant,
@@ -72,7 +73,7 @@ impl Entry {
         self.grown.as_ref().map_or(&self.object, |g| &g.object)
     }
 
-    /// What shaders read of it, drawn by this surface; none before it is prepared.
+    /// The block that shaders read, for this surface; `None` before the object is prepared.
     pub fn block(
         &self,
         number: u32,

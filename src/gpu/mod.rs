@@ -1,8 +1,8 @@
 //! Drawing on a Vulkan device. The only module with `unsafe`.
 //!
-//! A [`Device`] is opened, or borrowed from a host. On it a [`Renderer`] holds objects and records
-//! them into any command buffer; [`Offscreen`] does so for a whole scene, submits, waits and reads
-//! the frame back.
+//! A [`Device`] is opened, or borrowed from a host. A [`Renderer`] on a device holds objects and
+//! records them into any command buffer. [`Offscreen`] does so for a whole scene, submits, waits
+//! and reads the frame back.
 #![allow(unsafe_code)]
 
 mod device;
@@ -45,12 +45,12 @@ use crate::frame::Frame;
 use crate::scene::Scene;
 use crate::settings::Settings;
 
-/// A drawn frame and what it cost.
+/// A drawn frame and its cost.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// The picture.
     pub frame: Frame,
-    /// What drawing it took, of a second frame: the first waits for the driver's compiler.
+    /// The times of a second frame; the first frame waits for the driver's compiler.
     pub times: Times,
     /// [`Renderer::map_bytes`].
     pub map_bytes: [u64; 2],
@@ -63,7 +63,7 @@ pub struct Drawn {
 /// Draws a scene once: bakes its maps, uploads, draws, reads back.
 ///
 /// # Errors
-/// Any stage's.
+/// Errors of any stage.
 pub fn draw(device: &Device, scene: &Scene, settings: &Settings) -> Result<Drawn> {
     let mut offscreen = Offscreen::new(device, scene, settings)?;
     offscreen.draw()?;

@@ -1,9 +1,9 @@
-//! Identities of objects: which renderer's, which of its entries, and which object in that entry.
+//! Identities of objects: the renderer, its entry, and the object in that entry.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// An object of one renderer, which refuses those of others. It stays the same object whatever is
-/// set, and is never another's once removed.
+/// An object of one renderer; other renderers reject the id. The id names the same object whatever
+/// is set, and no other object after the removal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ObjectId {
     pub(super) renderer: u32,
@@ -11,15 +11,15 @@ pub struct ObjectId {
     pub(super) number: u32,
 }
 
-// 64 bits hold 16 million objects at once, a million after one another in each entry, and a million
-// renderers of the process before their identities come round.
+// 64 bits hold 16 million objects at once, a million objects in turn per entry, and a million
+// renderers of the process. Identities of renderers repeat after that.
 const NUMBER_BITS: u32 = 24;
 const GENERATION_BITS: u32 = 20;
 const RENDERER_BITS: u32 = 20;
 
-/// Most entries of a renderer.
+/// Upper limit on entries of a renderer.
 pub(super) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
-/// Most objects that are one entry in turn; then it stays empty.
+/// Upper limit on objects that use one entry in turn. The entry then stays empty.
 pub(super) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
 
 impl ObjectId {
@@ -30,7 +30,7 @@ impl ObjectId {
         renderer | (self.generation as u64) << NUMBER_BITS | self.number as u64
     }
 
-    /// The id of [`ObjectId::to_bits`]. Any other number is the id of no object.
+    /// The id that [`ObjectId::to_bits`] encoded. Any other number is the id of no object.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // each part is masked
     pub const fn from_bits(bits: u64) -> Self {

@@ -1,4 +1,4 @@
-//! The objects of a renderer: they come, go and change.
+//! The objects of a renderer: added, removed and changed.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::entry::Entry;
@@ -14,9 +14,9 @@ pub(crate) struct Objects {
     renderer: u32,
     places: Vec<Place>,
     free: Vec<u32>,
-    /// Numbers and generations in the order in which objects were added, the dead among them.
+    /// Numbers and generations in the order in which objects were added, including dead ones.
     order: Vec<(u32, u32)>,
-    /// How many of those are dead.
+    /// The number of dead ones in `order`.
     dead: usize,
     instances: RangeAllocator<u32>,
 }
@@ -28,7 +28,7 @@ struct Place {
 }
 
 impl Objects {
-    /// None yet, of a renderer of this identity.
+    /// An empty list, for the renderer of this identity.
     pub fn of(renderer: u32) -> Self {
         Self {
             renderer,
@@ -40,12 +40,12 @@ impl Objects {
         }
     }
 
-    /// How many there are.
+    /// The number of objects.
     pub fn len(&self) -> usize {
         self.order.len() - self.dead
     }
 
-    /// One more than the largest number that one had.
+    /// One more than the largest number that an object has had.
     pub fn places(&self) -> usize {
         self.places.len()
     }
@@ -55,7 +55,7 @@ impl Objects {
         self.instances.initial_range().end
     }
 
-    /// All of them, with their numbers, in the order in which they were added.
+    /// All objects with their numbers, in the order in which they were added.
     pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
         self.order.iter().filter_map(|&(number, generation)| {
             let place = &self.places[number as usize];
@@ -64,22 +64,22 @@ impl Objects {
         })
     }
 
-    /// Their numbers.
+    /// The numbers of all objects, in the same order.
     pub fn numbers(&self) -> Vec<u32> {
         self.ordered().map(|(number, _)| number).collect()
     }
 
-    /// That of a number, which may be gone.
+    /// The entry of a number; `None` if it is gone.
     pub fn at(&self, number: u32) -> Option<&Entry> {
         self.places.get(number as usize)?.entry.as_ref()
     }
 
-    /// Likewise.
+    /// The mutable entry of a number; `None` if it is gone.
     pub fn at_mut(&mut self, number: u32) -> Option<&mut Entry> {
         self.places.get_mut(number as usize)?.entry.as_mut()
     }
 
-    /// Where an object stands among all.
+    /// The position of an object in the order of all objects.
     pub fn position(&self, number: u32) -> usize {
         self.ordered().position(|(n, _)| n == number).unwrap_or(0)
     }
@@ -145,8 +145,7 @@ impl Objects {
 }
 
 impl Renderer {
-    /// Adds an object; it is drawn from the next prepared frame on, after those that were there
-    /// before.
+    /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
     ///
     /// # Errors
     /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::TooLarge`] for
@@ -159,10 +158,10 @@ impl Renderer {
         Ok(id)
     }
 
-    /// Takes an object away. Frames that were prepared before keep it until they are done.
+    /// Removes an object. Frames that were prepared earlier keep it until they are done.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for an object that is not there.
+    /// [`ErrorKind::Usage`] for an object that does not exist.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.entry(id)?;
         self.objects.remove(id);
@@ -170,19 +169,19 @@ impl Renderer {
         Ok(())
     }
 
-    /// The values of an object, as set last.
+    /// The values of an object that were set last.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for an object that is not there.
+    /// [`ErrorKind::Usage`] for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
         Ok(self.entry(id)?.latest())
     }
 
-    /// Gives an object other values, all of them. What is equal costs nothing.
+    /// Sets all values of an object. Equal values cost nothing.
     ///
     /// # Errors
     /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::Usage`] for an
-    /// object that is not there.
+    /// object that does not exist.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
         let latest = self.entry(id)?.latest();
@@ -201,7 +200,7 @@ impl Renderer {
     /// Moves the surface of an object.
     ///
     /// # Errors
-    /// As [`Renderer::set`].
+    /// Same as [`Renderer::set`].
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
         if self.entry(id)?.latest().offset == offset {
@@ -214,10 +213,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Moves an object that is one copy.
+    /// Moves an object that has one copy.
     ///
     /// # Errors
-    /// As [`Renderer::set`].
+    /// Same as [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
         if self.entry(id)?.latest().placement == placement {
@@ -234,10 +233,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Gives an object other copies; none: one, at its placement.
+    /// Sets the copies of an object. An empty list gives one copy, at the object's placement.
     ///
     /// # Errors
-    /// As [`Renderer::set`].
+    /// Same as [`Renderer::set`].
     pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
@@ -270,7 +269,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// An object that is there.
+    /// Returns the entry of an object, or an error if the object does not exist.
     fn entry(&self, id: ObjectId) -> Result<&Entry> {
         let place = self.objects.places.get(id.number as usize);
         let place =
@@ -281,7 +280,7 @@ impl Renderer {
         })
     }
 
-    /// An object that is about to change.
+    /// Returns the entry of an object, marked as changed.
     fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
         self.entry(id)?;
         self.version += 1;
@@ -292,7 +291,7 @@ impl Renderer {
         Ok(entry)
     }
 
-    /// Sees to it that an object has room for so many copies.
+    /// Gives an object room for exactly this many copies.
     fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
         if self.entry(id)?.instances.len() != count {
             self.objects.resize(id.number, count)?;

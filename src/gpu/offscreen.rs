@@ -1,4 +1,4 @@
-//! Frames without a host: a target, commands, and reading back; the first user of [`Renderer`].
+//! Frames without a host: a target, commands, and reading back. The first user of [`Renderer`].
 
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
@@ -21,18 +21,18 @@ use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What one frame cost.
+/// The times of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
-    /// Milliseconds that the CPU took to take over changes and to record.
+    /// Milliseconds that the CPU took to apply changes and to record.
     pub prepare_ms: f64,
-    /// Milliseconds between GPU timestamps around the work; `None` where the device has none.
+    /// Milliseconds between GPU timestamps around the work; `None` if the device has no timestamps.
     pub gpu_ms: Option<f64>,
     /// Milliseconds from submission to completion by the wall clock.
     pub frame_ms: f64,
 }
 
-/// A scene on a device and a picture that it is drawn into.
+/// A scene on a device, and the picture that it is drawn into.
 pub struct Offscreen {
     // Vulkan objects in order of destruction; `device` last.
     renderer: Renderer,
@@ -43,51 +43,52 @@ pub struct Offscreen {
     view: View,
     background: [f32; 4],
     settings: Settings,
-    /// Whether a guest draws the scene's objects.
+    /// True if a guest draws the scene's objects.
     guests_only: bool,
-    /// What silhouettes are smoothed by, where they are.
+    /// The solids and the camera that smooth silhouettes; `None` without antialiasing.
     solids: Option<(Solids, CameraFrame)>,
-    /// From the first thing that an update changes to the last: what one that failed in between has
-    /// left must not be drawn.
+    /// True between the first and the last change of an update. The remains of an update that
+    /// failed in between must not be drawn.
     stale: bool,
     /// Null in compute.
     pass: vk::RenderPass,
     device: Arc<Shared>,
 }
 
-/// Something else that is drawn in an off-screen frame's pass, into the same depth buffer.
+/// Other content that is drawn in an off-screen frame's pass, into the same depth buffer.
 pub trait Guest {
-    /// Records what its draws need beforehand, such as copies into its buffers. It is not timed.
+    /// Records work that the draws need beforehand, such as copies into buffers. The times leave it
+    /// out.
     ///
     /// # Safety
-    /// `cmd` is recording, outside of a pass. What is recorded must stay valid until the frame was
-    /// drawn.
+    /// `cmd` is recording, outside of a pass. All recorded commands must stay valid until the frame
+    /// was drawn.
     unsafe fn prepare(&self, _cmd: vk::CommandBuffer) {}
 
-    /// Records its draws.
+    /// Records the guest's draws.
     ///
     /// # Safety
-    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], viewport and scissor set.
-    /// What is recorded must stay valid until the frame was drawn.
+    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], with viewport and scissor
+    /// set. All recorded commands must stay valid until the frame was drawn.
     unsafe fn record(&self, cmd: vk::CommandBuffer);
 }
 
 impl Offscreen {
-    /// Bakes and uploads the scene's maps and makes a target of the settings' size. Pipelines are
-    /// compiled by the first frame.
+    /// Bakes and uploads the scene's maps, and makes a target of the settings' size. The first
+    /// frame compiles the pipelines.
     ///
     /// # Errors
-    /// Of baking and of the scene's values ([`ErrorKind::Content`]); [`ErrorKind::TooLarge`] for
-    /// more pixels than the device takes; of Vulkan.
+    /// Errors of baking and of the scene's values ([`ErrorKind::Content`]); [`ErrorKind::TooLarge`]
+    /// for more pixels than the device takes; errors of Vulkan calls.
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         Self::open(device, scene, settings, false)
     }
 
-    /// As [`Offscreen::new`], but without the scene's objects, now and in every update: a guest
-    /// draws them. Camera, background, lights and the range of depths are the scene's.
+    /// Same as [`Offscreen::new`], but without the scene's objects, now and in every update: a
+    /// guest draws them. Camera, background, lights and the range of depths are the scene's.
     ///
     /// # Errors
-    /// As `new`.
+    /// Same as [`Offscreen::new`].
     pub fn for_guests(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         Self::open(device, scene, settings, true)
     }
@@ -104,7 +105,7 @@ impl Offscreen {
         }
         let size = (settings.width, settings.height);
         let view = view_of(scene, size)?;
-        // Distances are among all planes.
+        // All planes include distances.
         let keeps_depths = settings.antialias && settings.planes == Planes::Color;
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
@@ -136,8 +137,8 @@ impl Offscreen {
         };
         let mut renderer = Renderer::new(device, output, &SearchSettings::from(settings), 1)?;
         if let Some(target) = target.for_shaders() {
-            // SAFETY: the target is of this device and of the size of all views; it is dropped after
-            // the renderer.
+            // SAFETY: the target belongs to this device and has the size of all views; it is
+            // dropped after the renderer.
             unsafe { renderer.set_compute_target(target) }?;
         }
         let mut offscreen = Self {
@@ -159,12 +160,12 @@ impl Offscreen {
         Ok(offscreen)
     }
 
-    /// Takes over a scene: camera, lights, objects, more or fewer of them. Cost follows what
-    /// differs from the scene before.
+    /// Applies a scene: camera, lights, and objects, of which there may be more or fewer. The cost
+    /// follows the differences from the previous scene.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for the scene's values, profiles and maps: what was drawn before can
-    /// be drawn on. Of Vulkan: nothing is drawn before an update succeeds.
+    /// [`ErrorKind::Content`] for the scene's values, profiles and maps; the previous scene can
+    /// still be drawn. Errors of Vulkan calls; nothing is drawn then before an update succeeds.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         scene.check()?;
         let view = view_of(scene, (self.settings.width, self.settings.height))?;
@@ -183,7 +184,7 @@ impl Offscreen {
         Ok(())
     }
 
-    /// All or nothing: what fails is taken back.
+    /// Applies a whole scene or nothing: a failure undoes all changes.
     fn apply(&mut self, scene: &Scene, view: &View) -> Result<()> {
         let lighting = scene.lighting();
         let before = self.renderer.lighting().clone();
@@ -220,7 +221,7 @@ impl Offscreen {
                 self.ids.push(self.renderer.add(object)?);
             }
             self.renderer.set_lighting(&before)?;
-            // What never was drawn has nothing to go back to.
+            // A first scene has no earlier state to restore.
             if there > 0 {
                 self.renderer.plan(view)?;
             }
@@ -228,12 +229,12 @@ impl Offscreen {
         result
     }
 
-    /// Compiles every pipeline that updates can come to need, as long as no object's technique
-    /// changes ([`Renderer::prewarm`]), and has the driver run each on nothing, as some compile
+    /// Compiles every pipeline that updates may need while no object's technique changes
+    /// ([`Renderer::prewarm`]). Then runs each pipeline on nothing, because some drivers compile
     /// only then ([`Renderer::record_prewarm`]).
     ///
     /// # Errors
-    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
+    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way.
     pub fn prewarm(&mut self) -> Result<()> {
         self.check_whole()?;
         self.renderer.prewarm()?.compile()?;
@@ -261,16 +262,16 @@ impl Offscreen {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
+    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way.
     pub fn draw(&mut self) -> Result<Times> {
         self.draw_with(None)
     }
 
-    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. In
-    /// compute there is no pass, and the guest is not asked.
+    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. Compute
+    /// has no pass and does not call the guest.
     ///
     /// # Errors
-    /// As [`Offscreen::draw`].
+    /// Same as [`Offscreen::draw`].
     pub fn draw_with(&mut self, guest: Option<&dyn Guest>) -> Result<Times> {
         self.check_whole()?;
         let start = Instant::now();
@@ -285,7 +286,7 @@ impl Offscreen {
         } = self;
         let (compute, pass) = (self.settings.stage == DrawStage::Compute, self.pass);
         commands.record(|cmd| {
-            // SAFETY: `cmd` is recording, and the frame before was waited for.
+            // SAFETY: `cmd` is recording, and the previous frame was waited for.
             let frame = unsafe { renderer.prepare(cmd, 0, view)? };
             if let (Some(guest), false) = (guest, compute) {
                 // SAFETY: `cmd` is recording outside of a pass, and is waited for before this
@@ -294,7 +295,7 @@ impl Offscreen {
             }
             clock.start(cmd);
             target.clear(cmd, *background, frame.reads_depths());
-            // SAFETY: the frame was prepared above; the target was cleared, the pass is of the
+            // SAFETY: the frame was prepared above; the target was cleared, the pass has the
             // output's formats and sets viewport and scissor; the commands are waited for before
             // anything is dropped.
             unsafe {
@@ -323,8 +324,7 @@ impl Offscreen {
         })
     }
 
-    /// The pass that a guest's pipelines are made for; null in compute. It lives as long as the
-    /// device.
+    /// The pass for a guest's pipelines; null in compute. The pass lives as long as the device.
     #[must_use]
     pub fn render_pass(&self) -> vk::RenderPass {
         self.pass
@@ -339,7 +339,7 @@ impl Offscreen {
     /// The frame that was drawn last.
     ///
     /// # Errors
-    /// Of Vulkan; [`ErrorKind::Usage`] after an update that has failed half way.
+    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way.
     pub fn read(&mut self) -> Result<Frame> {
         self.check_whole()?;
         let planes = self.target.read(&self.commands)?;
@@ -350,37 +350,37 @@ impl Offscreen {
         }
     }
 
-    /// As [`Renderer::map_bytes`].
+    /// Same as [`Renderer::map_bytes`].
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         self.renderer.map_bytes()
     }
 
-    /// As [`Renderer::notes`].
+    /// Same as [`Renderer::notes`].
     #[must_use]
     pub fn notes(&self) -> &[String] {
         self.renderer.notes()
     }
 
-    /// As [`Renderer::draw_paths`], since the last update that succeeded.
+    /// Same as [`Renderer::draw_paths`], since the last update that succeeded.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
         self.renderer.draw_paths()
     }
 
-    /// As [`Renderer::object_costs`], since the last update that succeeded.
+    /// Same as [`Renderer::object_costs`], since the last update that succeeded.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
         self.renderer.object_costs()
     }
 
-    /// As [`Renderer::device_bytes`]; the target is not among them.
+    /// Same as [`Renderer::device_bytes`]; the target is not counted.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         self.renderer.device_bytes()
     }
 
-    /// As [`Renderer::rebuild_count`].
+    /// Same as [`Renderer::rebuild_count`].
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.renderer.rebuild_count()
@@ -397,18 +397,19 @@ impl Offscreen {
     }
 }
 
-/// The view of a scene's camera, with depths between which every box lies.
+/// The view of a scene's camera, with a depth range that contains every box.
 fn view_of(scene: &Scene, size: (u32, u32)) -> Result<View> {
     let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
     View::from_camera(&scene.camera, size, depth_range(scene, &camera))
 }
 
-/// Depths between which every box lies; near is never closer than a ten-thousandth of far.
+/// The depth range that contains every box; near is never closer than a ten-thousandth of far.
 fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
     let mut low = f64::INFINITY;
     let mut high: f64 = 0.0;
     for object in &scene.objects {
-        // Corners of hulls stand out a little, those of convex ones by some texels more.
+        // Corners of hulls extend a little beyond the box, corners of convex hulls by some texels
+        // more.
         let growth = Growth::of(object);
         let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
         let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);

@@ -14,8 +14,7 @@ use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::sync::Arc;
 
-/// Pipelines that a renderer may come to need. It may be sent to another thread, and compiled there
-/// while the renderer draws.
+/// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
     output: Output,
@@ -24,22 +23,22 @@ pub struct Prewarm {
 }
 
 impl Prewarm {
-    /// How many pipelines they are, compiled or not.
+    /// The number of pipelines, compiled or not.
     #[must_use]
     pub fn len(&self) -> usize {
         self.wanted.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no pipelines.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.wanted.is_empty()
     }
 
-    /// Compiles those that are not compiled yet. The renderer must live until this returns.
+    /// Compiles all pipelines that are not compiled yet. The renderer must live until this returns.
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Errors of Vulkan calls.
     pub fn compile(&self) -> Result<()> {
         let pipelines = self.device.pipelines()?;
         for &(variant, kind) in &self.wanted {
@@ -50,12 +49,12 @@ impl Prewarm {
 }
 
 impl Renderer {
-    /// Every pipeline that the objects can reach while parameters, lights, placements and the view
-    /// change. What makes others necessary is another technique: textures where there were none,
-    /// replicas, shadows, a box that cuts, copies of what was one.
+    /// Returns every pipeline that the objects can reach while parameters, lights, placements and
+    /// the view change. A change of technique makes others necessary: textures where there were
+    /// none, replicas, shadows, a box that cuts, copies of a single object.
     ///
     /// # Errors
-    /// As [`Renderer::prepare`], of what was added and set.
+    /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         let view = self.planned.as_ref().map(|p| p.view);
         self.refresh(view.as_ref())?;
@@ -72,17 +71,18 @@ impl Renderer {
     }
 
     /// Records draws of no pixel, or dispatches of no group, with every pipeline of
-    /// [`Renderer::prewarm`]. Some drivers, all software drivers among them, compile shaders at the
-    /// first draw; they do it when these commands run.
+    /// [`Renderer::prewarm`]. Some drivers, including all software drivers, compile shaders at the
+    /// first draw. Such drivers compile when these commands run.
     ///
     /// # Errors
-    /// As [`Prewarm::compile`], for pipelines that it has not compiled, and as [`Renderer::record`].
+    /// Same as [`Prewarm::compile`], for pipelines that are not compiled, and as
+    /// [`Renderer::record`].
     ///
     /// # Safety
-    /// This call does what [`Renderer::record`] does in a pass, and [`Renderer::record_compute`]
-    /// outside; in a pass it sets the scissor, too, to nothing.
+    /// In a pass the effects are those of [`Renderer::record`]; the call also sets the scissor, to
+    /// nothing. Outside of a pass the effects are those of [`Renderer::record_compute`].
     ///
-    /// The caller must see to what the same function asks for.
+    /// The caller must fulfil the duties of the same function.
     pub unsafe fn record_prewarm(
         &self,
         cmd: vk::CommandBuffer,
@@ -106,19 +106,20 @@ impl Renderer {
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
                 self.push(cmd, &Pushed::default());
-                // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as
-                // long as the caller promised.
+                // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long
+                // as the caller promised.
                 unsafe { raw.cmd_dispatch(cmd, 0, 0, 1) };
                 self.wait_for_writes(cmd);
             } else {
-                // SAFETY: likewise, within a pass.
+                // SAFETY: `cmd` is recording, within a pass; all bound objects live as long as the
+                // caller promised.
                 unsafe { raw.cmd_draw(cmd, 3, 1, 0, 0) };
             }
         }
         Ok(())
     }
 
-    /// Pipelines, each with a set of textures that it may be bound with.
+    /// Pipelines, each with a set of textures that may be bound with it.
     fn reachable(&self) -> Vec<(Variant, Kind, vk::DescriptorSet)> {
         let with = self.conditions();
         let planes = self.output.planes();
@@ -145,7 +146,7 @@ impl Renderer {
                 Some((entry, prepared.textures.set, planned))
             })
             .collect();
-        // Those that fall back, too, as their contour may close again.
+        // The list includes objects that fall back, because their contour may close again.
         let own: Vec<PlanObject> = prepared
             .iter()
             .filter_map(|(entry, _, planned)| {
@@ -172,7 +173,7 @@ impl Renderer {
                     one_solid: variant.one_solid,
                     ..object.variant
                 };
-                // Where it stands in for another search there is one form of it, the general one.
+                // The fallback has one form only, the general one.
                 let general = |(v, _): &(Variant, Kind)| v.beveled != 0;
                 reachable.extend(with.reachable(object, variant).into_iter().filter(general));
             }

@@ -1,5 +1,5 @@
-//! From an object's values to what the device needs of it. All that can fail comes first; then
-//! everything is taken over at once.
+//! Conversion of an object's values to device resources. All steps that can fail come first; then
+//! all values are applied at once.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::entry::{Entry, Prepared};
@@ -18,13 +18,13 @@ use crate::shader::{ShadowCasters, Variant};
 use crate::solid::offset_surface::OffsetSurface;
 use std::sync::Arc;
 
-/// The search of what has no surface of its own: it reads the map alone.
+/// The search for objects without a surface of their own; it reads only the map.
 pub(super) const FALLBACK: Solver = Solver::Live;
 
-/// What is known of a changed object before the device is touched.
+/// A changed object, resolved before the device is touched.
 struct Resolved {
     number: u32,
-    /// In a box that has grown.
+    /// The object in a box that has grown.
     grown: Option<GrownObject>,
     solid: Arc<Solid>,
     level: u8,
@@ -32,7 +32,7 @@ struct Resolved {
 }
 
 impl Resolved {
-    /// What is drawn of `entry`, and by how much its box has grown.
+    /// The object that is drawn for `entry`, and the growth of its box.
     fn shown<'a>(&'a self, entry: &'a Entry) -> (&'a Object, Growth) {
         let own = (entry.latest(), Growth::default());
         self.grown.as_ref().map_or(own, |g| (&g.object, g.growth))
@@ -40,9 +40,9 @@ impl Resolved {
 }
 
 impl Renderer {
-    /// Takes over what was added and set since the last call. Where something fails, what was added
-    /// since is left out until it is set again, and everything else stays as it was. `view`: the
-    /// one that is drawn next, where it is known.
+    /// Applies the values that were added and set since the last call. After an error, objects
+    /// added since that call are left out until they are set again. Everything else stays as it
+    /// was. `view` is the view of the next frame, if it is known.
     pub(super) fn refresh(&mut self, view: Option<&View>) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
@@ -59,7 +59,7 @@ impl Renderer {
         result
     }
 
-    /// Drops what was set of an entry.
+    /// Drops the values that were set for an entry.
     fn forget(&mut self, number: u32) -> Result<()> {
         let version = self.version + 1;
         let Some(entry) = self.objects.at_mut(number) else {
@@ -80,7 +80,7 @@ impl Renderer {
         let (falls_back, casters) = (self.falls_back(&resolved), self.shadow_casters());
         if falls_back != self.all_fall_back || casters != self.casters {
             (self.all_fall_back, self.casters) = (falls_back, casters);
-            // Each is drawn by another code from now on.
+            // Other code draws each object from now on.
             if changed.len() < self.objects.len() {
                 let all = self.objects.numbers();
                 return self.apply(&all, view);
@@ -147,7 +147,7 @@ impl Renderer {
             let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
             let solid = geometry.solids.get(&object.profile);
             drop(geometry);
-            // Shadows' common level is known when all are planned.
+            // The common level for shadows is known only when all objects are planned.
             let level = match view {
                 Some(view) if self.has_levels() && self.lighting.shadow == Shadow::Off => {
                     let pixels = levels::pixels_per_unit(object, growth.height(), view, false);
@@ -196,7 +196,8 @@ impl Renderer {
         Ok(resolved)
     }
 
-    /// Whether shadows force the fallback on all: a shadow's ray meets every solid by one search.
+    /// Returns true if shadows force the fallback on all objects: a shadow's ray meets every solid
+    /// by one search.
     fn falls_back(&self, resolved: &[Resolved]) -> bool {
         let fails =
             |s: &Option<Arc<OffsetSurface>>| s.as_ref().is_some_and(|s| s.failure().is_some());
@@ -210,7 +211,7 @@ impl Renderer {
             && (resolved.iter().any(|r| fails(&r.surface)) || self.objects.ordered().any(of_old))
     }
 
-    /// What shadows' rays may meet; nothing where there are none.
+    /// The properties of solids that shadow rays may meet; the default without shadows.
     fn shadow_casters(&self) -> ShadowCasters {
         if self.lighting.shadow == Shadow::Off {
             return ShadowCasters::default();
@@ -231,7 +232,7 @@ impl Renderer {
         }
     }
 
-    /// The shape map of a changed object, where it is read.
+    /// The shape map of a changed object; `None` if nothing reads it.
     fn map_of(&mut self, one: &Resolved) -> Result<Option<Arc<ShapeTexture>>> {
         let soft = self.lighting.shadow == Shadow::Soft;
         if !self.solver_of(one.surface.as_ref()).reads_map() && !soft {
@@ -254,8 +255,8 @@ impl Renderer {
             .map(Some)
     }
 
-    /// The maps that shadows read, with those of changed objects; the same list where nothing
-    /// differs.
+    /// The maps that shadows read, including maps of changed objects. Returns the present list if
+    /// nothing differs.
     fn shadow_maps_with(
         &self,
         mapped: &[(Resolved, Option<Arc<ShapeTexture>>)],
@@ -352,7 +353,8 @@ impl Renderer {
         })
     }
 
-    /// Adds which object it was to an error that has a key, or this one.
+    /// Adds the key `object.N.key` to an error without a key, and the object's file to an error
+    /// without a file.
     fn named(&self, error: Error, number: u32, key: &str) -> Error {
         let error = if error.key.is_none() {
             self.under(error.at_key(key), number)

@@ -1,8 +1,8 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! Objects come and go in `objects.rs`; what follows from their new values is in `refresh.rs`. A
-//! view's frame is planned in `planned.rs`, prepared for a slot in `prepare.rs` and recorded in
-//! `record.rs`.
+//! `objects.rs` adds, removes and changes objects; `refresh.rs` derives resources from their new
+//! values. `planned.rs` plans a view's frame, `prepare.rs` prepares it for a slot and `record.rs`
+//! records it.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::{Device, Shared};
@@ -23,10 +23,10 @@ use std::sync::Arc;
 
 /// Objects on a device, drawn into whatever the host draws into.
 ///
-/// A frame of one view is prepared in a **slot**, then recorded by the token that
-/// [`Renderer::prepare`] returns. A slot holds all that its frame reads: any number of them may be
-/// prepared before any is recorded, and what is set in between takes effect in the next frame. A
-/// host with two frames in flight and three views needs six slots.
+/// [`Renderer::prepare`] prepares a frame of one view in a **slot** and returns a token, by which
+/// the frame is recorded. A slot holds all that its frame reads. Any number of slots may be
+/// prepared before any is recorded; values set in between take effect in the next frame. A host
+/// with two frames in flight and three views needs six slots.
 ///
 /// ```text
 /// renderer.set_placement(pawn, there)?;                   // any number of changes
@@ -34,8 +34,8 @@ use std::sync::Arc;
 /// begin_rendering(cmd); renderer.record(cmd, &frame)?; .. // inside
 /// ```
 ///
-/// Neither submits, waits or compiles a pipeline that was prewarmed; memory is allocated while
-/// buffers still grow. A renderer must live until the frames that it recorded are done.
+/// Neither call submits, waits, or compiles a pipeline that was prewarmed. Memory is allocated
+/// while buffers still grow. A renderer must live until the frames that it recorded are done.
 pub struct Renderer {
     pub(super) slots: Vec<FrameSlot>,
     pub(super) objects: Objects,
@@ -44,39 +44,40 @@ pub struct Renderer {
     pub(super) uploads: Uploads,
     pub(super) geometry: Arc<Geometry>,
     pub(super) lighting: Lighting,
-    /// Entries whose values differ from what is prepared of them.
+    /// Entries whose values differ from their prepared state.
     pub(super) changed: Vec<u32>,
-    /// Whether every entry is drawn by the fallback, as one has no surface and shadows meet all by
+    /// True if the fallback draws every entry, because one has no surface and shadows meet all by
     /// one search.
     pub(super) all_fall_back: bool,
     pub(super) casters: ShadowCasters,
-    /// Counts what changes.
+    /// Counts changes.
     pub(super) version: u64,
     pub(super) planned: Option<Arc<Planned>>,
-    /// In compute, and where every plane is drawn: what shaders write to, and how often it was set.
+    /// The memory that shaders write to, in compute or for all planes, and how often it was set.
     pub(super) target: Option<(ComputeTarget, u64)>,
     pub(super) rebuilds: u64,
     pub(super) notes: Vec<String>,
     pub(super) settings: SearchSettings,
     pub(super) output: Output,
-    /// Of its pipelines, where they are not shared.
+    /// The owner of its pipelines, if they are not shared.
     pub(super) owner: u64,
-    /// What its objects' ids name, and its frames.
+    /// The identity that ids of objects and prepared frames name.
     pub(super) identity: u32,
     pub(super) device: Arc<Shared>,
 }
 
-/// Most slots.
+/// Upper limit on slots.
 const MOST_SLOTS: usize = 64;
 
 impl Renderer {
-    /// A renderer without objects, for one output, with this many slots (1 to 64): frames in flight
-    /// times views.
+    /// Makes a renderer without objects, for one output, with this many slots (1 to 64): frames in
+    /// flight times views.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for another number of slots, and for attachments that do not fit the
     /// planes; [`ErrorKind::Unsupported`] for formats and samples that the device does not draw
-    /// into, and for all planes in a pass without `fragmentStoresAndAtomics`; of Vulkan.
+    /// into, and for all planes in a pass without `fragmentStoresAndAtomics`; errors of Vulkan
+    /// calls.
     pub fn new(
         device: &Device,
         output: Output,
@@ -118,13 +119,13 @@ impl Renderer {
         })
     }
 
-    /// How many objects there are.
+    /// The number of objects.
     #[must_use]
     pub fn object_count(&self) -> usize {
         self.objects.len()
     }
 
-    /// What was done in another way than the settings say, and why; each thing once.
+    /// Notes on each thing that was done in another way than the settings say, and why; each once.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -136,23 +137,23 @@ impl Renderer {
         &self.lighting
     }
 
-    /// How each object was drawn in the last planned frame, in order.
+    /// The draw path of each object in the last planned frame, in order.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
         let planned = self.planned.as_ref();
         planned.map_or_else(Vec::new, |p| p.plan.paths.clone())
     }
 
-    /// How many surfaces were made: one for each profile under each offset that no object had in
-    /// the frame before. A camera that moves makes those of levels that it asks for the first time;
-    /// with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT) none. Searches on the map never
-    /// do.
+    /// The number of surfaces that were made: one for each profile under each offset that no object
+    /// had in the previous frame. A moving camera makes surfaces of levels that it needs for the
+    /// first time; with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT) it makes none.
+    /// Searches on the map never make any.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.rebuilds
     }
 
-    /// Bytes that maps take on the device: shape maps with tables of lengths, and colour and
+    /// Bytes of maps on the device: first shape maps with tables of lengths, then colour and
     /// displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
@@ -173,18 +174,18 @@ impl Renderer {
         [shapes, self.textures.bytes()]
     }
 
-    /// Sets what compute writes to, from the next prepared frame on.
+    /// Sets the memory that compute writes to, from the next prepared frame on.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for null handles, another number of images than [`ComputeTarget`] says,
-    /// and an output without a target.
+    /// [`ErrorKind::Usage`] for null handles, for another number of images than [`ComputeTarget`]
+    /// says, and for an output without a target.
     ///
     /// # Safety
-    /// This call keeps the handles; [`Renderer::prepare`] binds them.
+    /// The call keeps the handles; [`Renderer::prepare`] binds them.
     ///
-    /// The caller must see to it that
-    /// * they are of this device, as [`ComputeTarget`] describes them, and large enough for every
-    ///   view's viewport, which begins at 0;
+    /// The caller must ensure that
+    /// * the handles are of this device, as [`ComputeTarget`] describes them, and large enough for
+    ///   every view's viewport, which begins at 0;
     /// * they live until another target is set and the frames that were recorded before are done.
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) -> Result<()> {
         self.output.check_target(Some(&target))?;

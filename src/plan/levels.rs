@@ -1,6 +1,6 @@
-//! Levels of a surface: the same boundary fitted at tolerances that double from level to level. The
-//! finest, number 0, is the exact one. Which of them an object is drawn by follows from the view
-//! alone, so that a picture does not depend on the frames before it.
+//! Levels of a surface: the same boundary fitted at tolerances that double from level to level.
+//! Level 0, the finest, is exact. The level of an object depends only on the view, so a picture
+//! does not depend on earlier frames.
 
 use super::tiles::{Cylinder, Projector};
 use super::view::View;
@@ -14,8 +14,8 @@ use std::f64::consts::SQRT_2;
 pub(crate) const COARSEST: u8 = 12;
 
 /// Pixels of tolerance for one pixel that the surface moves. A ray that meets the surface at an
-/// angle with the cosine `c` is off by `1 / c` times what the surface moves. Over eight solids the
-/// 99.9th percentile of that is 7 to 15.
+/// angle with the cosine `c` is off by `1 / c` times that movement. Over eight solids, the 99.9th
+/// percentile of this factor is 7 to 15.
 pub(crate) const GRAZING: f64 = 16.0;
 
 /// Largest distance between the patches of a level and the exact contour, in units of the profile's
@@ -24,8 +24,8 @@ pub(crate) fn bound(level: u8) -> f64 {
     FitOptions::default().tolerance * f64::from(1u32 << level)
 }
 
-/// The coarsest level that `tolerance` allows an object of which `pixels` are a unit's size where
-/// it is nearest.
+/// The coarsest level that `tolerance` allows. `pixels`: length of one object unit on the screen
+/// where the object is nearest.
 pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
     let allowed = tolerance.pixels() / GRAZING;
     (1..=COARSEST)
@@ -34,11 +34,11 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
         .unwrap_or(0)
 }
 
-/// The most pixels that one unit of an object can take, over the copies that lie in front of the
-/// eye; infinite where one may reach the eye. `height`: of the box in units of the profile's.
-/// `all`: also copies that are beside the picture, whose shadows may be in it.
+/// The most pixels that one unit of an object covers, over the copies in front of the eye. Infinite
+/// if a copy may reach the eye. `height`: height of the box in units of the profile's. `all`:
+/// includes copies outside of the picture, whose shadows may be in it.
 pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
-    // Off the middle of the picture a length across the ray covers more pixels.
+    // A length across the ray covers more pixels away from the middle of the picture.
     let stretch = if view.parallel {
         1.0
     } else {
@@ -61,7 +61,7 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
         } else if view.parallel {
             scale / pixel
         } else {
-            // What the near plane cuts is nearest there.
+            // A copy that the near plane cuts is nearest at that plane.
             scale * stretch / (nearest.max(view.near) * pixel)
         }
     };
@@ -91,9 +91,9 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
     -least / height
 }
 
-/// Which copies may be in the picture.
+/// Selects the copies that may be in the picture.
 struct Visible {
-    /// None where all are taken to be.
+    /// None if all copies count as visible.
     projector: Option<Projector>,
     shape: Cylinder,
 }
@@ -118,7 +118,7 @@ impl Visible {
         self.projector.as_ref().is_none_or(|f| seen(f).is_some())
     }
 
-    /// Whether some of a cluster's copies may.
+    /// True if the picture may show a copy of the cluster.
     fn may_show_any(&self, cluster: &Cluster) -> bool {
         let seen = |projector: &Projector| projector.cluster_bounds(cluster, &self.shape);
         self.projector.as_ref().is_none_or(|f| seen(f).is_some())
@@ -172,7 +172,7 @@ mod tests {
             0.0,
             "behind the eye"
         );
-        // Beside the picture, and around the eye's plane but below the picture.
+        // Outside of the picture; then across the eye's plane, but below the picture.
         for beside in [DVec3::new(0.0, 40.0, 0.0), DVec3::new(20.0, 0.0, -9.0)] {
             object.placement.position = beside;
             assert!(pixels_per_unit(&object, 1.0, &view, true) > 0.0);

@@ -1,9 +1,9 @@
-//! What a frame draws, as plain data: from a view, objects and limits to a [`FramePlan`]. No module
-//! here speaks Vulkan, and nothing here can fail.
+//! The content of a frame as plain data: a view, objects and limits give a [`FramePlan`]. No module
+//! here uses Vulkan, and no function here fails.
 //!
-//! Fragments draw proxies, [`proxy`], or tiles where copies are many; compute draws tiles,
-//! [`tiles`]. Objects that share a pipeline and a set of textures share draws and dispatches: their
-//! number does not depend on how many objects there are.
+//! The fragment stage draws proxies ([`proxy`]) or tiles. The compute stage draws tiles
+//! ([`tiles`]). Objects with the same pipeline and the same set of textures share
+//! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod levels;
 mod path;
@@ -19,66 +19,66 @@ pub use view::{DepthOrder, View, Viewport};
 use crate::shader::generated::{
     BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
 };
-use crate::shader::{Kind, Variant};
+use crate::shader::{Kind, Search, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 use tiles::{Batch, Drawer, LayerTiles, Projector, TileWords, Visible};
 
-/// From so many objects on paths are chosen on all cores: to wake these takes as long as to choose a
-/// thousand.
+/// Number of objects from which paths are chosen on all cores. Waking the cores takes as long as
+/// choosing a thousand paths.
 const MANY: usize = 4096;
 
-/// Work groups of one dispatch: what every device takes.
+/// Most work groups of one dispatch; every device supports this number.
 const MOST_GROUPS: u32 = 65_535;
 
-/// A frame's draws and dispatches, and all that they read.
+/// A frame's draws and dispatches, and all data that they read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FramePlan {
-    /// In the order in which they are recorded.
+    /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
     /// Records and lists of tiles.
     pub words: Vec<u32>,
-    /// Words that the device fills with lists; the first of them are zeroed before it does.
+    /// Words that the device fills with lists. The first of them are zeroed before that.
     pub list_words: u32,
     pub list_heads: u32,
-    /// One an object.
+    /// One path per object.
     pub paths: Vec<DrawPath>,
-    /// The copies of each object that are read; none: all.
+    /// The copies of each object that are read; none if all are.
     pub copies: Vec<Option<Vec<u32>>>,
-    /// What is read of each object's surface.
+    /// The parts of each object's surface that are read.
     pub parts: Vec<Parts>,
-    /// Whether compute compares depths.
+    /// True if compute compares depths.
     pub compares_depths: bool,
 }
 
 /// Parts of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Parts {
-    /// What searches walk.
+    /// Tables that searches walk.
     pub tables: bool,
     /// Frusta of cells, and rows of the box's sides.
     pub frusta: bool,
-    /// What lists of patches are made from.
+    /// Patches that lists are made from.
     pub patches: bool,
 }
 
-/// One draw or dispatch, or as many of them as one command draws.
+/// One draw or dispatch, or several draws that one command records.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Steps of a phase wait for those of the phase before.
+    /// Steps of a phase wait for the steps of the phase before.
     pub phase: u32,
     pub variant: Variant,
     pub kind: Kind,
-    /// Among the objects: the one whose textures are bound and, with `variant.own_tables`, whose
-    /// tables.
+    /// Index of the object whose textures are bound and, with `variant.own_tables`, whose tables
+    /// are bound.
     pub object: u32,
     pub call: Call,
 }
 
-/// What a step records.
+/// The command that a step records.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
@@ -87,7 +87,7 @@ pub(crate) enum Call {
     Quads(Range<u32>),
     /// Work groups.
     Dispatch(u32, Pushed),
-    /// As many work groups as the head at this word of the lists says.
+    /// Work groups; the head at this word of the lists holds their number.
     Indirect(u32, Pushed),
 }
 
@@ -97,15 +97,15 @@ pub(crate) enum Call {
 pub(crate) struct Pushed {
     /// Number of the first record.
     pub first: u32,
-    /// Of records.
+    /// Number of records.
     pub count: u32,
     /// Word of the heads of their lists.
     pub heads: u32,
-    /// Word where the tiles of their lists begin.
+    /// Word at which the tiles of their lists begin.
     pub tiles: u32,
-    /// Which of the lists is taken.
+    /// Number of the list that is read.
     pub list: u32,
-    /// Number of the only solid, of tiles of several copies.
+    /// Number of the only solid; for tiles of several copies.
     pub solid: u32,
 }
 
@@ -146,8 +146,8 @@ impl Path {
     }
 }
 
-/// Each object's variant, with how many solids those have that look alike. That does not depend on
-/// the view, so that a camera that moves needs no other pipelines.
+/// The variant of each object. The result depends on whether another object has the same variant
+/// and textures. The view has no influence, so a moving camera needs no other pipelines.
 pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
     let mut looks = HashMap::new();
     for of in objects {
@@ -173,7 +173,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// The layer of an object, made where it is the first.
+    /// The layer of an object; created for the first object of that layer.
     fn of<'a>(
         all: &'a mut Vec<Self>,
         objects: &[PlanObject],
@@ -263,7 +263,7 @@ impl FramePlan {
         }
     }
 
-    /// Tiles of all objects that are drawn by them.
+    /// Tiles of all objects whose path is [`Path::Tiles`].
     fn add_tiles(
         &mut self,
         view: &View,
@@ -293,7 +293,7 @@ impl FramePlan {
         for (batch, &n) in numbers.iter().enumerate() {
             let of = &objects[n];
             if copies[batch].is_empty() {
-                // In no layer: nothing of it is listed.
+                // The object is in no layer, because none of its copies is listed.
                 layer_of.push(u32::MAX);
                 continue;
             }
@@ -342,8 +342,8 @@ impl FramePlan {
         self.words = dealt.words;
     }
 
-    /// The dispatches of tiles: lists of patches first, then tiles of one copy, of which no two
-    /// share pixels, then, layer by layer, tiles of several.
+    /// Adds the dispatches of tiles. Lists of patches come first, then tiles of one copy, which
+    /// share no pixels. Tiles of several copies follow, layer by layer.
     fn dispatch(
         &mut self,
         layers: &[Layer],
@@ -386,25 +386,22 @@ impl FramePlan {
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
-                for list in 0..TILE_LISTS {
+                // The last list holds tiles that walk the tree.
+                let lengths = LIST_LENGTHS_OF.into_iter().chain([1]);
+                for (list, list_length) in (0..).zip(lengths) {
                     let call = Call::Indirect(head + 4 * list, pushed(list));
-                    later.push(if list < LIST_LENGTHS {
-                        let list_length = LIST_LENGTHS_OF[list as usize];
-                        let variant = Variant {
-                            list_length,
-                            ..base
-                        };
-                        step(1, Kind::TilePatches, variant, call)
-                    } else {
-                        let variant = Variant {
-                            list_length: 1,
-                            ..base
-                        };
-                        step(1, Kind::TileTree, variant, call)
-                    });
+                    let kind = match list < LIST_LENGTHS {
+                        true => Kind::TilePatches,
+                        false => Kind::TileTree,
+                    };
+                    let variant = Variant {
+                        list_length,
+                        ..base
+                    };
+                    later.push(step(1, kind, variant, call));
                 }
                 head += 4 * TILE_LISTS;
-                self.list_words += 2 * TILE_LISTS * count;
+                self.list_words += 4 * TILE_LISTS * count;
             }
             for records in chunks(&tiles.single) {
                 let count = records.end - records.start;
@@ -428,7 +425,7 @@ impl FramePlan {
     }
 }
 
-/// Tiles that are taken in their order.
+/// Parameters of tiles that are processed in their stored order.
 fn direct(records: &Range<u32>) -> Pushed {
     Pushed {
         first: records.start,
@@ -437,13 +434,17 @@ fn direct(records: &Range<u32>) -> Pushed {
     }
 }
 
-/// An object's copies, as tiles are found for them.
+/// An object's copies, as input for finding tiles.
 fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
     let surface = of.surface.filter(|_| of.object.repeat == [1; 3]);
     let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
     let culls = surface.filter(|_| with.occlusion_culling);
     let is_single = with.occlusion_culling && of.object.repeat == [1; 3];
-    let of_outline = of.outline.filter(|_| is_single && surface.is_none());
+    // Searches for comparison search all of the box, as published.
+    let is_own = of.variant.search != Search::External;
+    let of_outline = of
+        .outline
+        .filter(|_| is_single && is_own && surface.is_none());
     let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
     Batch {
         placements: of.copies(),
@@ -460,12 +461,12 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
     }
 }
 
-/// Words of the lists of so many tiles: see `compute.glsl`.
+/// Words of the lists of this many tiles: see `compute.glsl`.
 fn list_words(tiles: u32) -> u32 {
-    TILE_LISTS * (4 * tiles.div_ceil(MOST_GROUPS) + 2 * tiles)
+    4 * TILE_LISTS * (tiles.div_ceil(MOST_GROUPS) + tiles)
 }
 
-/// Runs of records that one dispatch takes.
+/// Runs of records, each short enough for one dispatch.
 fn chunks(records: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
     let Range { start, end } = *records;
     (start..end)

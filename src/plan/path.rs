@@ -1,4 +1,4 @@
-//! How each object is drawn: chosen from the view, the placements and the surface.
+//! The choice of each object's draw path from the view, the placements and the surface.
 
 use super::proxy;
 use super::tiles::{Cylinder, Placements};
@@ -14,108 +14,111 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How an object is drawn in a frame:
+/// The way in which an object is drawn in a frame:
 /// [`Renderer::draw_paths`](crate::gpu::Renderer::draw_paths).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawPath {
-    /// Not at all, as it is beside the picture, behind the eye or hidden. Proxies are always drawn:
-    /// the rasteriser finds out whether they show.
+    /// The object is not drawn, because it is outside of the picture, behind the eye or hidden.
+    /// Objects drawn by proxies never take this path: the rasteriser determines their visibility.
     Nothing,
-    /// Fragment stage: its shape boxes are rasterised, and fragments search.
+    /// Fragment stage: the shape boxes are rasterised, and fragments search.
     Box,
-    /// Fragment stage: cells of its surface are rasterised, and fragments solve their patches.
+    /// Fragment stage: cells of the surface are rasterised, and fragments solve their patches.
     Cells,
-    /// Tiles of the screen in which its copies may show are drawn: in the fragment stage several
-    /// copies, in compute everything.
+    /// Tiles of the screen that may show its copies are drawn. The fragment stage uses tiles for
+    /// several copies and for single objects without cells, the compute stage for everything.
     Tiles,
 }
 
-/// A draw path with what it needs.
+/// A draw path with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Path {
     Box,
     Cells {
         /// Runs of frusta that may be seen.
         frusta: Vec<Range<u32>>,
-        /// Whether the box's sides cut the solid, and are drawn.
+        /// True if the box's sides cut the solid and are drawn.
         cut: bool,
     },
     Tiles,
 }
 
-/// One object as a plan reads it.
+/// One object, as input of a plan.
 pub(crate) struct PlanObject<'a> {
     pub object: &'a Object,
-    /// Of its block among all solids.
+    /// Number of its block among all solids.
     pub number: u32,
     /// The number of its first copy among all instances.
     pub first_instance: u32,
     pub variant: Variant,
-    /// Tells sets of textures apart.
+    /// Identifies a set of textures.
     pub textures: usize,
-    /// What its search walks.
+    /// The surface that its search walks.
     pub surface: Option<&'a Arc<OffsetSurface>>,
-    /// Whether cells and lists may take the place of the tree.
+    /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
     pub shape: Cylinder,
-    /// Its outline, and how far the surface may be from it, object units.
+    /// The outline, and the largest distance of the surface from it in object units.
     pub outline: Option<(&'a OutlineCache, f64)>,
 }
 
-/// What a plan depends on besides view and objects.
+/// Inputs of a plan other than view and objects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conditions {
-    /// Whether tiles are traced in compute; else proxies and tiles are drawn by fragments.
+    /// True if tiles are traced in compute; otherwise fragments draw proxies and tiles.
     pub compute: bool,
-    /// Whether the device passes a cell's components from vertices to fragments.
+    /// True if the device passes a cell's components from vertices to fragments.
     pub passes_cells: bool,
-    /// Whether the device clips triangles by a box's sides.
+    /// True if the device clips triangles by a box's sides.
     pub clips: bool,
-    /// Whether the device is a processor, on which triangles are dear.
+    /// True if the device is a CPU, on which triangles are expensive.
     pub software: bool,
-    /// Invocations that run together.
+    /// Invocations of a subgroup, which run together.
     pub subgroup_size: u32,
-    /// Most bytes of a storage buffer.
+    /// Most bytes in a storage buffer.
     pub most_storage: u32,
-    /// Vectors of one solid's tables that a uniform buffer holds.
+    /// Most vectors of one solid's tables that a uniform buffer holds.
     pub own_vectors: usize,
-    /// As [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
+    /// Same value as
+    /// [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
     pub least_pixels: u32,
-    /// As [`SearchSettings::occlusion_culling`](crate::settings::SearchSettings::occlusion_culling).
+    /// Same value as
+    /// [`SearchSettings::occlusion_culling`](crate::settings::SearchSettings::occlusion_culling).
     pub occlusion_culling: bool,
-    /// Whether shadows are thrown: their rays may meet every copy of every object.
+    /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
-    /// Whether the target's depths are compared with, and left.
+    /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
 }
 
-/// Most copies of an object that are drawn by cells. Of more, many are small or hidden, and tiles
-/// leave those out.
+/// Most copies of an object that are drawn by cells. With more copies, many are small or hidden,
+/// and tiles skip those.
 const MOST_PROXIES: usize = 64;
 
-/// Fewer invocations than these, run together, walk a tree faster than they test a list: few of
-/// them wait for the slowest, and branches are taken. SwiftShader has 4 and takes twice as long
-/// over lists; llvmpipe has 8 and takes two thirds.
+/// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
+/// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take
+/// twice as long as the tree. Lists on llvmpipe, which has 8, take two thirds.
 const LEAST_SUBGROUP: u32 = 8;
 
-/// Factors on `proxy_min_pixels` of software drivers, whose triangles are set up by the processor
-/// that shades: of subgroups of [`LEAST_SUBGROUP`] and of smaller ones, which take three times as
-/// long over a tree. Counted in instructions: llvmpipe draws a solid by cells as fast as by tiles at
-/// 1,650 pixels a frustum, SwiftShader at 340.
+/// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
+/// shades. The first is for subgroups of at least [`LEAST_SUBGROUP`], the second for smaller ones,
+/// which take three times as long over a tree. The factors come from counts of instructions:
+/// llvmpipe draws a solid by cells as fast as by tiles at 1,650 pixels per frustum, SwiftShader at
+/// 340.
 const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
 
-/// Lengths of lists of patches; longer ones walk the tree.
+/// Lengths of lists of patches; tiles with longer lists walk the tree.
 pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// The paths that an object may be drawn by, in the order in which they are tried; the last
-    /// always serves.
+    /// The possible paths of an object, in the order in which they are tried. The last one is
+    /// always valid.
     fn candidates(&self, of: &PlanObject) -> impl Iterator<Item = Path> + use<> {
         let copies = of.object.placements().len();
         let wraps = of.takes_patches && of.object.repeat == [1; 3] && !self.compute;
         let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
-        // The box is as good for one copy whose outline is not looked at.
+        // The box is as good as tiles for one copy whose outline is not used.
         let outlined = of.variant.search != Search::External && self.occlusion_culling;
         let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
         let cells_of = |cut| Path::Cells {
@@ -133,7 +136,7 @@ impl Conditions {
         .flatten()
     }
 
-    /// How an object is drawn in a view: the first of its candidates that shows all of it.
+    /// The path of an object in a view: the first candidate that shows all of it.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
         let mut chosen = Path::Box;
         for candidate in self.candidates(of) {
@@ -157,7 +160,7 @@ impl Conditions {
         chosen
     }
 
-    /// Pixels that the box covers for each frustum from which on cells are cheaper.
+    /// Least pixels of the box per frustum at which cells are cheaper.
     fn least_pixels(&self) -> u32 {
         let small = self.subgroup_size < LEAST_SUBGROUP;
         let factor = SOFTWARE_FRUSTUM[usize::from(small)];
@@ -165,12 +168,12 @@ impl Conditions {
         self.least_pixels.saturating_mul(factor)
     }
 
-    /// Whether patches may be listed for tiles of an object.
+    /// True if patches may be listed for tiles of an object.
     pub fn takes_lists(&self, of: &PlanObject) -> bool {
         self.may_list(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
     }
 
-    /// Likewise, under some offset.
+    /// True if patches may be listed for tiles of an object under some offset.
     fn may_list(&self, of: &PlanObject) -> bool {
         of.takes_patches
             && self.compute
@@ -178,20 +181,20 @@ impl Conditions {
             && of.object.repeat == [1; 3]
     }
 
-    /// Most words of lists of tiles.
+    /// Most words that lists of tiles may take.
     pub fn room(&self) -> u64 {
         u64::from(self.most_storage) / 16
     }
 
-    /// Whether a uniform buffer holds an object's tables.
+    /// True if a uniform buffer holds an object's tables.
     pub fn holds_tables(&self, of: &PlanObject) -> bool {
         of.surface
             .is_some_and(|surface| surface.tables().own <= self.own_vectors)
     }
 
-    /// Every pipeline that an object may come to need while parameters, lights, camera and
-    /// placements move: those of all its candidates. `variant`: the one that
-    /// [`variants`](super::variants) gives it.
+    /// Every pipeline that an object may need while parameters, lights, camera and placements
+    /// change: the pipelines of all its candidates. `variant`: the result of
+    /// [`variants`](super::variants) for the object.
     pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
         let mut kinds = Vec::new();
         for path in self.candidates(of) {
@@ -216,7 +219,7 @@ impl Conditions {
             }
         }
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
-        // An offset may move the size of tables across the limit.
+        // An offset may move the size of the tables across the limit.
         let large = of
             .surface
             .is_some_and(|s| 4 * s.tables().own > 3 * self.own_vectors);
@@ -275,7 +278,7 @@ impl Conditions {
 }
 
 impl PlanObject<'_> {
-    /// Its copies, as tiles are found for them.
+    /// The object's copies, as input for finding tiles.
     pub fn copies(&self) -> Placements<'_> {
         if self.object.instances.is_empty() {
             Placements::One(&self.object.placement)
@@ -284,15 +287,15 @@ impl PlanObject<'_> {
         }
     }
 
-    /// Whether the box shows no more than the surface's patches.
+    /// True if the box shows no more than the surface's patches.
     pub fn is_whole(&self) -> bool {
         self.surface
             .is_some_and(|surface| proxy::is_whole(self.object, surface))
     }
 }
 
-/// What of an object's box can be solid; `bounds`: half of the box's side, and the clip cylinder's
-/// radius, lowest and highest `z`.
+/// The part of an object's box that can be solid. `bounds`: half of the box's side, then the clip
+/// cylinder's radius, lowest `z` and highest `z`.
 pub(crate) fn shape_of(object: &Object, bounds: [f64; 4]) -> Cylinder {
     let [side, radius, low, high] = bounds;
     if object.repeat == [1; 3] {

@@ -1,4 +1,4 @@
-//! Which objects can be drawn by proxies of cells.
+//! Selection of the objects that can be drawn by proxies of cells.
 
 use super::rectangle::{Rectangle, rectangle};
 use super::view::View;
@@ -8,27 +8,27 @@ use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
-/// By how much an eye has to stand clear of a shell, and a shell of the near plane, object units.
+/// Least distance of an eye from a shell, and of a shell from the near plane, in object units.
 const CLEARANCE: f64 = 1e-3;
 
-/// Whether the box shows no more than the boundary's patches: it cuts nothing of the solid and
+/// True if the box shows no more than the boundary's patches: it cuts nothing of the solid and
 /// holds no replicas.
 pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
     let radius = object.profile.radius;
     let [x, y] = object.axis_offset();
     let side_face = radius - x.abs().max(y.abs());
-    // What of a coarse level bulges beyond the box may be seen.
+    // The part of a coarse level that bulges beyond the box may be seen.
     object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
 }
 
-/// Whether the box's sides cut the solid, or come to do so by another offset.
+/// True if the box's sides cut the solid, or may cut it under another offset.
 pub(crate) fn may_be_cut(object: &Object) -> bool {
     let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
     object.clip == Clip::Box || object.axis_offset() != [0.0; 2] || widest > object.profile.radius
 }
 
-/// Whether rays to all of an object's copies begin outside of the solid, of which the box cuts
-/// nothing.
+/// True if rays to all of an object's copies begin outside of the solid, and the box cuts nothing
+/// of it.
 pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
     !view.parallel && is_whole(object, surface) && is_outside(object, surface, view)
 }
@@ -38,15 +38,16 @@ fn is_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
     object.placements().iter().all(apart)
 }
 
-/// Whether a place of object space, relative to the axis, is clear of the solid's bounding cylinder.
+/// True if a point of object space, relative to the axis, is clear of the solid's bounding
+/// cylinder.
 pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
     let [r_max, z_min, z_max] = surface.extent();
     let place = flat(place);
     place.x > r_max + CLEARANCE || place.y < z_min - CLEARANCE || place.y > z_max + CLEARANCE
 }
 
-/// Whether [`is_apart`] may be false of one of a cluster's copies, whose axis is so far from the
-/// middle of their box; `forward`: the view's.
+/// True if [`is_apart`] may be false for a copy of the cluster. `axis`: distance of a copy's axis
+/// from the middle of its box; `forward`: the view's.
 pub(crate) fn may_hold_eye(
     surface: &OffsetSurface,
     axis: f64,
@@ -60,8 +61,8 @@ pub(crate) fn may_hold_eye(
     cluster.around(eye, [beside, along]).along(forward)[0] <= 0.0
 }
 
-/// The eye, relative to the axis, and the direction of sight in object space; of a point `p` there,
-/// `(p - eye) . forward` is its depth.
+/// The eye, relative to the axis, and the direction of sight, both in object space. The depth of a
+/// point `p` there is `(p - eye) . forward`.
 fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
     let [x, y] = object.axis_offset();
     let turn = placement.rotation.conjugate();
@@ -69,35 +70,36 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
-/// Largest ratio of the sides of a box, in the world, that hulls are drawn in. Their rays start in
-/// the plane through the box's middle, in a flat box up to so many heights from where they meet the
-/// solid: 32 roundings of 2^-24 each, times the 8 of a root, are a twelfth of a texel.
+/// Largest ratio of a box's sides, in the world, at which hulls are drawn. Hull rays start in the
+/// plane through the box's middle. In a flat box that is up to this many heights from their hit.
+/// The error is 32 roundings of 2^-24 each, times the 8 of a root: a twelfth of a texel.
 const LOPSIDED: f64 = 32.0;
 
-/// Whether a copy's box, of twice this width, is too flat or too slender for its hull.
+/// True if a copy's box, twice `radius` wide, is too flat or too slender for its hull.
 pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()
 }
 
-/// Whether a cluster may hold a copy of which [`is_lopsided`] is true.
+/// True if a cluster may hold a copy for which [`is_lopsided`] is true.
 pub(crate) fn may_be_lopsided(radius: f64, cluster: &Cluster) -> bool {
     let sides = DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     let most = (cluster.most_scale * sides).max_element();
     most > LOPSIDED * (cluster.least_scale * sides).min_element()
 }
 
-/// How wide shells may be that a box's sides cut, over half the box's side. Depths of triangles that
-/// reach much farther than what shows of them are interpolated too roughly: of shells 60 times as
-/// wide as the box a pixel was lost.
+/// Largest width of shells that a box's sides cut, over half the box's side. Interpolated depths
+/// are too rough for triangles that reach far beyond their visible part. Shells 60 times as wide as
+/// the box lost a pixel.
 const WIDEST_CUT: f64 = 8.0;
 
-/// How many copies are looked at for what the whole batch's copies cover on the screen.
+/// Number of copies that are sampled to estimate how much of the screen all copies cover.
 const SAMPLES: usize = 64;
 
-/// The frusta of `object`'s cells, if they show from this camera all that the box would (the eye is outside all shells, the near plane cuts none) and the
-/// object is large enough on the screen for its triangles to pay. Besides, whether the box's sides
-/// cut it.
+/// The frusta of `object`'s cells, and true if the box's sides cut the object. Returns none unless
+/// the frusta show all that the box shows from this camera: the eye is outside all shells, and the
+/// near plane cuts none. Returns none also if the object is too small on the screen for its
+/// triangles to pay.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
@@ -130,7 +132,7 @@ pub(crate) fn frusta(
     let eyes: Vec<DVec2> = sampled
         .map(|copy| flat(seen_from(object, copy, view).0))
         .collect();
-    // Parallel rays come from everywhere, and a cut opens cavities.
+    // Parallel rays have no common eye, and a cut opens cavities.
     let frusta = if eyes.len() == copies.len() && !view.parallel && !cut {
         hull.seen_from(&eyes)
     } else {
@@ -144,13 +146,13 @@ pub(crate) fn frusta(
     copies.iter().all(seen).then_some((frusta, cut))
 }
 
-/// A point as the half-plane has it.
+/// A point in the coordinates of the half-plane.
 fn flat(p: DVec3) -> DVec2 {
     DVec2::new(p.truncate().length(), p.z)
 }
 
-/// Whether the eye is in none of a copy's shells, and all that is drawn of them is in front of the
-/// near plane: everything, or what is between the box's sides.
+/// True if the eye is in none of a copy's shells and the drawn part of them is in front of the near
+/// plane. The drawn part is everything, or the part between the box's sides.
 fn is_in_front(
     object: &Object,
     hull: &ProxyHull,
@@ -175,6 +177,6 @@ fn is_in_front(
         .extents
         .iter()
         .all(|&[_, r, low, high]| ahead(DVec2::ZERO, r * aside, low, high));
-    // Parallel rays begin in the near plane, which all is in front of.
+    // Parallel rays begin in the near plane, and everything is in front of that plane.
     all_ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }

@@ -12,22 +12,22 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
-    /// How many squares.
+    /// Number of squares.
     pub fn squares(self) -> u64 {
         u64::from(self.high.0 - self.low.0 + 1) * u64::from(self.high.1 - self.low.1 + 1)
     }
 }
 
-/// The squares of `unit` pixels that a box may touch; none if it lies behind the eye or beside the
-/// picture.
+/// The squares of `unit` pixels that a box may touch. Returns none if the box is behind the eye or
+/// outside of the picture.
 pub(crate) fn rectangle(
     view: &View,
     unit: u32,
     radius: f64,
     placement: &Placement,
 ) -> Option<Rectangle> {
-    // Pixels and depth are linear but for a division: of the middle and of half the box's sides
-    // once, not of each corner.
+    // Pixel and depth are linear except for one division. The linear part is computed for the
+    // middle and for half of each side, not for each corner.
     let rows = [view.dir_x, view.dir_y].map(|d| d / d.length_squared());
     let from = rows.map(|row| {
         0.5 - if view.parallel {
@@ -73,7 +73,7 @@ pub(crate) fn rectangle(
     }
     let [corner, full] = view.corners();
     if nearest <= 1e-9 * farthest {
-        // A box around or beside the eye projects to no rectangle.
+        // A box around the eye, or beside it, has no rectangular projection.
         (low, high) = (corner, full);
     }
     low = (low - 1.0).max(corner);

@@ -1,26 +1,26 @@
-//! A view of the scene: rays of pixels and the depths that their hits get, from a camera or from a
+//! A view of the scene: the ray of each pixel and the depth of its hit, from a camera or from a
 //! host's matrices.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Camera, CameraFrame};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-/// Which end of the depth range is near.
+/// The end of the depth range that is near.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum DepthOrder {
-    /// 0 is near, fragments pass that are less.
+    /// 0 is near; fragments of smaller depth pass.
     #[default]
     Normal,
-    /// 1 is near, fragments pass that are greater.
+    /// 1 is near; fragments of greater depth pass.
     Reversed,
 }
 
-/// The part of the framebuffer that is drawn, pixels.
+/// The part of the framebuffer that is drawn, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewport {
     /// Left edge.
     pub x: f64,
-    /// Upper edge; the lower one where `height` is negative.
+    /// Upper edge, or lower edge where `height` is negative.
     pub y: f64,
     /// Width, positive.
     pub width: f64,
@@ -31,7 +31,7 @@ pub struct Viewport {
 /// An eye, the ray of every pixel, and the depth of every point.
 ///
 /// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j
-/// dir_y)`. Its direction is not normalised: `t` is the depth along `forward`, and the depth buffer
+/// dir_y)`. The direction is not normalised: `t` is the depth along `forward`, and the depth buffer
 /// holds `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
 /// instead, and depths `depth[0] + depth[1] t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,11 +51,11 @@ pub struct View {
 }
 
 impl View {
-    /// The view of `camera` in pictures of `size` pixels, with depth 0 at `near` and 1 at `far`,
-    /// both along the view.
+    /// The view of `camera` for pictures of `size` pixels. Depth is 0 at `near` and 1 at `far`,
+    /// both measured along the view.
     ///
     /// # Errors
-    /// As [`CameraFrame::new`]; [`ErrorKind::Content`] unless `0 < near < far`.
+    /// The errors of [`CameraFrame::new`]; [`ErrorKind::Content`] unless `0 < near < far`.
     pub fn from_camera(camera: &Camera, size: (u32, u32), [near, far]: [f64; 2]) -> Result<Self> {
         if !(near > 0.0 && far > near && far.is_finite()) {
             return Err(wrong(format!(
@@ -66,8 +66,8 @@ impl View {
         // depth = constant + factor / t
         let constant = far / (far - near);
         let factor = -far * near / (far - near);
-        // Steps of a pixel, as parts of half the picture; the middle is 0 in clip space unless the
-        // camera is shifted.
+        // Step of one pixel as a fraction of half the picture. The middle is 0 in clip space unless
+        // the camera is shifted.
         let step = |v: DVec3, pixels: u32| v * (2.0 / (v.length_squared() * f64::from(pixels)));
         let middle = |at: f64, pixels: u32| camera.forward * (2.0 * at / f64::from(pixels) - 1.0);
         let right = step(camera.right, size.0) + middle(camera.middle[0], size.0);
@@ -101,9 +101,9 @@ impl View {
         })
     }
 
-    /// The view of a host's matrices, column vectors, clip space as Vulkan's (`0 <= z <= w`):
-    /// `projection * view` takes a world point to clip space. Jitter, off-centre frusta, infinite
-    /// and reversed depth are what the projection says.
+    /// The view of a host's matrices, which act on column vectors. `projection * view` takes a
+    /// world point to Vulkan's clip space (`0 <= z <= w`). The projection may include jitter, an
+    /// off-centre frustum, infinite depth or reversed depth.
     ///
     /// # Errors
     /// [`ErrorKind::Content`] for a projection whose near plane is not at right angles to the view,
@@ -149,7 +149,7 @@ impl View {
                 2.0 * (x - viewport.x) / viewport.width - 1.0,
                 2.0 * (y - viewport.y) / viewport.height - 1.0,
             );
-            // Clip points of one w: the eye's own image (0, 0, factor, 0) and the pixel's at w = 1.
+            // The pixel's clip point at w = 1 minus the eye's, which is (0, 0, factor, 0).
             let point = inverse * DVec4::new(ndc.x, ndc.y, constant, 1.0);
             point.truncate()
         };
@@ -182,7 +182,7 @@ impl View {
         })
     }
 
-    /// The view of parallel rays that begin in the near plane; `t` counts from there.
+    /// The view of parallel rays that begin in the near plane, where `t` is 0.
     fn parallel(clip_from_world: DMat4, viewport: Viewport, order: DepthOrder) -> Result<Self> {
         let inverse = clip_from_world.inverse();
         let (near_value, sense) = match order {
@@ -224,19 +224,19 @@ impl View {
         })
     }
 
-    /// From world space to clip space.
+    /// The matrix from world space to clip space.
     #[must_use]
     pub fn clip_from_world(&self) -> DMat4 {
         self.clip_from_world
     }
 
-    /// The eye, world units.
+    /// The eye in world units.
     #[must_use]
     pub fn eye(&self) -> DVec3 {
         self.eye
     }
 
-    /// The depth that a point at `t` has in the depth buffer.
+    /// The depth-buffer value of a point at `t`.
     #[must_use]
     pub fn depth_at(&self, t: f64) -> f64 {
         if self.parallel {
@@ -246,8 +246,8 @@ impl View {
         }
     }
 
-    /// How far along the view the depth buffer's value lies; infinite where nothing is drawn. Of
-    /// perspective and normal depths.
+    /// Distance along the view for a value of the depth buffer; infinite where nothing is drawn.
+    /// Only for perspective and normal depths.
     pub(crate) fn along_at(&self, depth: f32) -> f64 {
         if depth < 1.0 {
             self.depth[1] / (f64::from(depth) - self.depth[0])
@@ -256,7 +256,7 @@ impl View {
         }
     }
 
-    /// Where a world point is seen, framebuffer pixels from the upper left corner, and its depth
+    /// Framebuffer position of a world point, in pixels from the upper left corner, and its depth
     /// along the view.
     #[cfg(test)]
     pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
@@ -271,18 +271,18 @@ impl View {
         (DVec2::new(along(self.dir_x), along(self.dir_y)), depth)
     }
 
-    /// What clip x and y change by for a way in the world; of parallel rays for a clip w of 1.
+    /// Change of clip x and y for a step in the world; for parallel rays at a clip w of 1.
     pub(crate) fn clip_rows(&self) -> [DVec3; 2] {
         let rows = self.clip_from_world.transpose();
         let w = if self.parallel { rows.w_axis.w } else { 1.0 };
         [rows.x_axis, rows.y_axis].map(|row| row.truncate() / w)
     }
 
-    /// Clip x and y of a point that is given from the eye.
+    /// Clip x and y of a point relative to the eye.
     pub(crate) fn clip_of(&self, from_eye: DVec3) -> DVec2 {
         let [x, y] = self.clip_rows();
         let at_eye = self.clip_from_world * self.eye.extend(1.0);
-        // Of perspective the eye's own is nothing.
+        // The eye's own part is zero in perspective.
         let constant = if self.parallel {
             at_eye.truncate().truncate() / at_eye.w
         } else {

@@ -1,4 +1,4 @@
-//! A search of another crate as a variant holds it.
+//! Searches of other crates, as part of a variant.
 
 use super::list::{self, Module};
 use crate::error::{Error, ErrorKind, Result};
@@ -6,21 +6,21 @@ use crate::maps::MapFormat;
 use crate::search::{Features, Output, Pass, Reads, Search, SearchModule};
 use crate::settings::SearchSettings;
 
-/// A search, and which of its forms.
+/// A search and its form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct External {
     /// The search.
     pub search: &'static Search,
     beveled: bool,
     rgba8: bool,
-    /// The bound on steps where it is the default, as a comparison must not lose by an option that
-    /// it does not take; else 0, and the bound is data.
+    /// The bound on steps if that bound is the default; else 0, and the bound is data. A
+    /// compiled-in default keeps comparisons fair: a search is not slowed by an unused option.
     known_steps: u32,
 }
 
 impl External {
-    /// The form for an object. `beveled`: whether it has a bevel; `met`: whether shadows' rays may
-    /// meet one; `casts`: whether there are shadows, whose rays take the steps of what they meet.
+    /// The form for an object. `beveled`: the object has a bevel. `met`: rays of shadows may meet a
+    /// bevel. `casts`: there are shadows, whose rays take the steps of the objects that they meet.
     pub fn new(
         search: &'static Search,
         settings: &SearchSettings,
@@ -45,12 +45,12 @@ impl External {
         }
     }
 
-    /// Whether the search reads a table of its own.
+    /// True if the search reads a table of its own.
     pub const fn reads_table(self) -> bool {
         matches!(self.search.reads, Reads::Table(_))
     }
 
-    /// The forms that it may come to when a bevel comes or goes.
+    /// The forms that replace this one when a bevel is added or removed.
     pub fn others(self) -> Vec<Self> {
         let distinct = matches!(
             self.search.reads,
@@ -72,7 +72,7 @@ impl External {
         known.map(other).to_vec()
     }
 
-    /// The search whose vertices hand over what this one's fragments take.
+    /// The search whose vertices pass the inputs of this search's fragments.
     pub const fn vertices(self) -> list::Search {
         match (&self.search.reads, &self.search.steps) {
             (Reads::Map { .. }, _) => list::Search::Live,
@@ -86,7 +86,7 @@ impl External {
         (self.search.form, self.known_steps)
     }
 
-    /// What `module` is among the search's.
+    /// The search's own description of `module`; none if the search has no such module.
     pub fn module(self, module: &Module) -> Option<SearchModule> {
         let pass = match module.entry {
             list::Entry::Tree => Pass::Fragment,

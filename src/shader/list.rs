@@ -1,6 +1,6 @@
 //! The list of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
-//! `build.rs` compiles this list, and pipelines look modules up in it; so it names GLSL macros, and
-//! depends on nothing.
+//! `build.rs` compiles this list, and pipelines find modules in it. The file therefore names GLSL
+//! macros and has no dependencies.
 
 /// An entry file of `shaders-glsl/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -9,7 +9,7 @@ pub enum Entry {
     BoxVertex,
     /// Corners of cells.
     CellVertex,
-    /// The same, clipped by the box's sides.
+    /// Corners of cells, clipped by the box's sides.
     ClippedCellVertex,
     /// Quads of tiles.
     QuadVertex,
@@ -28,7 +28,7 @@ pub enum Entry {
 }
 
 impl Entry {
-    /// Its file.
+    /// The name of its file.
     #[must_use]
     pub const fn file(self) -> &'static str {
         match self {
@@ -44,8 +44,8 @@ impl Entry {
         }
     }
 
-    /// Whether its invocations search, in code that another crate may bring. Build scripts do not
-    /// ask.
+    /// True if its invocations search with code that another crate may provide. Build scripts do
+    /// not call this.
     #[must_use]
     #[allow(dead_code)]
     pub const fn searches(self) -> bool {
@@ -56,21 +56,21 @@ impl Entry {
 /// The code that finds where rays meet a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Search {
-    /// None: vertices, lists of patches.
+    /// No search: vertices, lists of patches.
     None,
-    /// One of another crate, which has its modules; here are vertices for those with a table and a
-    /// bound on steps.
+    /// A search of another crate, which has its own modules. Only the vertices for a search with a
+    /// table and a bound on steps are in this list.
     External,
     /// The search for live parameters.
     Live,
-    /// That on the papers' texture.
+    /// The search for live parameters, on the papers' texture.
     LiveRgba8,
-    /// Patches of quadrics in a tree. Fragments of cells solve theirs without it, and shadows on
-    /// them with it.
+    /// Patches of quadrics in a tree. Fragments of cells solve their patches without the tree;
+    /// shadows on them use the tree.
     Quadric,
 }
 
-/// What a solid may have besides its shape; each holds what stands before it.
+/// Features of a solid other than its shape; each includes the ones before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Features {
     /// One colour, one solid in its box, no shadows.
@@ -81,16 +81,16 @@ pub enum Features {
     Full,
 }
 
-/// What is stored of a hit.
+/// The stored values of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
-    /// Colour.
+    /// Only colour.
     Color,
     /// Every plane of a frame.
     Planes,
-    /// Depth alone.
+    /// Only depth.
     Depth,
-    /// Depth alone, along parallel rays.
+    /// Only depth, along parallel rays.
     DepthOrtho,
 }
 
@@ -99,16 +99,16 @@ pub enum Output {
 pub struct Module {
     /// The entry file.
     pub entry: Entry,
-    /// Which search it holds.
+    /// The search that it contains.
     pub search: Search,
-    /// What else.
+    /// The other features.
     pub features: Features,
-    /// What it stores.
+    /// The values that it stores.
     pub output: Output,
 }
 
 impl Module {
-    /// A module without choices.
+    /// A module without options.
     #[must_use]
     pub const fn plain(entry: Entry) -> Self {
         Self {
@@ -119,8 +119,8 @@ impl Module {
         }
     }
 
-    /// The module of the list that does what this one would, with as little else as possible;
-    /// `listed` says what is in the list.
+    /// The least general listed module that can replace this one. `listed`: true for modules of the
+    /// list.
     #[must_use]
     pub fn covered_by(self, listed: impl Fn(&Self) -> bool) -> Option<Self> {
         [Features::Plain, Features::Textured, Features::Full]
@@ -130,7 +130,7 @@ impl Module {
             .find(listed)
     }
 
-    /// The module of vertices `entry` that pass these fragments what they read, and nothing else.
+    /// The module of vertices `entry` that pass exactly the inputs of these fragments.
     #[must_use]
     pub fn vertices(&self, entry: Entry) -> Self {
         use Search as S;
@@ -148,8 +148,7 @@ impl Module {
         }
     }
 
-    /// The macros that the GLSL is compiled with; what is left out is 0 there. `build.rs` alone
-    /// asks.
+    /// The macros for compiling the GLSL; missing ones are 0. Only `build.rs` calls this.
     #[must_use]
     #[allow(dead_code)]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
@@ -185,7 +184,8 @@ impl Module {
         all
     }
 
-    /// Its name: the entry file, then what tells it from others of that file.
+    /// The name: the entry file, then the options that distinguish it from other modules of that
+    /// file.
     #[must_use]
     pub fn name(&self) -> String {
         let mut name = self.entry.file().to_owned();
@@ -207,11 +207,11 @@ impl Module {
     }
 }
 
-/// Searches that fragments and the compute stage have.
+/// Searches that the fragment and compute stages have.
 const SEARCHES: [Search; 3] = [Search::Live, Search::LiveRgba8, Search::Quadric];
 
-/// Whether a search has a module of these. Rare cases are drawn by more general modules where they
-/// are not drawn plain.
+/// True if a search has a module with these features and this output. More general modules draw
+/// rare cases that are not plain.
 fn has(search: Search, features: Features, output: Output) -> bool {
     let main = matches!(search, Search::Live | Search::Quadric);
     match (output, features) {

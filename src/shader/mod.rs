@@ -1,4 +1,4 @@
-//! What `build.rs` makes of `shaders-glsl/`, and the variants that pipelines are made for.
+//! The output of `build.rs` from `shaders-glsl/`, and the variants from which pipelines are made.
 
 mod external;
 mod list;
@@ -13,7 +13,7 @@ pub(crate) use variant::is_beveled;
 pub use variant::{Kind, ShadowCasters, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
-// Numbers that the shaders alone read are listed, too, and what only tests compare.
+// The list includes numbers that only the shaders read, or that only tests compare.
 #[allow(clippy::unreadable_literal, dead_code)]
 pub mod generated {
     include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

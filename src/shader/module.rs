@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// The modules, one after another, each packed by `build.rs`.
+/// The modules in sequence, each packed by `build.rs`.
 static ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
 
-/// Where each module's bytes are.
+/// The byte range of each module.
 fn places() -> &'static HashMap<Module, Range<usize>> {
     static PLACES: OnceLock<HashMap<Module, Range<usize>>> = OnceLock::new();
     PLACES.get_or_init(|| {
@@ -23,21 +23,21 @@ fn places() -> &'static HashMap<Module, Range<usize>> {
     })
 }
 
-/// The module of [`modules`] that stands for this one: itself, or the least general one that does
+/// The module of [`modules`] that replaces this one: itself, or the least general one that can do
 /// its work.
 #[must_use]
 pub fn listed(module: &Module) -> Option<Module> {
     module.covered_by(|m| places().contains_key(m))
 }
 
-/// The words of the module that stands for this one; `None` where there is none.
+/// The words of the module that replaces this one; `None` if no module can.
 #[must_use]
 pub fn words(module: &Module) -> Option<Vec<u32>> {
     unpacked(ARCHIVE.get(places().get(&listed(module)?)?.clone())?)
 }
 
-/// Words from what `build.rs` has packed: deflated; seven bits a byte, the least first, the eighth
-/// says that more follow.
+/// Unpacks words that `build.rs` packed. The bytes are deflated. A byte holds seven bits of a word,
+/// the lowest first; the eighth bit is set if more bytes follow.
 #[must_use]
 pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
     let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
@@ -54,8 +54,8 @@ pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
     Some(words)
 }
 
-/// A module's words for reversed depth: fragments that promise to lie no nearer than their triangle
-/// promise so where depth falls away from the eye.
+/// A module's words for reversed depth. Fragments that declare a depth no nearer than their
+/// triangle then declare it for depth that decreases away from the eye.
 #[must_use]
 pub fn depth_less(words: &[u32]) -> Vec<u32> {
     const HEADER: usize = 5;
@@ -65,7 +65,7 @@ pub fn depth_less(words: &[u32]) -> Vec<u32> {
     let mut out = words.to_vec();
     let mut at = HEADER;
     while let Some(&first) = out.get(at) {
-        // The entry point, then the mode.
+        // The first operand is the entry point, the second the mode.
         if first & 0xffff == EXECUTION_MODE
             && let Some(mode) = out.get_mut(at + 2)
             && *mode == DEPTH_GREATER

@@ -1,9 +1,10 @@
-//! The variant: everything a pipeline is made for, so that it holds one search and nothing that it
-//! does not use.
+//! The variant: all inputs of a pipeline, so that the pipeline contains one search and no unused
+//! code.
 //!
-//! What a parameter moves is data: no value of an offset, a light, a camera or a bound on steps
-//! makes another variant. What is left depends on an object's technique, and
-//! [`Conditions::reachable`](crate::plan::Conditions::reachable) lists all that can follow from it.
+//! Parameters are data: no value of an offset, a light, a camera or a bound on steps makes another
+//! variant. The rest depends on an object's technique, and
+//! [`Conditions::reachable`](crate::plan::Conditions::reachable) lists all variants that can follow
+//! from it.
 
 use super::external::External;
 use super::generated as g;
@@ -12,10 +13,11 @@ use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
 
-/// What a pipeline draws: a proxy (the first two), or tiles.
+/// The geometry that a pipeline draws: a proxy (the first two), or tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
-    /// Cells with their patches, rasterised; clipped by the box's sides where these cut the solid.
+    /// Cells with their patches, rasterised. The box's sides clip the cells if the sides cut the
+    /// solid.
     Cells,
     /// Shape boxes and strips of their sides, rasterised; fragments walk the tree.
     Boxes,
@@ -32,7 +34,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether invocations of it walk the tree of patches, or search a map.
+    /// True if its invocations walk the tree of patches, or search a map.
     #[must_use]
     pub const fn walks(self) -> bool {
         matches!(
@@ -42,58 +44,61 @@ impl Kind {
     }
 }
 
-/// What a shadow's ray may meet, which the code of the object that it left must do for.
+/// Properties of the objects that a shadow's ray may meet. The code of the object at which the ray
+/// starts must handle them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadowCasters {
     /// An object with replicas.
     pub repeated: bool,
-    /// One with a bevel.
+    /// An object with a bevel.
     pub beveled: bool,
 }
 
-/// A module, and the values of its specialisation constants; with a [`Kind`] the key of a pipeline.
+/// A module and the values of its specialisation constants. A variant and a [`Kind`] are the key of
+/// a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
-    /// Which search finds hits.
+    /// The search that finds hits.
     pub search: Search,
-    /// What a solid may have besides its shape.
+    /// Features of a solid other than its shape.
     pub features: Features,
-    /// What is stored.
+    /// The stored values of a hit.
     pub output: Output,
-    /// 1 where the box holds several replicas.
+    /// 1 if the box holds several replicas.
     pub cells: u32,
     /// One of `SHADOW_*`.
     pub shadow: u32,
-    /// 1 where colours come from a map.
+    /// 1 if colours come from a map.
     pub color_map: u32,
     /// One of `BUMP_*`.
     pub bump: u32,
     /// One of `PROJECTION_*`.
     pub projection: u32,
-    /// The search of another crate, of [`Search::External`].
+    /// The search of another crate, for [`Search::External`].
     pub external: Option<External>,
-    /// 0 where nothing was drawn before, of the compute stage.
+    /// Compute stage: 0 if nothing was drawn before.
     pub depth_test: u32,
-    /// 0 where nothing will be drawn after, of the compute stage.
+    /// Compute stage: 0 if nothing will be drawn after.
     pub depth_keep: u32,
-    /// Most lights: 1, 2, or any number, 3. With shadows, whose lights share one loop: 3.
+    /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
+    /// one loop.
     pub lights: u32,
-    /// Patches that each pixel of a listed tile tests; of tiles that walk the tree 1. 0: tiles come
-    /// from no list.
+    /// Patches that each pixel of a listed tile tests; 1 for tiles that walk the tree. 0: tiles
+    /// come from no list.
     pub list_length: u32,
-    /// 1 where the box cuts nothing of the solid and the eye is outside of it; of cells and listed
-    /// patches, whose eye always is: where the box cuts nothing.
+    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
+    /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
-    /// 1 where all solids have one table, which a uniform buffer holds.
+    /// 1 if all solids have one table, and a uniform buffer holds it.
     pub own_tables: u32,
-    /// 1 where there is one solid, which a uniform buffer holds.
+    /// 1 if there is one solid, and a uniform buffer holds it.
     pub one_solid: u32,
-    /// 1 where there may be a bevel, of the search for live parameters.
+    /// Search for live parameters: 1 if there may be a bevel.
     pub beveled: u32,
 }
 
 impl Variant {
-    /// Lists of patches.
+    /// The variant that makes lists of patches.
     pub const LISTS: Self = Self {
         search: Search::None,
         features: Features::Plain,
@@ -114,8 +119,8 @@ impl Variant {
         beveled: 0,
     };
 
-    /// The variant that draws `object` by the search `solver`, which is that of the settings or
-    /// stands in for it.
+    /// The variant that draws `object` by the search `solver`, which is the search of the settings
+    /// or a replacement for it.
     #[must_use]
     pub fn new(
         settings: &SearchSettings,
@@ -160,21 +165,17 @@ impl Variant {
             color_map,
             bump,
             projection: match texturing.projection {
-                // Nothing reads coordinates.
+                // No code reads coordinates.
                 _ if !textured && output == Output::Color => g::PROJECTION_CYLINDRICAL,
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
                 Projection::Spherical => g::PROJECTION_SPHERICAL,
                 Projection::Arc => g::PROJECTION_ARC,
             },
-            external: match solver {
-                Solver::Other(search) => {
-                    let met = casts && casters.beveled;
-                    let beveled = is_beveled(object);
-                    Some(External::new(search, settings, beveled, met, casts))
-                }
-                _ => None,
-            },
+            external: solver.external().map(|search| {
+                let met = casts && casters.beveled;
+                External::new(search, settings, is_beveled(object), met, casts)
+            }),
             depth_test: 1,
             depth_keep: 1,
             lights: if casts {
@@ -186,7 +187,7 @@ impl Variant {
             outside: 0,
             own_tables: 0,
             one_solid: 0,
-            // Where it stands in for another search there is one form of it, the general one.
+            // A replacement for another search has only the general form.
             beveled: u32::from(
                 solver == Solver::Live
                     && (settings.solver != Solver::Live
@@ -200,7 +201,7 @@ impl Variant {
         }
     }
 
-    /// This variant and those that it becomes when a bevel comes or goes.
+    /// This variant and the variants that replace it when a bevel is added or removed.
     #[must_use]
     pub fn forms(self) -> Vec<Self> {
         let live = matches!(self.search, Search::Live | Search::LiveRgba8);
@@ -216,19 +217,19 @@ impl Variant {
         std::iter::once(self).chain(twin).chain(external).collect()
     }
 
-    /// Whether its search walks tables.
+    /// True if its search walks tables.
     fn reads_tables(&self) -> bool {
         self.search == Search::Quadric || self.external.is_some_and(External::reads_table)
     }
 
-    /// Whether colours are stored, not depths alone.
+    /// True if colours are stored, not only depths.
     #[must_use]
     pub const fn is_shaded(&self) -> bool {
         matches!(self.output, Output::Color | Output::Planes)
     }
 
-    /// The form of this variant that pipelines of `kind` have: constants that the kind does not read
-    /// are those of [`Variant::LISTS`], so that equal pipelines have equal keys.
+    /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have
+    /// the values of [`Variant::LISTS`], so that equal pipelines have equal keys.
     #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
         let walks = kind.walks();
@@ -249,7 +250,7 @@ impl Variant {
         Self {
             outside: of(on_patches || (walks && tested), self.outside),
             own_tables: of(tables, self.own_tables),
-            // Lavapipe 22 crashes over shadows where it takes the solid for constants.
+            // Lavapipe 22 crashes in shadows if it treats the solid as constants.
             one_solid: of(self.shadow == g::SHADOW_OFF, self.one_solid),
             list_length: match kind {
                 Kind::TilePatches => self.list_length,
@@ -262,7 +263,8 @@ impl Variant {
         }
     }
 
-    /// Depth alone, as a shadow map wants it; `ortho`: along parallel rays. Of boxes and hulls.
+    /// The variant that stores only depth, as for a shadow map. `ortho`: along parallel rays. Only
+    /// for boxes and hulls.
     #[must_use]
     fn depth_only(self, ortho: bool) -> Self {
         Self {
@@ -284,7 +286,7 @@ impl Variant {
         }
     }
 
-    /// The module of the vertices that it is drawn with; none of the compute stage.
+    /// The module of its vertices; none in the compute stage.
     #[must_use]
     pub fn vertices(&self, kind: Kind) -> Option<Module> {
         let entry = match kind {
@@ -354,7 +356,7 @@ fn search(settings: &SearchSettings, solver: Solver) -> Search {
     }
 }
 
-/// Whether an object's steps must allow for a bevel.
+/// True if an object's steps must allow for a bevel.
 pub(crate) fn is_beveled(object: &Object) -> bool {
     object.offset.bevel != 0.0 && object.offset.chamfer > 0.0
 }

@@ -1,11 +1,11 @@
-//! Tables of what others keep alive.
+//! Tables of shared values that do not keep them alive.
 
 use crate::error::Result;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Weak};
 
-/// Values by key, as long as somebody holds them.
+/// Weak references by key: a value stays as long as an owner holds it elsewhere.
 pub(crate) struct Kept<K, V>(HashMap<K, Weak<V>>);
 
 impl<K, V> Default for Kept<K, V> {
@@ -15,12 +15,12 @@ impl<K, V> Default for Kept<K, V> {
 }
 
 impl<K: Hash + Eq, V> Kept<K, V> {
-    /// The value of a key, if somebody holds it.
+    /// The value of a key, if it is alive.
     pub fn known(&self, key: &K) -> Option<Arc<V>> {
         self.0.get(key).and_then(Weak::upgrade)
     }
 
-    /// Notes a new value, and forgets the dead where the table would grow.
+    /// Adds a new value. Removes dead entries first if the table would grow.
     pub fn keep(&mut self, key: K, value: V) -> Arc<V> {
         if self.0.len() == self.0.capacity() {
             self.0.retain(|_, known| known.strong_count() > 0);
@@ -30,7 +30,7 @@ impl<K: Hash + Eq, V> Kept<K, V> {
         made
     }
 
-    /// The value of a key, made now where nobody holds it.
+    /// The value of a key; made now if it is not alive.
     pub fn get(&mut self, key: K, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
         match self.known(&key) {
             Some(known) => Ok(known),
@@ -38,7 +38,7 @@ impl<K: Hash + Eq, V> Kept<K, V> {
         }
     }
 
-    /// All values that somebody holds.
+    /// All values that are alive.
     pub fn living(&self) -> impl Iterator<Item = Arc<V>> + '_ {
         self.0.values().filter_map(Weak::upgrade)
     }

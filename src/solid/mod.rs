@@ -1,5 +1,5 @@
-//! A prepared solid: all that is made from one outline under an offset. No module here speaks
-//! Vulkan.
+//! A prepared solid: all data made from one outline under an offset. No module here records Vulkan
+//! commands.
 
 pub(crate) mod kept;
 pub(crate) mod offset_surface;

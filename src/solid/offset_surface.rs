@@ -1,5 +1,5 @@
-//! Surfaces under an offset: the boundary as quadrics or as another search's table, and what is made of
-//! them for the GPU.
+//! Surfaces under an offset: the boundary as quadrics or as another search's table, and the GPU
+//! data made from it.
 
 use crate::error::Result;
 use crate::scene::Offset;
@@ -11,7 +11,7 @@ use crate::solid::tables::{self, GpuTables};
 use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
 use std::sync::{Arc, OnceLock};
 
-/// One surface, made when first wanted, shared by all objects that show it.
+/// One surface, made on first use, shared by all objects that show it.
 pub(crate) struct OffsetSurface {
     recipe: Recipe,
     made: OnceLock<Result<Made>>,
@@ -23,17 +23,17 @@ pub(crate) struct OffsetSurface {
     slots: [OnceLock<Slot>; 3],
 }
 
-/// What a surface is made from.
+/// The source of a surface.
 pub(crate) enum Recipe {
-    /// Quadrics that follow the outline under an offset, of this level, within this distance in
-    /// object units.
+    /// Quadrics that follow the outline under an offset. The last two values are the level and the
+    /// tolerance in object units.
     Patches(Arc<OutlineCache>, Offset, u8, f64),
-    /// The table of a search, of so many rows.
+    /// The table of a search, with this number of rows.
     Search(&'static Search, Arc<OutlineCache>, Offset, u32),
 }
 
 enum Made {
-    /// And their largest radius, least and largest `z`.
+    /// Patches, then their largest radius, least `z` and largest `z`.
     Patches(Vec<QuadricPatch>, [f64; 3]),
     Table(SearchTable),
 }
@@ -52,7 +52,7 @@ impl OffsetSurface {
         }
     }
 
-    /// Whether it is made, or has failed to be.
+    /// True if it was made, or if making it failed.
     pub fn is_made(&self) -> bool {
         self.made.get().is_some()
     }
@@ -62,7 +62,7 @@ impl OffsetSurface {
         let _ = self.made();
     }
 
-    /// Why there is no such surface.
+    /// The reason why there is no such surface.
     pub fn failure(&self) -> Option<&crate::error::Error> {
         self.made().err()
     }
@@ -71,7 +71,7 @@ impl OffsetSurface {
         self.made.get_or_init(|| self.recipe.follow()).as_ref()
     }
 
-    /// What the search walks.
+    /// The tables that the search walks.
     pub fn tables(&self) -> &GpuTables {
         self.tables.get_or_init(|| match self.made() {
             Ok(Made::Patches(patches, _)) => GpuTables::patches(patches),
@@ -80,7 +80,7 @@ impl OffsetSurface {
         })
     }
 
-    /// What lists of patches are made from; nothing where there are none, or too many.
+    /// Patches that lists are made from; empty if there are none, or too many.
     pub fn listed(&self) -> &[[u32; 4]] {
         self.listed.get_or_init(|| match self.made() {
             Ok(Made::Patches(patches, _)) => tables::listed(patches),
@@ -88,7 +88,7 @@ impl OffsetSurface {
         })
     }
 
-    /// What the rasteriser draws; of another search's table nothing.
+    /// The hull that the rasteriser draws; empty for another search's table.
     pub fn hull(&self) -> &GpuProxyHull {
         self.hull.get_or_init(|| match self.made() {
             Ok(Made::Patches(patches, _)) => GpuProxyHull::new(patches),
@@ -96,7 +96,7 @@ impl OffsetSurface {
         })
     }
 
-    /// What its solid is sure to hide; of patches alone.
+    /// Cylinders inside its solid, which hide everything behind them; only for patches.
     pub fn inner(&self) -> Option<&InnerCylinders> {
         match self.made() {
             Ok(Made::Patches(patches, _)) => {
@@ -106,7 +106,7 @@ impl OffsetSurface {
         }
     }
 
-    /// Where its solid can be; of patches alone.
+    /// Cylinders around its solid; only for patches.
     pub fn outer(&self) -> Option<&OuterCylinders> {
         match self.made() {
             Ok(Made::Patches(patches, _)) => {
@@ -116,12 +116,12 @@ impl OffsetSurface {
         }
     }
 
-    /// Whether it is made of patches.
+    /// True if it is made of patches.
     pub fn is_of_patches(&self) -> bool {
         matches!(self.recipe, Recipe::Patches(..))
     }
 
-    /// Largest radius, least and largest `z`; of patches alone.
+    /// Largest radius, least and largest `z`; only for patches.
     pub fn extent(&self) -> [f64; 3] {
         match self.made() {
             Ok(Made::Patches(_, extent)) => *extent,
@@ -129,8 +129,8 @@ impl OffsetSurface {
         }
     }
 
-    /// By how much it may bulge beyond the contour: as much of a coarse level, nothing of the exact
-    /// one.
+    /// Largest distance that it may bulge beyond the contour: the tolerance of a coarse level, 0
+    /// for the exact one.
     pub fn slack(&self) -> f64 {
         match self.recipe {
             Recipe::Patches(_, _, level, tolerance) if level > 0 => tolerance,
@@ -138,7 +138,7 @@ impl OffsetSurface {
         }
     }
 
-    /// How many patches it has.
+    /// Number of its patches.
     pub fn patches(&self) -> usize {
         match self.made() {
             Ok(Made::Patches(patches, _)) => patches.len(),
@@ -158,7 +158,7 @@ impl OffsetSurface {
         self.slots[part as usize].get()
     }
 
-    /// Keeps the place of a part; returns the vector with which it begins.
+    /// Stores the slot of a part and returns its first vector.
     pub fn keep_slot(&self, part: Part, slot: Slot) -> u32 {
         self.slots[part as usize].get_or_init(|| slot).begin()
     }

@@ -6,7 +6,7 @@ use crate::scene::Offset;
 use crate::surface::{Contour, ContourSource, OuterCylinders};
 use std::sync::{Arc, OnceLock};
 
-/// A profile and what its contours under offsets are made from.
+/// A profile, and the source of its contours under offsets.
 pub(crate) struct OutlineCache {
     pub profile: Arc<Profile>,
     source: OnceLock<Result<ContourSource>>,
@@ -22,7 +22,7 @@ impl OutlineCache {
         }
     }
 
-    /// Cylinders that hold the solid without its offset.
+    /// Cylinders that contain the solid without its offset.
     pub fn outer(&self) -> &OuterCylinders {
         let outline = &self.profile.outline;
         self.outer
@@ -32,7 +32,7 @@ impl OutlineCache {
     /// The contour under `offset`.
     ///
     /// # Errors
-    /// Where the profile has none, or it does not close.
+    /// Fails if the profile has no contour, or if the contour does not close.
     pub fn contour(&self, offset: &Offset) -> Result<Contour> {
         let source = self
             .source

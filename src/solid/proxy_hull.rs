@@ -1,21 +1,21 @@
-//! Proxy hulls as the vertex shader grows them.
+//! Proxy hulls in the form that the vertex shader expands.
 
 use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
-/// Components that a hull's vertices hand to its fragments: what all have, then a cell's quadrics
+/// Components that a hull's vertices pass to its fragments: the common ones, then a cell's quadrics
 /// and guards, and the box's sides.
 pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
 
-/// Components that these vertices put out: a position and four distances to clip by, besides.
+/// All output components of these vertices: a position and four clip distances are added.
 pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;
 
 /// A hull: its frusta in the layout of `proxy_cells.vert`, then the rows of `proxy_boxes.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
-    /// Whether two parts of the boundary meet in a circle, where no wall between their shells can
-    /// stand.
+    /// True if two parts of the boundary meet in a circle, which leaves no room for a wall between
+    /// their shells.
     pub touches: bool,
 }
 
@@ -38,17 +38,19 @@ impl GpuProxyHull {
     }
 }
 
-/// The rows of `proxy_boxes.vert`: lowest and highest `z`; the radius that shells stay within.
+/// The rows of `proxy_boxes.vert`: lowest `z`, highest `z`, and the radius that contains the
+/// shells.
 fn rows(hull: &ProxyHull) -> impl Iterator<Item = [u32; 4]> {
     hull.rows::<{ SIDE_ROWS as usize }>()
         .into_iter()
         .map(|[low, high, radius]| [low as f32, high as f32, radius as f32, 0.0].map(f32::to_bits))
 }
 
-/// Points of an outline nearer than this are one, object units: what the union of loops rounds to.
+/// Points of an outline at a smaller distance count as one, object units. The union of loops rounds
+/// to this.
 const ONE_POINT: f64 = 1e-6;
 
-/// Whether two patches that do not follow each other begin at one point off the axis.
+/// True if two patches that do not follow each other begin at one point off the axis.
 fn touches(patches: &[QuadricPatch]) -> bool {
     let mut order: Vec<usize> = (0..patches.len()).collect();
     let start = |k: usize| patches[k].start;
@@ -69,7 +71,7 @@ fn touches(patches: &[QuadricPatch]) -> bool {
 /// A hull's frusta in the layout of `proxy_cells.vert`.
 fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     let mut out = Vec::with_capacity(hull.frusta.len() * FRUSTUM_VECTORS as usize);
-    // A guard that nothing passes.
+    // A guard that no point passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0]];
     for frustum in &hull.frusta {
         let [from, to] = [frustum.from, frustum.to];
@@ -88,13 +90,13 @@ fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     out
 }
 
-/// Vertices of a shape box, before those of its sides' strips.
+/// Number of vertices of a shape box; the vertices of its sides' strips follow.
 const BOX_VERTICES: u32 = 14;
 
-/// Indices of every proxy, the same for all: the box, whose vertices are a strip; the strips of its
-/// sides; then so many frusta, two rings of vertices each.
+/// Indices that all proxies share. The box comes first, with its vertices as a strip. The strips of
+/// its sides follow, then this many frusta of two rings of vertices each.
 pub(crate) fn indices(frusta: u32) -> Vec<u32> {
-    // Every second triangle of a strip turns round.
+    // Every second triangle of a strip has the reverse winding.
     let boxes = (0..BOX_VERTICES - 2).flat_map(|k| match k % 2 {
         0 => [k, k + 1, k + 2],
         _ => [k + 1, k, k + 2],
@@ -119,7 +121,7 @@ mod tests {
     use super::*;
     use crate::shader::generated::{BOX_INDICES, STRIP_INDICES};
 
-    /// Draws begin where the plan says.
+    /// Draws begin at the indices of the plan.
     #[test]
     fn indices_of_boxes_strips_and_frusta_follow_each_other() {
         let all = indices(3);

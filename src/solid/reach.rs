@@ -1,14 +1,15 @@
-//! How far a solid and its map reach in their box.
+//! The extent of a solid and its map in their box.
 
 use crate::scene::{Object, Offset};
 
-/// The largest offset that the surface takes in the box.
+/// The largest offset of the surface in the box.
 pub(crate) fn largest_width(offset: &Offset) -> f64 {
     offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
 }
 
-/// How far from the axis the map must reach: to the solid's own radius where that stays within the
-/// box's inscribed cylinder about a centred axis, else to what of the solid the box can hold.
+/// The radius that the map must cover. The result is the box's half side if the solid stays within
+/// the box's inscribed cylinder about a centred axis. Otherwise the radius covers the part of the
+/// solid that the box can hold.
 pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
     let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);

@@ -1,24 +1,24 @@
-//! Places in the arena of tables.
+//! Slots in the arena of tables.
 
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// What of the arena is free, in its units.
+/// The free ranges of the arena, in its units.
 pub(crate) type Ranges = Arc<Mutex<RangeAllocator<u32>>>;
 
-/// The parts of a surface that stand in the arena.
+/// The parts of a surface that are in the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// What searches walk.
+    /// Tables that searches walk.
     Tables,
-    /// What the vertex shaders of hulls grow.
+    /// Frusta that the vertex shaders of hulls expand.
     Frusta,
-    /// What lists of patches are made from.
+    /// Patches that lists are made from.
     Patches,
 }
 
-/// A place in the arena, free again when dropped.
+/// A slot in the arena; freed when dropped.
 #[derive(Debug)]
 pub(crate) struct Slot {
     range: Range<u32>,
@@ -27,7 +27,7 @@ pub(crate) struct Slot {
 }
 
 impl Slot {
-    /// A range of units, of so many vectors each, that was taken from `ranges`.
+    /// A slot from a range of units that was taken from `ranges`. `unit`: vectors per unit.
     pub fn new(range: Range<u32>, unit: u32, ranges: &Ranges) -> Self {
         Self {
             range,
@@ -36,7 +36,7 @@ impl Slot {
         }
     }
 
-    /// The vector with which it begins.
+    /// The first vector of the slot.
     pub fn begin(&self) -> u32 {
         self.range.start * self.unit
     }

@@ -5,23 +5,23 @@ use crate::shader::generated::{LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PAT
 use crate::surface::{GpuPatch, QuadricPatch, Tables};
 use ash::vk;
 
-/// A table that may stand anywhere in a buffer.
+/// A table that may be placed anywhere in a buffer.
 pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
-    /// How many of them the search itself reads, from the beginning on.
+    /// Number of vectors, from the first on, that the search itself reads.
     pub own: usize,
-    /// What `Solid.patches` of `blocks.glsl` holds behind the place where it begins.
+    /// The words of `Solid.patches` of `blocks.glsl` after the first vector's number.
     facts: [u32; 3],
 }
 
 impl GpuTables {
-    /// `Solid.patches` of a table that begins with vector `begin` of the buffer.
+    /// `Solid.patches` of a table whose first vector is number `begin` of the buffer.
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;
         [begin, a, b, c]
     }
 
-    /// The layout of `patch_tables.glsl`.
+    /// Patches in the layout of `patch_tables.glsl`.
     pub fn patches(patches: &[QuadricPatch]) -> Self {
         let tables = Tables::new(patches, PATCH_ROWS);
         let (mut words, unit) = nodes(&tables.nodes);
@@ -49,7 +49,7 @@ impl GpuTables {
         }
     }
 
-    /// As the search has laid it out.
+    /// A table in the layout of its search.
     pub fn of_search(table: &SearchTable) -> Self {
         Self {
             vectors: table.vectors.clone(),
@@ -64,14 +64,13 @@ pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
     (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
 }
 
-/// Patches of which lists are made, in the layout of `patch_runs.glsl`; nothing if there are too
-/// many.
+/// Patches for lists, in the layout of `patch_runs.glsl`; empty if there are none, or too many.
 pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
         return Vec::new();
     }
     let unit = patches.iter().fold(1e-6, |m: f64, p| m.max(p.r[1])) / 65535.0;
-    // Ranges are rounded outwards; a beam is wider than a rounding.
+    // Ranges are rounded outwards. A beam is wider than this rounding.
     let levels = |p: &QuadricPatch| {
         let [low, high] = p.z.map(|z| (z * 32767.0).clamp(0.0, 32767.0));
         let sense = (p.quadric[0] + 1.0) as u32;
@@ -91,7 +90,7 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
         ];
         [quadric.map(f32::to_bits), guard.map(f32::to_bits), asked]
     };
-    // A guard that nothing passes.
+    // A guard that no point passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
     std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
         .chain(patches.iter().enumerate().flat_map(record))
@@ -99,10 +98,11 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
         .collect()
 }
 
-/// Least and largest `r^2` of nodes as words of two halves, rounded outwards; and their unit.
+/// Least and largest `r^2` of each node in two 16-bit halves of a word, rounded outwards, and their
+/// unit.
 fn nodes(extents: &[[f32; 2]]) -> (Vec<u32>, f32) {
     let largest = extents.iter().fold(1e-6f32, |m, n| m.max(n[1]));
-    // A little more than what 16 bits hold, so that roundings of the product stay inside.
+    // The unit is slightly larger than 16 bits need, so that roundings of the product stay inside.
     let unit = largest * (1.0 + 1e-6) / 65535.0;
     let word = |[low, high]: &[f32; 2]| {
         let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;

@@ -1,38 +1,38 @@
-//! Which parts of a cavity an eye may look into.
+//! The parts of a cavity that an eye may look into.
 //!
 //! # Tubes
 //!
-//! Patches that have nothing but emptiness between themselves and the axis, one after the other
-//! along their chain, line a **tube** `r < f(z)`, whatever `f` is: level faces between them close
-//! its jumps, so a ray that is in the tube at one height and at another is in it at all heights
-//! between, or it meets the solid. A tube is closed at an end where its chain ends on the axis.
+//! Consecutive patches of a chain with only empty space between them and the axis line a **tube**
+//! `r < f(z)`. `f` may have any form, because level faces between the patches close its jumps. A
+//! ray that is in the tube at two heights is therefore in it at all heights between, or it meets
+//! the solid. A tube is closed at an end where its chain ends on the axis.
 //!
-//! # What is hidden
+//! # Hidden points
 //!
-//! A ray that first meets the solid at a point `p` of a tube's lining, from an eye outside the
-//! tube, was in the tube at all heights from `p` to the end of the tube that it came in by; that
-//! end is open, and the eye is beyond it. In particular it passed the disc within each **rim**
-//! `(r_o, z_o)` on its way. Seen from the eye at `(R, z_e)` such a disc, thrown onto the height `z`
-//! of `p`, has its middle at distance `R |z_o - z| / |z_e - z_o|` beyond the axis and the radius
-//! `r_o |z_e - z| / |z_e - z_o|`; where the circle of radius `r` at that height lies wholly outside
-//! it, or around it, `p` is hidden. Both bounds are linear in `z`: it is enough to look at a cell's
-//! ends.
+//! Consider a ray from an eye outside the tube that first meets the solid at a point `p` of the
+//! tube's lining. The ray was in the tube at all heights from `p` to the end by which it entered.
+//! The entry end is open, and the eye is beyond it. In particular the ray passed the disc within
+//! each **rim** `(r_o, z_o)` on its way. The eye at `(R, z_e)` projects such a disc onto the height
+//! `z` of `p`. The projection's middle is at distance `R |z_o - z| / |z_e - z_o|` beyond the axis,
+//! and its radius is `r_o |z_e - z| / |z_e - z_o|`. `p` is hidden if the circle of radius `r` at
+//! that height is wholly outside the projection, or around it. The bounds are linear in `z`, so it
+//! is enough to test a cell's ends.
 
 use super::QuadricPatch;
 use glam::DVec2;
 use std::ops::Range;
 
-/// By how much discs are widened and points moved towards what may be seen, object units.
+/// Distance by which discs are widened, and points moved towards the visible side, object units.
 const MARGIN: f64 = 1e-4;
 
 /// The lining of one tube.
 #[derive(Clone, Debug, PartialEq)]
 struct Tube {
-    /// From where to where, `z`.
+    /// Least and largest `z`.
     z: [f64; 2],
     /// Its largest `r`.
     r: f64,
-    /// Whether it ends on the axis: at its lower end, at its upper.
+    /// True if it ends on the axis, for its lower and its upper end.
     closed: [bool; 2],
     /// Ends of its patches.
     rims: Vec<DVec2>,
@@ -46,16 +46,16 @@ struct Place {
     r: [f64; 2],
 }
 
-/// What is known of a hull's cells once and for all.
+/// The constant data of a hull's cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct CavityCulling {
     tubes: Vec<Tube>,
-    /// One a cell; none outside of tubes.
+    /// One entry per cell; none outside of tubes.
     cells: Vec<Option<Place>>,
 }
 
 impl CavityCulling {
-    /// Of patches in the order of their chains, dealt out to `cells`.
+    /// Data of patches, which are in the order of their chains and divided into `cells`.
     pub fn new(patches: &[QuadricPatch], cells: &[Range<usize>]) -> Self {
         let mut sight = Self::default();
         let mut runs = Vec::new();
@@ -78,7 +78,7 @@ impl CavityCulling {
         sight
     }
 
-    /// Whether no ray from an eye at `(r, z)` can first meet the solid in a cell.
+    /// True if no ray from an eye at `(r, z)` can first meet the solid in a cell.
     pub fn hides(&self, cell: usize, eye: DVec2) -> bool {
         let Some(place) = self.cells[cell] else {
             return false;
@@ -107,7 +107,7 @@ impl Tube {
         Self {
             z,
             r: r[1],
-            // With the solid on its left the lining of a tube is followed downwards.
+            // The chain has the solid on its left, so it runs down the lining of a tube.
             closed: [on_axis(end), on_axis(start)],
             rims: start
                 .into_iter()
@@ -118,8 +118,8 @@ impl Tube {
 }
 
 impl Place {
-    /// Whether the disc within `rim` shows nothing of the cell to an eye above (`up` 1) or below
-    /// (-1) both.
+    /// True if the disc within `rim` shows nothing of the cell to an eye above both (`up` 1) or
+    /// below both (-1).
     fn behind(&self, rim: DVec2, eye: DVec2, up: f64) -> bool {
         let ends = [up * self.z[0], up * self.z[1]];
         let (z_o, z_e) = (up * rim.y, up * eye.y);
@@ -147,13 +147,13 @@ fn extent(patches: &[QuadricPatch]) -> [[f64; 2]; 2] {
         .fold([none; 2], |[r, z], p| [join(r, p.r), join(z, p.z)])
 }
 
-/// The lining that begins at patch `at`: empty where none does.
+/// The lining that begins at patch `at`; empty if none begins there.
 fn run_from(patches: &[QuadricPatch], at: usize) -> Range<usize> {
     let chain = patches[at].chain;
     let joins = |p: &QuadricPatch| p.chain == chain && (p.is_plane() || is_exposed(patches, p));
     let end = at + patches[at..].iter().take_while(|p| joins(p)).count();
     let mut run = at..end;
-    // A level face at an end belongs to it where it closes the tube.
+    // A level face at an end belongs to the lining if it closes the tube.
     while run.start < run.end && patches[run.start].is_plane() && patches[run.start].start.x != 0.0
     {
         run.start += 1;
@@ -168,8 +168,8 @@ fn run_from(patches: &[QuadricPatch], at: usize) -> Range<usize> {
     if lines { run } else { end..end }
 }
 
-/// Whether nothing lies between a patch and the axis. Patches do not cross: who is nearer at one
-/// height is at all that both have.
+/// True if no other patch is between a patch and the axis. Patches do not cross, so the nearer one
+/// at one height is the nearer one at all common heights.
 fn is_exposed(patches: &[QuadricPatch], patch: &QuadricPatch) -> bool {
     if patch.quadric[0] >= 0.0 {
         return false;

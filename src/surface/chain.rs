@@ -2,17 +2,17 @@
 
 use glam::DVec2;
 
-/// A curve of the boundary, solid on its left: closed, or from the axis to the axis.
+/// A curve of the boundary with the solid on its left: closed, or from the axis to the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chain {
-    /// Its points `(r, z)`, object units; corners of the surface are among them. A closed chain
-    /// does not repeat its first point.
+    /// Points `(r, z)` of the curve, object units. The points include the corners of the surface. A
+    /// closed chain does not repeat its first point.
     pub points: Vec<DVec2>,
-    /// Whether the last point joins the first; else both ends lie on the axis.
+    /// True if the last point joins the first. Otherwise both ends are on the axis.
     pub closed: bool,
 }
 
-/// Ends that are nearer to each other than this are one point.
+/// Ends at a smaller distance from each other are one point.
 pub(super) const JOINT: f64 = 1e-8;
 
 /// Directed parts, each of at least two points.
@@ -33,7 +33,7 @@ impl Segments {
         self.points.push(p);
     }
 
-    /// A straight part.
+    /// Adds a straight part.
     pub fn line(&mut self, a: DVec2, b: DVec2) {
         self.begin();
         self.points.extend([a, b]);
@@ -57,17 +57,17 @@ impl Segments {
         [part[0], part[part.len() - 1]]
     }
 
-    /// Joins all parts; `None` if one of them leads nowhere, or nothing leads to it.
+    /// Joins all parts; `None` if some part has no successor or no predecessor.
     ///
-    /// Where several go on from one point (loops that touch) any choice closes: as many parts leave
-    /// a point as reach it.
+    /// Several parts may leave one point, if loops touch. Any choice closes the chains then,
+    /// because as many parts leave a point as reach it.
     pub fn join(&self) -> Option<Vec<Chain>> {
         let mut order: Vec<u32> = (0..self.len() as u32).collect();
         let start = |k: u32| self.points[self.starts[k as usize] as usize];
         order.sort_unstable_by(|&j, &k| start(j).x.total_cmp(&start(k).x).then(j.cmp(&k)));
         let mut used = vec![false; self.len()];
         let mut chains = Vec::new();
-        // Those that begin on the axis first, so that no walk that begins elsewhere can run into
+        // Parts that begin on the axis come first. No walk that begins elsewhere can then run into
         // their middle.
         for on_axis in [true, false] {
             for &first in &order {
@@ -120,7 +120,7 @@ impl Segments {
         }
     }
 
-    /// An unused part that starts at `p`: the one that was made next, if it does, else the nearest.
+    /// An unused part that starts at `p`: the part made next if it starts there, else the nearest.
     fn successor(&self, k: u32, p: DVec2, order: &[u32], used: &[bool]) -> Option<u32> {
         let start = |k: u32| self.points[self.starts[k as usize] as usize];
         let fits = |k: u32| !used[k as usize] && start(k).distance_squared(p) < JOINT * JOINT;

@@ -8,36 +8,36 @@ use crate::profile::{Outline, Segment};
 use crate::scene::Offset;
 use glam::DVec2;
 
-/// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and where the
-/// box's floor and ceiling cut it.
+/// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and its
+/// sections with the box's floor and ceiling.
 ///
-/// The side faces of the box are not part of it (they are not turned): whoever draws clips the ray
-/// there.
+/// The side faces of the box are not part of it, because they are not surfaces of revolution. The
+/// drawing code clips the ray there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contour {
     /// Curves that do not cross, solid on the left.
     pub chains: Vec<Chain>,
 }
 
-/// What of an outline does not depend on the offset, prepared once.
+/// The data of an outline that does not depend on the offset, prepared once.
 #[derive(Clone, Debug)]
 pub struct ContourSource {
-    /// The surface: all but what lies on the axis, each loop in its order.
+    /// The surface: all segments except those on the axis, each loop in its order.
     segments: Vec<Segment>,
-    /// The corner before each segment, where a curve begins with it on the axis, and the one after
+    /// The corner before each segment, if a curve begins there on the axis, and the corner after
     /// it.
     corners: Vec<[Option<Corner>; 2]>,
     tree: Tree,
 }
 
-/// What is nearer to the box's floor or ceiling than this lies in it.
+/// A point within this distance of the box's floor or ceiling counts as on it.
 const FACE: f64 = 1e-9;
 
 impl ContourSource {
     /// Prepares an outline.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] when no part of it is off the axis, or a point is not finite.
+    /// [`ErrorKind::Content`] if no part of it is off the axis, or a point is not finite.
     pub fn new(outline: &Outline) -> Result<Self> {
         let snap = |p: DVec2| {
             let near = |v: f64| {
@@ -79,11 +79,11 @@ impl ContourSource {
         })
     }
 
-    /// The contour of the profile under an offset. It has no chain where nothing is left of the
-    /// solid within the box.
+    /// The contour of the profile under an offset. The contour has no chain if no part of the solid
+    /// is left within the box.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] when the contour cannot be closed: loops that cross, or numbers that
+    /// [`ErrorKind::Content`] if the contour cannot be closed: loops that cross, or numbers that
     /// are not finite.
     pub fn contour(&self, offset: &Offset) -> Result<Contour> {
         let Offset {
@@ -92,8 +92,8 @@ impl ContourSource {
             chamfer,
         } = *offset;
         let plain = extend == 0.0 && (bevel == 0.0 || chamfer <= 0.0);
-        // Curves that touch without crossing have no use for an exact offset: one that is wrong by
-        // a few ten-thousandths of a texel will do.
+        // Curves that touch without crossing may not close at the exact offset. An offset that is
+        // wrong by a few ten-thousandths of a texel is good enough.
         let trials = [0.0, 1e-7, -1e-7, 3e-7, -3e-7, 1e-6, -1e-6];
         let finite = extend.is_finite() && bevel.is_finite() && chamfer.is_finite();
         let found = if plain {
@@ -114,7 +114,7 @@ impl ContourSource {
         })
     }
 
-    /// The outline itself.
+    /// Parts of the outline itself.
     fn plain(&self) -> Segments {
         let mut parts = Segments::default();
         for s in &self.segments {
@@ -125,7 +125,7 @@ impl ContourSource {
         parts
     }
 
-    /// The outline moved by `w`.
+    /// Parts of the outline moved by `w`.
     fn moved(&self, offset: &Offset) -> Segments {
         let mut parts = Segments::default();
         let mut trimmer = Trimmer::default();
@@ -164,7 +164,7 @@ fn corners_of(segments: &[Segment], corners: &mut Vec<[Option<Corner>; 2]>) {
     for (k, s) in segments.iter().enumerate() {
         let (previous, next) = (&segments[(k + n - 1) % n], &segments[(k + 1) % n]);
         let own = normal(s);
-        // On the axis the mirrored half goes on: between the two stands the axis itself.
+        // The mirrored half continues on the axis, and the axis itself is between the two halves.
         let axis = DVec2::new(0.0, own.y.signum());
         let before = (previous.b != s.a || s.a.x == 0.0).then(|| corner(s.a, axis, own));
         let after = if next.a != s.b || s.b.x == 0.0 {
@@ -185,8 +185,8 @@ fn corner(point: DVec2, before: DVec2, after: DVec2) -> Option<Corner> {
     })
 }
 
-/// The part of a segment between floor and ceiling; none where it lies in one of them: there the
-/// face is made anew.
+/// The part of a segment between floor and ceiling. Returns none if the segment is in one of them,
+/// where the face is made anew.
 fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
     let (low, high) = (s.a.y.min(s.b.y), s.a.y.max(s.b.y));
     if high <= 0.0 || low >= 1.0 {
@@ -210,12 +210,12 @@ fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
 
 /// Closes the solid by the box's floor and ceiling.
 ///
-/// Where a part ends on the floor the solid begins, seen from the axis, and where one starts it
-/// ends; on the ceiling the other way round. Counting from the axis outwards tells where the face
-/// is solid. `None` when the count does not come out.
+/// Seen from the axis, the solid begins where a part ends on the floor, and it ends where a part
+/// starts there. The ceiling has the opposite order. A count from the axis outwards gives the solid
+/// ranges of the face. Returns `None` if the count is inconsistent.
 fn faces(parts: &mut Segments) -> Option<()> {
     for face in [0.0, 1.0] {
-        // Change of the count, seen from the axis.
+        // Changes of the count, seen from the axis.
         let mut events: Vec<(f64, i32)> = Vec::new();
         for k in 0..parts.len() {
             let [start, end] = parts.ends(k);

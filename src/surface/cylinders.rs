@@ -1,4 +1,4 @@
-//! Cylinders about a solid's axis: those that it holds, and those that hold it.
+//! Cylinders about a solid's axis: some inside the solid, some around it.
 
 use super::{QuadricPatch, SOLID_ROWS, extents, solid_radii};
 use crate::profile::{Outline, Segment};
@@ -11,60 +11,61 @@ pub(crate) struct CylinderPiece {
     pub high: f64,
 }
 
-/// Cylinders about an axis, from the lowest to the highest: the more the larger a copy is seen.
+/// Cylinders about an axis, from the lowest to the highest. Copies that are larger on the screen
+/// use more of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cylinders([Vec<CylinderPiece>; 3]);
 
 impl Cylinders {
-    /// Of rows with these radii, as [`cylinders`] says.
+    /// Cylinders for rows with these radii: see [`cylinders`].
     pub fn new(radii: &[f64], bound: fn(f64, f64) -> f64) -> Self {
         Self([3, 8, 16].map(|count| cylinders(radii, count, bound)))
     }
 
-    /// Of a copy that is seen in so many rows of pixels; below `few` rows there are few.
+    /// The cylinders for a copy that covers `rows` rows of pixels; few cylinders below `few` rows.
     pub fn of(&self, rows: u32, few: u32) -> &[CylinderPiece] {
         &self.0[usize::from(rows >= few) + usize::from(rows >= MANY_ROWS)]
     }
 }
 
-/// Copies of more rows of pixels are worth many cylinders.
+/// Least rows of pixels of a copy for which many cylinders pay.
 const MANY_ROWS: u32 = 64;
 
-/// Cylinders within a solid: what it is sure to hide.
+/// Cylinders within a solid, which hide everything behind them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InnerCylinders(Cylinders);
 
-/// Cylinders that hold a solid: where it can show.
+/// Cylinders around a solid, which contain everything that can show.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OuterCylinders(Cylinders);
 
-/// What copies of fewer rows of pixels hide is told by few cylinders.
+/// Copies with fewer rows of pixels use few inner cylinders.
 const FEW_ROWS: u32 = 12;
 
 impl InnerCylinders {
-    /// Of the solid that the patches enclose.
+    /// Inner cylinders of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
         Self(Cylinders::new(&solid_radii(patches), f64::min))
     }
 
-    /// Of a copy that is seen in so many rows of pixels.
+    /// The cylinders for a copy that covers this many rows of pixels.
     pub fn of(&self, rows: u32) -> &[CylinderPiece] {
         self.0.of(rows, FEW_ROWS)
     }
 }
 
-/// Outer cylinders of copies of fewer rows of pixels are few.
+/// Copies with fewer rows of pixels use few outer cylinders.
 const FEW_OUTER_ROWS: u32 = 24;
 
 impl OuterCylinders {
-    /// Of the solid that the patches enclose.
+    /// Outer cylinders of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
         let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
         let radii: Vec<f64> = extents(patches, SOLID_ROWS).iter().map(most).collect();
         Self::of_radii(&radii)
     }
 
-    /// Of the solid that an outline encloses, as far as its box reaches.
+    /// Outer cylinders of the solid that an outline encloses, within the height of its box.
     pub fn of_outline(outline: &Outline) -> Self {
         let rows = SOLID_ROWS as f64;
         let mut radii = [0.0f64; SOLID_ROWS];
@@ -74,7 +75,7 @@ impl OuterCylinders {
             let last = (high.y * rows).floor() as usize;
             let radius_at = |row: usize| {
                 let part = (row as f64 / rows - low.y) / (high.y - low.y);
-                // Of a level segment the division gives no number.
+                // The division gives NaN for a level segment.
                 let radius = low.x + part.clamp(0.0, 1.0) * (high.x - low.x);
                 if radius.is_nan() {
                     low.x.max(high.x)
@@ -90,25 +91,25 @@ impl OuterCylinders {
         Self::of_radii(&radii)
     }
 
-    /// Of a solid whose rows of equal height have these largest radii.
+    /// Outer cylinders of a solid with these largest radii in rows of equal height.
     pub fn of_radii(radii: &[f64]) -> Self {
         Self(Cylinders::new(radii, f64::max))
     }
 
-    /// Of a copy that is seen in so many rows of pixels.
+    /// The cylinders for a copy that covers this many rows of pixels.
     pub fn of(&self, rows: u32) -> &[CylinderPiece] {
         self.0.of(rows, FEW_OUTER_ROWS)
     }
 }
 
-/// At most `count` runs of rows, each with its least or largest radius, as `bound` says, that
-/// together are as near to the radii as can be; those of no radius are left out.
+/// At most `count` runs of rows, each with its least or largest radius by `bound`. Together they
+/// are as close to the radii as possible. Runs of radius 0 are left out.
 fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<CylinderPiece> {
     let n = radii.len();
     let outer = bound(0.0, 1.0) > 0.0;
     let sense = if outer { -1.0 } else { 1.0 };
-    // Of the first j rows: what is covered at best, and where the last run begins. Rows within may
-    // be left out, rows without may not.
+    // The best cover of the first j rows, and the start of the last run. Rows may be left out of
+    // inner cylinders, but not of outer ones.
     let left_out = |j: usize| {
         if outer && j > 0 {
             f64::NEG_INFINITY

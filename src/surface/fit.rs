@@ -1,25 +1,27 @@
 //! Chains cut into the longest quadrics that stay within a tolerance.
 //!
 //! Over a stretch on which `z` is monotone the boundary is a function `r^2(z)`. The quadrics with
-//! `a = ±1` are the parabolas `r^2 = p(z)`; those that pass through both ends of the stretch are
-//! one family,
+//! `a = ±1` are the parabolas `r^2 = p(z)`. The ones through both ends of the stretch are one
+//! family,
 //!
 //! ```text
 //! p(z) = L(z) + q (z - za)(z - zb),   L linear with L(za) = ra^2, L(zb) = rb^2.
 //! ```
 //!
-//! A sample `(r, z)` of the boundary, whose direction there is `dr/dz = k`, is met within the
-//! tolerance `tau` (measured along the normal) when `sqrt(p)` is within `tau sqrt(1 + k^2)` of `r`.
-//! That is an interval of `p`, so one of `q`; the stretch can be one patch when the intervals of
-//! all samples have a common point. On a straight segment `r^2` is itself such a parabola, so
-//! between two corners the deviation is a parabola too, and corners and middles are samples enough.
+//! Let `(r, z)` be a sample of the boundary, whose direction there is `dr/dz = k`. The parabola
+//! meets it within the tolerance `tau`, measured along the normal, if `sqrt(p)` is within `tau
+//! sqrt(1 + k^2)` of `r`. The condition gives an interval of `p`, and so an interval of `q`. The
+//! stretch can be one patch if the intervals of all samples have a common point. The function `r^2`
+//! of a straight segment is itself such a parabola. The deviation between two corners is therefore
+//! a parabola too, and corners and middles are enough samples.
 //!
-//! Stretches grow greedily: as neighbours share their ends exactly, nothing is lost at the joints.
+//! Stretches grow greedily. Neighbours share their ends exactly, so there are no gaps at the
+//! joints.
 
 use super::{Contour, QuadricPatch};
 use glam::DVec2;
 
-/// How contours are cut.
+/// Options for cutting contours into patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// Largest distance between contour and patches, object units, along the normal.
@@ -27,8 +29,8 @@ pub struct FitOptions {
 }
 
 impl Default for FitOptions {
-    /// A 285th of a texel of a map of 512 rows: along grazing rays it becomes six times as much,
-    /// and the 99th percentile of all rays stays below a fiftieth.
+    /// A 285th of a texel of a map of 512 rows. The error grows sixfold along grazing rays, and the
+    /// 99th percentile of all rays stays below a fiftieth of a texel.
     fn default() -> Self {
         Self {
             tolerance: 0.0035 / 512.0,
@@ -36,31 +38,32 @@ impl Default for FitOptions {
     }
 }
 
-/// Rounding unit of the arithmetic that will solve the quadrics.
+/// Rounding unit of the arithmetic that solves the quadrics.
 const EPSILON: f64 = (f32::EPSILON / 2.0) as f64;
-/// Least by which guards reach past a patch's ends, object units: a few roundings of coordinates of
-/// size 1.
+/// Least distance by which guards reach past a patch's ends, object units: a few roundings of
+/// coordinates of size 1.
 const OVERLAP: f64 = 1e-6;
-/// Steepest `|dr/dz|` at the end of a patch that is told from its neighbours by `z` alone.
+/// Largest `|dr/dz|` at the end of a patch whose guard separates it from its neighbours only by
+/// `z`.
 const STEEP: f64 = 4.0;
-/// Above this `|dr/dz|` a patch is the flattest paraboloid that will do: where `r^2` is all but
-/// linear in `z` the quadric has no other sheet near, the guard can go by `r`, and nothing is
-/// divided by small differences.
+/// A patch above this `|dr/dz|` is the flattest possible paraboloid. There `r^2` is almost linear
+/// in `z`, so the quadric has no other sheet near. The guard can use `r`, and no division by small
+/// differences occurs.
 const FLAT: f64 = 8.0;
-/// Farthest that a guard may reach past a patch's end, along the boundary, where a shorter patch
-/// reaches less far, object units: less than a tenth of a texel of 512 rows. On a flat patch with a sheet
-/// near, the guard goes by `z` alone, and a rounding of `z` moves `r` by `|dr/dz|` times as much.
+/// Largest distance along the boundary by which a guard may reach past a patch's end, if a shorter
+/// patch reaches less far. Object units: less than a tenth of a texel of 512 rows. On a flat patch
+/// with a sheet near, the guard uses only `z`, and a rounding of `z` moves `r` by `|dr/dz|` times
+/// as much.
 const REACH: f64 = 0.08 / 512.0;
 /// Most bands of a flat segment.
 const MOST_BANDS: f64 = 128.0;
-/// Radii are not told apart more finely than at this distance from the axis: `r^2` has an absolute
+/// Distance from the axis below which the resolution of radii grows no finer: `r^2` has an absolute
 /// rounding error.
 const SMALL: f64 = 0.05;
 /// Segments that climb less than this are horizontal.
 const LEVEL: f64 = 1e-9;
 
-/// Cuts all chains of a contour, each in its own order; patches of a chain stand one after the
-/// other.
+/// Cuts all chains of a contour, each in its own order. Patches of a chain are contiguous.
 #[must_use]
 pub fn fit_patches(contour: &Contour, options: &FitOptions) -> Vec<QuadricPatch> {
     let mut patches = Vec::new();
@@ -82,7 +85,7 @@ pub fn fit_patches(contour: &Contour, options: &FitOptions) -> Vec<QuadricPatch>
     patches
 }
 
-/// A place of the boundary, and the interval of `r^2` that a patch may have there.
+/// A height of the boundary, and the interval of `r^2` that a patch may have there.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     z: f64,
@@ -94,7 +97,7 @@ struct Sample {
 struct Cutter {
     tolerance: f64,
     points: Vec<DVec2>,
-    /// `samples[2 k]` is point `k`, `samples[2 k + 1]` the middle between it and the next.
+    /// `samples[2 k]` is point `k`; `samples[2 k + 1]` is the middle between it and the next.
     samples: Vec<Sample>,
 }
 
@@ -106,7 +109,7 @@ impl Cutter {
         }
     }
 
-    /// Takes a chain; a closed one is turned so that it begins (and ends) at a lowest point.
+    /// Loads a chain. A closed one is rotated so that it begins and ends at a lowest point.
     fn load(&mut self, chain: &[DVec2], closed: bool) {
         self.points.clear();
         if closed {
@@ -140,8 +143,8 @@ impl Cutter {
         }
     }
 
-    /// Appends a point. What is all but horizontal becomes so, and what is so flat that a cone
-    /// through it could not be solved in 32 bits is divided into bands low enough for paraboloids.
+    /// Appends a point. A nearly horizontal segment becomes horizontal. A segment too flat for
+    /// solving its cone in 32 bits is divided into bands low enough for paraboloids.
     fn push(&mut self, mut p: DVec2) {
         let Some(&q) = self.points.last() else {
             self.points.push(p);
@@ -156,8 +159,9 @@ impl Cutter {
             let most = self.largest_bend(widest, 2.0 * widest * slope);
             let bend = slope * slope;
             if bend > most || (slope > FLAT && self.reach(q, p, bend) > REACH) {
-                // Between radii r and r + d a paraboloid through both ends is d^2 / (8 slope r) off:
-                // half of the tolerance where the roots of the radii are evenly spaced.
+                // Between radii r and r + d, a paraboloid through both ends is off by d^2 / (8
+                // slope r). The error is half of the tolerance where the roots of the radii are
+                // evenly spaced.
                 let [from, to] = [q.x, p.x].map(f64::sqrt);
                 let bands = ((to - from).abs() / (slope * self.tolerance).sqrt()).ceil();
                 let bands = bands.clamp(1.0, MOST_BANDS);
@@ -171,8 +175,8 @@ impl Cutter {
         self.points.push(p);
     }
 
-    /// The largest `|q|` that floats bear: the terms of `G`, up to `|q|` in size, are rounded, and
-    /// the error must stay below half of the tolerance times `|grad G|`.
+    /// The largest `|q|` for which 32-bit floats are accurate enough. The terms of `G`, up to `|q|`
+    /// in size, are rounded. The error must stay below half of the tolerance times `|grad G|`.
     fn largest_bend(&self, r: f64, slope: f64) -> f64 {
         0.5 * self.tolerance / EPSILON * (2.0 * r).hypot(slope)
     }
@@ -227,8 +231,8 @@ impl Cutter {
         best
     }
 
-    /// `q` of the patch along a single segment: the cone, as far as floats bear it; of a flat one
-    /// the least that will do.
+    /// `q` of the patch along a single segment: the cone, up to the largest bend. A flat segment
+    /// has the smallest `|q|` within the tolerance.
     fn single(&self, i: usize) -> f64 {
         let (a, b) = (self.points[i], self.points[i + 1]);
         let slope = (b.x - a.x) / (b.y - a.y);
@@ -242,8 +246,8 @@ impl Cutter {
         (slope * slope).min(most)
     }
 
-    /// A `q` with which one patch from point `i` to point `j` is told from its neighbours and stays
-    /// within the tolerance.
+    /// A `q` with which one patch from point `i` to point `j` is distinct from its neighbours and
+    /// stays within the tolerance.
     fn bend(&self, i: usize, j: usize) -> Option<f64> {
         let q = self.within(i, j)?;
         let (a, b) = (self.points[i], self.points[j]);
@@ -261,7 +265,7 @@ impl Cutter {
         let (mut low, mut high) = (-most, most);
         for s in &self.samples[2 * i + 1..2 * j] {
             let straight = pa + linear * (s.z - a.y);
-            // Negative: the samples lie between the ends.
+            // Negative, because the samples are between the ends.
             let factor = (s.z - a.y) * (s.z - b.y);
             if factor >= 0.0 {
                 continue;
@@ -277,8 +281,8 @@ impl Cutter {
         } else {
             0.5 * (low + high)
         };
-        // Told from its neighbours by its length along the boundary, if r is monotone; else by z,
-        // if its ends are steep.
+        // The guard can separate it from its neighbours by length along the boundary, if r is
+        // monotone; else by z, if its ends are steep.
         let climb = b.y - a.y;
         let ends = [(a.x, linear - q * climb), (b.x, linear + q * climb)];
         let monotone = ends[0].1 * ends[1].1 >= 0.0;
@@ -291,7 +295,7 @@ impl Cutter {
     fn quadric(&self, i: usize, j: usize, q: f64, chain: u32) -> QuadricPatch {
         let (a, b) = (self.points[i], self.points[j]);
         let (p, slopes) = parabola(a, b, q);
-        // Upwards the solid lies towards the axis.
+        // On an upward stretch the solid is towards the axis.
         let side = (b.y - a.y).signum();
         let mut r = [a.x.min(b.x), a.x.max(b.x)];
         if slopes[0] * slopes[1] < 0.0 {
@@ -312,8 +316,8 @@ impl Cutter {
         }
     }
 
-    /// Of the guard of a patch from `a` to `b`: the weights of `z` and `r^2`, and by how much it
-    /// reaches past what it has at the ends. `widest`: the largest `r`.
+    /// The guard of a patch from `a` to `b`: the weights of `z` and `r^2`, and the amount by which
+    /// it reaches past its values at the ends. `widest`: the largest `r`.
     fn weights(&self, a: DVec2, b: DVec2, q: f64, widest: f64) -> [f64; 3] {
         let (p, slopes) = parabola(a, b, q);
         let monotone = slopes[0] * slopes[1] >= 0.0;
@@ -325,8 +329,8 @@ impl Cutter {
         } else {
             0.0
         };
-        // The size of the coefficients over that of the gradient, which is what their rounding is
-        // multiplied by.
+        // The size of the coefficients over the size of the gradient, which is the factor of their
+        // rounding.
         let bend = (p[2].abs() + p[1].abs()) / slopes[0].hypot(2.0 * widest);
         [
             1.0,
@@ -335,7 +339,8 @@ impl Cutter {
         ]
     }
 
-    /// How far along the boundary the guard of a patch from `a` to `b` lets points past its ends.
+    /// Distance along the boundary by which the guard of a patch from `a` to `b` admits points past
+    /// its ends.
     fn reach(&self, a: DVec2, b: DVec2, q: f64) -> f64 {
         let [cz, cr, overlap] = self.weights(a, b, q, a.x.max(b.x));
         let along = (b - a).normalize_or_zero();
@@ -345,7 +350,7 @@ impl Cutter {
 
     fn plane(&self, i: usize, j: usize, chain: u32) -> QuadricPatch {
         let (a, b) = (self.points[i], self.points[j]);
-        // Inwards the solid lies below.
+        // On an inward stretch the solid is below.
         let side = if b.x < a.x { 1.0 } else { -1.0 };
         let cr = 1.0 / (2.0 * (0.5 * (a.x + b.x)).max(SMALL));
         QuadricPatch {
@@ -380,12 +385,13 @@ fn guard([cz, cr, overlap]: [f64; 3], a: DVec2, b: DVec2) -> [f64; 4] {
     [cz, cr, from.min(to) - overlap, from.max(to) + overlap]
 }
 
-/// The largest weight of `r^2` in a guard with which the quadric's other sheet fails it everywhere
-/// in the box.
+/// The largest weight of `r^2` in a guard at which the quadric's other sheet fails the guard
+/// everywhere in the box.
 ///
-/// On `r^2 = p(z)` the guard's value `z + w p(z)` (for a rising `p`) is a parabola in `z`. It turns
-/// `1 / (2 |q| w)` beyond where `p` itself turns, and takes the patch's values again as far on the
-/// other side: that has to lie beyond floor or ceiling.
+/// On `r^2 = p(z)` the guard's value `z + w p(z)` (for a rising `p`) is a parabola in `z`. The
+/// turning point is `1 / (2 |q| w)` beyond the turning point of `p`. The guard takes the patch's
+/// values again at the same distance on the other side. Those points must be beyond floor or
+/// ceiling.
 fn unambiguous([_, p1, q]: [f64; 3], [low, high]: [f64; 2]) -> f64 {
     const BEYOND: f64 = 0.01;
     if q == 0.0 {
@@ -415,7 +421,7 @@ impl Sample {
     }
 }
 
-/// Whether the boundary goes up (1), down (-1) or level (0).
+/// 1 if the boundary goes up, -1 if it goes down, 0 if it is level.
 fn direction(a: DVec2, b: DVec2) -> i32 {
     if a.y < b.y {
         1

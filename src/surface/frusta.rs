@@ -1,5 +1,5 @@
-//! The shell of one cell: frusta along its surface, walls at its ends ([`hull`](super::hull) says
-//! what for).
+//! The shell of one cell: frusta along its surface, and walls at its ends. [`hull`](super::hull)
+//! gives the purpose.
 
 use super::{ProxyHullOptions, QuadricPatch};
 use glam::DVec2;
@@ -7,8 +7,7 @@ use glam::DVec2;
 /// Walls reach at least this far into the solid, object units.
 const ROOT: f64 = 1e-4;
 
-/// A part of a cell's surface on one patch, from one height to another (of a plane: from one radius
-/// to another).
+/// A part of a cell's surface on one patch, between two heights, or between two radii for a plane.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     from: DVec2,
@@ -25,8 +24,8 @@ pub(super) struct FrustaBuilder<'a> {
 impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
     ///
-    /// Patches shorter than the margin have no direction to build on, and no need: what wraps their
-    /// neighbours wraps them.
+    /// Patches shorter than the margin have no usable direction and are skipped. The frusta around
+    /// their neighbours contain them, too.
     pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
         let long = |p: &&QuadricPatch| p.start.distance(p.end) > self.options.margin;
         let kept: Vec<QuadricPatch> = cell.iter().filter(long).copied().collect();
@@ -48,7 +47,7 @@ impl FrustaBuilder<'_> {
                 })
                 .collect();
             self.follow(cell, &spans, 0, &mut frusta);
-            // A rim between a part that looks outwards and one that looks inwards.
+            // A rim between a part that faces outwards and one that faces inwards.
             let rim = (from > 0 && a * cell[from - 1].quadric[0] < 0.0).then(|| {
                 let joint = cell[from].start;
                 let up = if a < 0.0 { 1.0 } else { -1.0 };
@@ -61,7 +60,7 @@ impl FrustaBuilder<'_> {
         shell
     }
 
-    /// Frusta along spans that look the same way, in or out (or one plane).
+    /// Adds frusta along spans that all face outwards, all face inwards, or are one plane.
     fn follow(&self, cell: &[QuadricPatch], spans: &[Span], depth: u32, out: &mut Vec<[DVec2; 2]>) {
         let [first, .., last] = spans else {
             if let [one] = spans {
@@ -74,7 +73,7 @@ impl FrustaBuilder<'_> {
         let along = (b - a).normalize_or_zero();
         let mut extent = [0.0f64; 2];
         let mut farthest = (0.0, 1);
-        // By how much a joint lies beyond the chord's ends: a rim that turns back within the gap.
+        // Distance of a joint beyond the chord's ends: a rim that turns back within the gap.
         let mut beyond = (self.options.margin, None);
         for (k, s) in spans.iter().enumerate() {
             for (height, _) in extremes(&cell[s.patch], s, a, outward) {
@@ -141,7 +140,7 @@ impl FrustaBuilder<'_> {
         };
         let [mut from, mut to] = [rim(a, b), rim(b, a)];
         if patch.is_plane() {
-            // Its own rims: what the neighbours' margins leave out.
+            // A plane extends its own rims over the part that the neighbours' margins leave out.
             let way = (to - from).normalize_or_zero() * self.options.margin;
             (from, to) = (from - way, to + way);
             (from.x, to.x) = (from.x.max(0.0), to.x.max(0.0));
@@ -179,14 +178,14 @@ impl FrustaBuilder<'_> {
         }
     }
 
-    /// Where a wall leads that comes from `top` to the joint at the end of `[.., joint]`: through
-    /// the joint, or rather through a polygon that keeps the joint's circle on the wall's inner side
-    /// all round, and as far beyond as that polygon departs from the circle, so that no ray passes
+    /// The feet of a wall that comes from `top`, for the joint at the end of `[.., joint]`. The
+    /// wall goes through a polygon that keeps the joint's circle on its inner side all round. The
+    /// wall continues beyond by the distance of that polygon from the circle, so that no ray passes
     /// under the foot.
     ///
-    /// A plane's rims are beyond its circles already. There the wall stands upright, and goes on
-    /// behind the plane to the joint: a ray that passes between polygon and circle from behind can
-    /// meet the cell's other patches.
+    /// A plane's rims are already beyond its circles. There the wall is upright and continues
+    /// behind the plane to the joint. Otherwise a ray from behind could pass between polygon and
+    /// circle and meet the cell's other patches.
     fn feet(
         &self,
         patch: &QuadricPatch,
@@ -215,9 +214,8 @@ fn outward(a: DVec2, b: DVec2) -> DVec2 {
     -(b - a).perp().normalize_or_zero()
 }
 
-/// Where on a span the height over the line through `a` is extreme: heights and places, besides the
-/// ends those points at which the meridian `r = sqrt(p(z))` runs along the line: `p'^2 nr^2 = 4
-/// nz^2 p`.
+/// The extreme heights of a span over the line through `a`, with their points: the ends and the
+/// points at which the meridian `r = sqrt(p(z))` is parallel to the line: `p'^2 nr^2 = 4 nz^2 p`.
 fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(f64, DVec2)> {
     let height = |p: DVec2| (p - a).dot(normal);
     let mut found = vec![(height(span.from), span.from), (height(span.to), span.to)];
@@ -242,10 +240,11 @@ fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(
     found
 }
 
-/// Appends frusta, each joined to the one before it: at bulges at the intersection of their lines,
-/// in hollows where they cross, else by a frustum more. That one goes around `rim`, the joint in
-/// the meridian through the corners: its polygon has the one part's circles around it and is within
-/// the other's, and would leave part of the joint's circle outside.
+/// Appends frusta and joins each to the one before it. Frusta at a bulge meet at the intersection
+/// of their lines, and in a hollow where they cross. Otherwise another frustum joins them. The
+/// joining frustum goes around `rim`, if given: the joint in the meridian through the corners. A
+/// direct one has polygons around the circles of one part and within those of the other, and would
+/// leave part of the joint's circle outside.
 fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rim: Option<DVec2>) {
     for mut frustum in frusta.drain(..) {
         if let Some(last) = shell.last_mut() {

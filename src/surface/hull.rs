@@ -2,50 +2,52 @@
 //!
 //! # Cells
 //!
-//! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**.
-//! Around its surface, on the empty side, lies a shell: frusta along it, and walls at its two ends,
-//! from the frusta down to the surface and a little into the solid. Shell and surface
-//! enclose the cell's part of the empty space. A ray from outside that first meets the solid on one
-//! of the cell's patches was in that part just before; it came in through the shell (through the
-//! surface it would have come out of the solid, which it then had met before). So
+//! Up to [`ProxyHullOptions::patches_per_cell`] consecutive patches of a chain are a **cell**. A
+//! **shell** surrounds the cell's surface on the empty side. The shell has frusta along the surface
+//! and walls at the two ends, from the frusta down to the surface and a little into the solid.
+//! Shell and surface enclose the cell's part of the empty space. A ray from outside that first
+//! meets the solid on one of the cell's patches was in that part just before. The ray came in
+//! through the shell: through the surface it would have come out of the solid, which it then would
+//! have met before. So
 //!
-//! > a fragment of a front-facing triangle tests the patches of its own cell, no others, and the nearest fragment is the first hit.
+//! > a fragment of a front-facing triangle tests the patches of its own cell, no others, and the
+//! > nearest fragment is the first hit.
 //!
-//! No ray is lost however flat it glides along the surface, whichever way the profile folds:
-//! chains, undercuts and cavities need no care, and what a fragment finds is a true point of the
-//! boundary in every case. It holds for eyes outside all shells ([`ProxyHull::clear_of`]).
+//! No ray is lost, at any grazing angle and for any fold of the profile. Chains, undercuts and
+//! cavities need no special care, and every hit of a fragment is a true point of the boundary. The
+//! argument holds for eyes outside all shells ([`ProxyHull::clear_of`]).
 //!
 //! # Solids that their box cuts
 //!
-//! Only what lies between the box's four sides is drawn; floor and ceiling cut the outline itself.
-//! Let Q be where a ray comes between the sides, or the eye, if it is there, and P the first hit
-//! from there on. If Q is outside the solid and all shells, the ray enters the shell of P's cell
-//! after Q, as it meets nothing in between. So triangles between the sides suffice, and hits
-//! between them. An eye between the sides is in neither, as what they leave of the shells, and of
-//! the solid, is in front of the near plane. If Q is in the solid or a shell, it is on a side, no
-//! farther from the axis than [`ProxyHull::rows`] say. There the side is drawn. Where it is solid
-//! throughout, Q is the hit; elsewhere it is searched by a search that begins at Q.
+//! Only the part between the box's four sides is drawn; floor and ceiling cut the outline itself.
+//! Let Q be the point where a ray comes between the sides, or the eye if it is there. Let P be the
+//! first hit from Q on. If Q is outside the solid and all shells, the ray enters the shell of P's
+//! cell after Q, as it meets nothing in between. Triangles between the sides therefore suffice, and
+//! hits between them. An eye between the sides is in no shell and not in the solid, because the
+//! parts of both between the sides are in front of the near plane. If Q is in the solid or a shell,
+//! it is on a side, no farther from the axis than [`ProxyHull::rows`] gives. The side is drawn
+//! there. Where the side is solid throughout, Q is the hit; elsewhere a search begins at Q.
 //!
 //! # Frusta
 //!
-//! The shell of a cell is a polyline in the half-plane; each of its parts, turned about the axis in
+//! The shell of a cell is a polyline in the half-plane. Each of its parts, turned about the axis in
 //! `n` steps, is a **frustum** of `2 n` triangles. A frustum is as long as the surface stays within
-//! [`ProxyHullOptions::gap`] of it: it lies along the surface's chord, moved outwards to touch it
-//! (the support line; the extremes of a quadric's meridian above a line are the roots of a
-//! quadratic). Where two frusta meet at a bulge they are prolonged to their intersection, in a
-//! hollow cut at it, else joined by a third.
+//! [`ProxyHullOptions::gap`] of it. A frustum runs along the surface's chord, moved outwards until
+//! it touches the surface. Such a line is the support line: the extremes of a quadric's meridian
+//! above a line are the roots of a quadratic. Two frusta that meet at a bulge are extended to their
+//! intersection. In a hollow they are cut at it. Otherwise a third frustum joins them.
 //!
 //! A regular polygon of `n` corners at radius `f r` contains the circle of radius `r` with `f = 1 /
-//! cos(pi / n)`, and lies in it with `f = 1`. Walls that look away from the axis take the first,
-//! walls that look towards it the second, planes the one at their outer rim and the other at the
-//! inner. The radii of [`Frustum`] are those of the corners.
+//! cos(pi / n)`, and is inside it with `f = 1`. Walls that face away from the axis use the first
+//! factor, walls that face the axis the second. Planes use the first at their outer rim and the
+//! second at the inner rim. The radii of [`Frustum`] are those of the corners.
 //!
-//! # Growing it in a vertex shader
+//! # Expansion in a vertex shader
 //!
-//! `6 n` corners for each frustum (a vertex shader makes the `2 n` different ones from their
-//! number, an index buffer repeats them). Of corner `v`: `frustum = v / (6 n)`, `side = v % (6 n) /
-//! 6`, and by `v % 6` the corners `A_side, A_side+1, B_side+1, A_side, B_side+1, B_side`, where
-//! ring `A` is `from`, `B` is `to`, and corner `s` stands at the azimuth `2 pi s / n`.
+//! Each frustum has `6 n` corners. A vertex shader makes the `2 n` different ones from their
+//! number, and an index buffer repeats them. Corner `v` has `frustum = v / (6 n)` and `side = v %
+//! (6 n) / 6`. The number `v % 6` selects one of `A_side, A_side+1, B_side+1, A_side, B_side+1,
+//! B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` is at the azimuth `2 pi s / n`.
 //! Counter-clockwise is front. `tests/common/walk.rs` does the same on the CPU.
 
 use super::QuadricPatch;
@@ -54,23 +56,23 @@ use super::frusta::FrustaBuilder;
 use glam::DVec2;
 use std::ops::Range;
 
-/// How shells are made.
+/// Options for making shells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyHullOptions {
     /// Corners of the rings, at least 3.
     pub sides: u32,
-    /// Most patches of a cell: what a fragment tests.
+    /// Most patches of a cell, all of which a fragment tests.
     pub patches_per_cell: u32,
-    /// How far the surface may lie below a frustum before it is divided, object units.
+    /// Largest distance of the surface below a frustum before the frustum is divided, object units.
     pub gap: f64,
-    /// By how much frusta are moved outwards beyond what touches, object units: a rasteriser moves
-    /// corners by fractions of a pixel.
+    /// Distance by which frusta are moved outwards beyond touching, object units: a rasteriser
+    /// moves corners by fractions of a pixel.
     pub margin: f64,
 }
 
 impl Default for ProxyHullOptions {
-    /// What charted best (docs/searches.md): few triangles, at the price of fragments that meet
-    /// nothing.
+    /// The best values of the charts in `docs/searches.md`: few triangles, at the cost of fragments
+    /// without a hit.
     fn default() -> Self {
         Self {
             sides: 12,
@@ -86,11 +88,12 @@ impl Default for ProxyHullOptions {
 pub struct Frustum {
     /// Radius of the corners and height of the ring where it begins.
     pub from: [f32; 2],
-    /// The same where it ends; seen along `(from, to)` the solid lies on the left.
+    /// Radius of the corners and height of the ring where it ends. Seen along `(from, to)`, the
+    /// solid is on the left.
     pub to: [f32; 2],
     /// The cell's first patch.
     pub first: u32,
-    /// Number of the cell's patches, which stand one after the other.
+    /// Number of the cell's patches, which are contiguous.
     pub count: u32,
     /// Number of the cell.
     pub cell: u32,
@@ -103,7 +106,7 @@ pub struct ProxyHull {
     pub sides: u32,
     /// All frusta, cell by cell.
     pub frusta: Vec<Frustum>,
-    /// What each cell's shell occupies: `[r min, r max, z min, z max]`.
+    /// The extent of each cell's shell: `[r min, r max, z min, z max]`.
     pub extents: Vec<[f64; 4]>,
     sight: CavityCulling,
 }
@@ -127,7 +130,8 @@ impl ProxyHull {
                 .iter()
                 .take_while(|p| p.chain == chain)
                 .count();
-            // Cells of a chain as even as can be: the largest decides what every fragment tests.
+            // Cells of a chain are as even as possible: the largest sets the number of tests of
+            // each fragment.
             let count = left.div_ceil(left.div_ceil(most));
             let cell = &patches[first..first + count];
             let points = FrustaBuilder { options, widen }.of(cell);
@@ -139,8 +143,8 @@ impl ProxyHull {
         hull
     }
 
-    /// Runs of frusta that eyes at these `(r, z)` may see: cells in cavities that none of them
-    /// looks into are left out, whose shells would be drawn in vain.
+    /// Runs of frusta that eyes at these `(r, z)` may see. Cells in cavities that no eye looks into
+    /// are left out, because drawing their shells has no effect.
     #[must_use]
     pub fn seen_from(&self, eyes: &[DVec2]) -> Vec<Range<u32>> {
         let hidden = |cell: u32| eyes.iter().all(|&eye| self.sight.hides(cell as usize, eye));
@@ -177,12 +181,12 @@ impl ProxyHull {
                 });
             }
         }
-        // Flat sides lie nearer to the axis than their corners.
+        // Flat sides are nearer to the axis than their corners.
         extent[0] *= (std::f64::consts::PI / f64::from(self.sides)).cos();
         self.extents.push(extent);
     }
 
-    /// What all shells occupy, as of each [`ProxyHull::extents`]; the least radius is 0.
+    /// The extent of all shells, as in [`ProxyHull::extents`]; the least radius is 0.
     #[must_use]
     pub fn extent(&self) -> [f64; 4] {
         let none = [0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY];
@@ -191,8 +195,9 @@ impl ProxyHull {
         })
     }
 
-    /// The shells' height in `N` rows: of each its lowest and highest `z`, and the largest radius
-    /// that shells, and with them the solid, have in it; 0 where there is none.
+    /// The height of the shells in `N` rows. A row has its lowest `z`, its highest `z` and the
+    /// largest radius of shells in it. The solid is within that radius. The radius is 0 in empty
+    /// rows.
     #[must_use]
     pub fn rows<const N: usize>(&self) -> [[f64; 3]; N] {
         let [_, _, low, high] = self.extent();
@@ -216,7 +221,7 @@ impl ProxyHull {
         })
     }
 
-    /// Whether an eye at `(r, z)` is outside all shells by at least `margin`; if not, front faces
+    /// True if an eye at `(r, z)` is outside all shells by at least `margin`. Otherwise front faces
     /// may be behind it.
     #[must_use]
     pub fn clear_of(&self, eye: DVec2, margin: f64) -> bool {

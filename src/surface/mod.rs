@@ -1,24 +1,23 @@
-//! From a profile and an offset to a few quadrics of revolution, and to the tables that a shader
-//! walks.
+//! The way from a profile and an offset to a few quadrics of revolution, and to the tables that a
+//! shader walks.
 //!
 //! The surface `F(r, z) = d(r, z) - w(z) = 0` of a solid is a handful of closed curves of the
-//! half-plane. They are found exactly ([`ContourSource`]), cut into the longest patches that a
-//! quadric
+//! half-plane. [`ContourSource`] finds them exactly. [`fit_patches`] cuts them into the longest
+//! patches that a quadric
 //!
 //! ```text
 //! G(r, z) = a r^2 + k0 + k1 z + k2 z^2,   a in {-1, 0, 1},   G < 0 in the solid
 //! ```
 //!
-//! follows within a tolerance ([`fit_patches`]), and dealt out to rows of equal height
-//! ([`Tables`]). In `(z, r^2)` a ray is a parabola and a patch a parabola or a horizontal line:
-//! their meeting is one quadratic in `t`, the same for cylinders, cones, spheres, paraboloids,
-//! hyperboloids and planes.
+//! follows within a tolerance. [`Tables`] distributes the patches to rows of equal height. In `(z,
+//! r^2)` a ray is a parabola and a patch a parabola or a horizontal line. The intersection is one
+//! quadratic in `t`, the same for cylinders, cones, spheres, paraboloids, hyperboloids and planes.
 //!
-//! For the rasteriser the patches are wrapped in shells ([`hull`]).
+//! The patches are wrapped in shells for the rasteriser ([`hull`]).
 //!
 //! Data flows one way: outline → contour → patches → rows and hull. All of it is cheap enough to be
-//! made anew whenever the offset moves; what depends on the outline alone is prepared once, in the
-//! [`ContourSource`].
+//! made anew after each change of the offset. The parts that depend only on the outline are
+//! prepared once, in the [`ContourSource`].
 
 mod cavity_culling;
 mod chain;
@@ -50,35 +49,35 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadricPatch {
     /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`: negative in the solid, `grad G = (2 a
-    /// r, k1 + 2 k2 z)` outward. `a` is 1 where the solid lies towards the axis, -1 where it lies
-    /// away from it, 0 for planes `z = const`.
+    /// r, k1 + 2 k2 z)` outward. `a` is 1 if the solid is towards the axis, -1 if it is away from
+    /// it, 0 for planes `z = const`.
     pub quadric: [f64; 4],
-    /// Where the chain enters it, `(r, z)`.
+    /// Point `(r, z)` at which the chain enters the patch.
     pub start: DVec2,
-    /// Where the chain leaves it.
+    /// Point `(r, z)` at which the chain leaves the patch.
     pub end: DVec2,
     /// Least and largest `z`.
     pub z: [f64; 2],
     /// Least and largest `r`.
     pub r: [f64; 2],
-    /// `[cz, cr, low, high]`: a point of the quadric belongs to the patch where `low <= cz z + cr
-    /// r^2 <= high`.
+    /// `[cz, cr, low, high]`: a point of the quadric belongs to the patch if `low <= cz z + cr r^2
+    /// <= high`.
     ///
-    /// A range of `z` alone would not do: on a flat patch a rounding of `z` moves `r` far. The left
-    /// side grows along the patch about as its length does, whichever way it runs; the ends are
-    /// moved outwards by what the rounding of 32-bit floats can amount to, so that neighbours
-    /// overlap and no ray passes between them.
+    /// A range of only `z` would be too coarse: on a flat patch a rounding of `z` moves `r` far.
+    /// The left side grows along the patch about as its length does, in either direction. The ends
+    /// are moved outwards by the largest rounding of 32-bit floats, so that neighbours overlap and
+    /// no ray passes between them.
     pub guard: [f64; 4],
     /// Number of its chain in the [`Contour`].
     pub chain: u32,
-    /// The patch before it in its chain; none where the chain begins on the axis.
+    /// The patch before it in its chain; none if the chain begins on the axis.
     pub previous: Option<u32>,
-    /// The patch after it; none where the chain ends on the axis.
+    /// The patch after it; none if the chain ends on the axis.
     pub next: Option<u32>,
 }
 
 impl QuadricPatch {
-    /// `r^2` on the quadric at height `z`; of a plane (which has none), NaN.
+    /// `r^2` on the quadric at height `z`; NaN for a plane, which has none.
     #[must_use]
     pub fn square_at(&self, z: f64) -> f64 {
         let [a, k0, k1, k2] = self.quadric;
@@ -89,7 +88,7 @@ impl QuadricPatch {
         }
     }
 
-    /// Whether it is a plane `z = const`.
+    /// True if it is a plane `z = const`.
     #[must_use]
     pub fn is_plane(&self) -> bool {
         self.quadric[0] == 0.0

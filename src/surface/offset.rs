@@ -1,5 +1,5 @@
-//! The offset contour `d = w(z)`: all curves it can be made of, cut where they meet, those parts
-//! kept that nothing is nearer to.
+//! The offset contour `d = w(z)`: all curves that can form it, cut at their intersections. A part
+//! is kept if no other part of the surface is nearer to it.
 //!
 //! `w` is linear in `z`, `w = alpha + beta z`, in one or two layers of height. Let `n` be a unit
 //! vector away from the solid and `f` a point of the surface. The point `q = f + omega n` whose own
@@ -9,20 +9,20 @@
 //! omega = (alpha + beta f.z) / (1 - beta n.z).
 //! ```
 //!
-//! * Over a segment `n` is fixed and `f` runs: `q` runs along a straight line.
-//! * About a corner `f` is fixed and `n` turns between the normals of its segments: `q` runs along
-//!   a conic with a focus in the corner (a circle where `beta = 0`), its eccentricity `|beta|`. It
-//!   is outside (`omega > 0`) at a convex corner, inside at a reflex one.
+//! * Over a segment `n` is fixed and `f` moves: `q` moves along a straight line.
+//! * About a corner `f` is fixed and `n` turns between the normals of its segments. `q` moves along
+//!   a conic with a focus in the corner and the eccentricity `|beta|` (a circle if `beta = 0`). The
+//!   conic is outside (`omega > 0`) at a convex corner, inside at a reflex one.
 //!
-//! Where `1 - beta n.z` is negative (bevels steeper than 1 below the solid) `F` falls away from the
-//! surface: the curve runs backwards.
+//! If `1 - beta n.z` is negative (bevels steeper than 1 below the solid), `F` decreases away from
+//! the surface, and the curve runs backwards.
 //!
-//! Every point of the contour lies on such a curve, and a point of a curve lies on the contour if
-//! no other part of the surface is nearer than `|omega|`. This can change only where two curves
-//! meet: two lines, a line and a conic, or two conics, whose meetings lie on the line midway
-//! between their foci. All three are solved in closed form; both curves take the very same point,
-//! so that their parts join exactly. A feature's line and the conics of its own ends never meet but
-//! at their joints.
+//! Every point of the contour is on such a curve. A point of a curve is on the contour if no other
+//! part of the surface is nearer than `|omega|`. The answer can change only where two curves meet:
+//! two lines, a line and a conic, or two conics. Two conics meet on the line midway between their
+//! foci. All three cases are solved in closed form. Both curves take the very same point, so that
+//! their parts join exactly. A feature's line and the conics of its own ends meet only at their
+//! joints.
 
 mod curve;
 
@@ -48,7 +48,7 @@ impl Layer {
         self.alpha + self.beta * z
     }
 
-    /// A point brought exactly onto the borders of layer and half-plane, where it lies there.
+    /// The point, moved exactly onto a border of layer or half-plane if it is within `SHORT` of it.
     fn snapped(&self, mut p: DVec2) -> DVec2 {
         for z in [self.low, self.high] {
             if (p.y - z).abs() < SHORT {
@@ -68,15 +68,16 @@ pub(super) struct Corner {
     pub point: DVec2,
     /// Angle of the normal before it.
     pub angle: f64,
-    /// How far the normal turns: positive at convex corners.
+    /// Angle by which the normal turns: positive at convex corners.
     pub turn: f64,
 }
 
-/// Conics are divided into parts that turn less than this, so that each has its chord's size.
+/// Conics are divided into parts that turn less than this, so that each part is about as large as
+/// its chord.
 const SWEEP: f64 = 0.5;
-/// How far a conic may lie from the chords that stand for it, object units.
+/// Largest distance of a conic from its chords, object units.
 const SAGITTA: f64 = 1e-6;
-/// What is nearer by less than this is not nearer: some roundings of coordinates of size 1.
+/// Least difference of distances that counts as nearer: some roundings of coordinates of size 1.
 const NEARER: f64 = 2e-14;
 /// Segments shorter than this are left out; the joint bridges them.
 const SHORT: f64 = 0.2 * JOINT;
@@ -90,7 +91,7 @@ struct Candidate {
     feature: u32,
 }
 
-/// The working memory of one layer after the other.
+/// Working memory, used by one layer after the other.
 #[derive(Debug, Default)]
 pub(super) struct Trimmer {
     candidates: Vec<Candidate>,
@@ -101,7 +102,7 @@ pub(super) struct Trimmer {
 }
 
 impl Trimmer {
-    /// Appends the contour's parts within a layer.
+    /// Appends the parts of the contour within a layer.
     pub fn layer(
         &mut self,
         layer: Layer,
@@ -113,11 +114,11 @@ impl Trimmer {
         self.candidates.clear();
         let (mut feature, mut end) = (1, None);
         for (s, [before, after]) in segments.iter().zip(corners) {
-            // Neighbours in the list that do not join, as of two loops, share no feature.
+            // Neighbours in the list that do not join, such as two loops, share no feature.
             feature += if end == Some(s.a) { 2 } else { 4 };
             end = Some(s.b);
-            // The corner before a segment that has none after its predecessor: where a curve begins
-            // on the axis.
+            // The corner before a segment that is not the corner after its predecessor: a curve
+            // begins on the axis.
             if let Some(corner) = before {
                 self.conic(&layer, corner, feature - 1);
             }
@@ -160,8 +161,7 @@ impl Trimmer {
         let focus = corner.point;
         let size = layer.offset(focus.y);
         let (from, to) = (corner.angle, corner.angle + corner.turn);
-        // Where it can begin or end: borders of layer and half-plane, and where the divisor changes
-        // its sign.
+        // Possible ends: the borders of layer and half-plane, and sign changes of the divisor.
         let mut ends = vec![from, to];
         let mut cut = |x: f64| ends.extend(within(x, from, to));
         for z in [layer.low, layer.high] {
@@ -224,7 +224,7 @@ impl Trimmer {
         }
     }
 
-    /// Cuts all curves where they meet: a plane sweep upwards.
+    /// Cuts all curves at their intersections by a plane sweep upwards.
     fn sweep(&mut self, layer: &Layer) {
         let Self {
             candidates,
@@ -261,7 +261,7 @@ impl Trimmer {
         }
     }
 
-    /// Keeps the parts of each curve that lie on the contour.
+    /// Keeps the parts of each curve that are on the contour.
     fn keep(&self, layer: &Layer, tree: &Tree, parts: &mut Segments) {
         let mut cuts = &self.cuts[..];
         for (k, candidate) in self.candidates.iter().enumerate() {
@@ -274,7 +274,7 @@ impl Trimmer {
             let place = |j: usize| match j {
                 0 => (from, begin),
                 j if j > these.len() => (to, end),
-                // A conic that is walked backwards meets its cuts in reverse.
+                // A conic that runs backwards has its cuts in reverse order.
                 j if to < from => (these[these.len() - j].1, these[these.len() - j].2),
                 j => (these[j - 1].1, these[j - 1].2),
             };
@@ -303,8 +303,8 @@ impl Trimmer {
     }
 }
 
-/// The part of a line within a layer and the half-plane; none where it lies in the box's floor or
-/// ceiling, or in the upper border of a lower layer's neighbour (there the lower one has it).
+/// The part of a line within a layer and the half-plane. Returns none if the line is in the box's
+/// floor or ceiling, or in the border to the layer below, which has it already.
 fn clip_line(a: DVec2, b: DVec2, layer: &Layer) -> Option<(DVec2, DVec2)> {
     let level = |z: f64| (a.y - z).abs() < SHORT && (b.y - z).abs() < SHORT;
     if level(layer.low) || (level(layer.high) && layer.high >= 1.0) {
@@ -312,7 +312,7 @@ fn clip_line(a: DVec2, b: DVec2, layer: &Layer) -> Option<(DVec2, DVec2)> {
     }
     let (mut from, mut to) = (0.0f64, 1.0f64);
     let mut ends = [a, b];
-    // value >= 0 is within.
+    // A value >= 0 is within.
     let mut cut = |va: f64, vb: f64, fix: &dyn Fn(&mut DVec2)| {
         if va < 0.0 && vb < 0.0 {
             from = 2.0;

@@ -1,4 +1,4 @@
-//! The tables of the search: patches dealt out to rows of equal height, and a tree of the rows'
+//! The tables of the search: patches distributed to rows of equal height, and a tree of the rows'
 //! extents.
 //!
 //! # Layout
@@ -6,24 +6,24 @@
 //! `N` rows: row `i` is `i / N <= z <= (i + 1) / N`.
 //!
 //! * `records`: the patches, each as 12 floats `[a, k0, k1, k2] [cz, cr, low, high] [z0, z1, patch,
-//!   0]`: the quadric, the guard, and what only questions off the main path need: the patch's range
-//!   of `z`, and its number. They stand row by row (a patch that touches several rows stands there
-//!   several times, unless these rows hold the same patches: then they share), so that a row's
-//!   patches are one run.
+//!   0]`. A record holds the quadric, the guard, and the values that only tests off the main path
+//!   read: the patch's range of `z`, and its number. Records are sorted by row, so that a row's
+//!   patches are one run. A patch that touches several rows is repeated, unless these rows hold the
+//!   same patches and share a run.
 //! * `rows[i] = first << 12 | count`: that run.
 //! * `nodes`: `[min r^2, max r^2]` of the boundary, first of each row (level 0), then of each 4
-//!   rows (level 1), of each 16, and so on; `levels[l]` is where level `l` begins. An empty node is
+//!   rows (level 1), of each 16, and so on. `levels[l]` is the start of level `l`. An empty node is
 //!   `[+inf, -inf]`. The topmost level has at most 4 nodes.
 //!
-//! All extents are a little too large rather than too small (by a millionth).
-//! `tests/common/walk.rs` says how to walk it, and walks it as the shader does.
+//! All extents are rounded outwards, by a millionth. `tests/common/walk.rs` describes the walk and
+//! performs it as the shader does.
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
 use std::ops::RangeInclusive;
 
-/// By how much rows and extents reach past what they hold, object units (`r^2`: its square root's
-/// order): roundings of 32 bits.
+/// Distance by which rows and extents exceed their contents, object units (`r^2`: the order of its
+/// square root): roundings of 32 bits.
 pub(super) const MARGIN: f64 = 1e-6;
 
 /// A patch, as shaders read it: three vectors of four 32-bit floats.
@@ -32,7 +32,7 @@ pub(super) const MARGIN: f64 = 1e-6;
 pub struct GpuPatch {
     /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`.
     pub quadric: [f32; 4],
-    /// `[cz, cr, low, high]`: a point counts where `low <= cz z + cr r^2 <= high`.
+    /// `[cz, cr, low, high]`: a point counts if `low <= cz z + cr r^2 <= high`.
     pub guard: [f32; 4],
     /// `[z0, z1, patch, 0]`: the range of `z`, and the patch's number (exact up to 2^24).
     pub range: [f32; 4],
@@ -51,28 +51,28 @@ impl GpuPatch {
     }
 }
 
-/// The tables of one solid; the [module](self) tells their layout.
+/// The tables of one solid, in the layout of the [module](self).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
     /// Runs of records: `first << 12 | count` for each row.
     pub rows: Vec<u32>,
     /// `[min r^2, max r^2]`, level by level.
     pub nodes: Vec<[f32; 2]>,
-    /// Where each level of `nodes` begins; its length is the number of levels.
+    /// Start of each level of `nodes`; the length is the number of levels.
     pub levels: Vec<u32>,
     /// Patches, row by row.
     pub records: Vec<GpuPatch>,
-    /// Largest `r` of the boundary: where it exceeds the reach of the box's sides the box cuts the
-    /// solid.
+    /// Largest `r` of the boundary. The box cuts the solid if this radius exceeds the reach of the
+    /// box's sides.
     pub reach: f32,
 }
 
-/// Rows that the shaders draw with: a power of 4, which fills the tree. Fewer are made in less
-/// time.
+/// Number of rows for drawing: a power of 4, which fills the tree. Fewer rows take less time to
+/// make.
 pub const ROWS: u32 = 256;
 
 impl Tables {
-    /// Deals patches out to `rows` rows (at least 1, at most 4096).
+    /// Distributes patches to `rows` rows (at least 1, at most 4096).
     #[must_use]
     pub fn new(patches: &[QuadricPatch], rows: u32) -> Self {
         let rows = rows.clamp(1, 4096) as usize;
@@ -115,13 +115,13 @@ impl Tables {
 const MOST: usize = (1 << 12) - 1;
 const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// Rows that a patch touches, of so many.
+/// Rows that a patch touches. `rows`: number of all rows.
 fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
     let row = |z: f64| ((z * rows as f64).floor().max(0.0) as usize).min(rows - 1);
     row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN)
 }
 
-/// `[min r^2, max r^2]` of the boundary in each of so many rows; of an empty one `[+inf, -inf]`.
+/// `[min r^2, max r^2]` of the boundary in each of `rows` rows; `[+inf, -inf]` for an empty row.
 pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
     let n = rows as f64;
     let mut nodes = vec![EMPTY; rows];
@@ -134,7 +134,7 @@ pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
     nodes
 }
 
-/// Runs of each row and the records they run over.
+/// The run of each row, and the records of all runs.
 fn runs(patches: &[QuadricPatch], members: &[Vec<u32>]) -> (Vec<u32>, Vec<GpuPatch>) {
     let mut starts: Vec<u32> = Vec::with_capacity(members.len());
     let mut records: Vec<GpuPatch> = Vec::new();
@@ -143,7 +143,7 @@ fn runs(patches: &[QuadricPatch], members: &[Vec<u32>]) -> (Vec<u32>, Vec<GpuPat
             starts.push(starts[i - 1]);
             continue;
         }
-        // The end of what stands there may be the beginning of what is wanted.
+        // The last stored records may equal the first records of this row.
         let shared = (0..=list.len().min(records.len()))
             .rev()
             .find(|&k| {
@@ -178,7 +178,7 @@ fn squares(patch: &QuadricPatch, from: f64, to: f64) -> [f32; 2] {
             let p = patch.square_at(turn);
             (least, most) = (least.min(p), most.max(p));
         }
-        // The ends themselves are known better than the quadric gives them.
+        // The values at the ends are more accurate than those of the quadric.
         (low, high) = (low.max(least), high.min(most));
     }
     // Radii may be off by the margin: (r + m)^2 - r^2.

@@ -1,4 +1,4 @@
-//! What of a solid is sure to be solid: of rows of equal height a radius about the axis.
+//! The massive core of a solid: a radius about the axis for each row of equal height.
 
 use super::QuadricPatch;
 use super::rows::extents;
@@ -8,10 +8,10 @@ pub(crate) const SOLID_ROWS: usize = 64;
 
 const N: usize = SOLID_ROWS;
 
-/// Of rows of equal height over `0 <= z <= 1` the radius within which all is solid, object
-/// units: a little less than it is, 0 where there is none.
+/// The radius within which everything is solid, for each row of equal height over `0 <= z <= 1`.
+/// Object units. Rounded down; 0 if there is no such radius.
 pub(crate) fn solid_radii(patches: &[QuadricPatch]) -> [f64; N] {
-    // A row's middle is in the solid on the axis if an odd number of patches lies beside it.
+    // A row's middle on the axis is in the solid if an odd number of patches is beside it.
     let mut solid = [false; N];
     for patch in patches.iter().filter(|p| !p.is_plane()) {
         let [first, end] = patch
@@ -65,7 +65,7 @@ mod tests {
         ];
         let patches = patches(&cup);
         let radii = solid_radii(&patches);
-        // By the number of patches beyond a point.
+        // Parity of the number of patches beyond a point.
         let is_solid = |r: f64, z: f64| {
             let beyond = patches
                 .iter()
@@ -82,9 +82,9 @@ mod tests {
                 }
             }
         }
-        // Below and above the axis' part of the solid, and in the rows of its ends, nothing.
+        // The radius is 0 below and above the axis' part of the solid, and in the rows of its ends.
         assert!(radii[..7].iter().chain(&radii[38..]).all(|r| *r == 0.0));
-        // The narrowest is where the cup stands on its foot.
+        // The narrowest point is the joint of cup and foot.
         assert!((radii[31] - 0.1).abs() < 0.01 && radii[10] > 0.25);
     }
 }

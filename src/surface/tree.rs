@@ -1,4 +1,4 @@
-//! Whether any segment is nearer to a point than a given distance: a tree of rectangles.
+//! A tree of rectangles that tests if any segment is nearer to a point than a given distance.
 
 use crate::profile::Segment;
 use glam::DVec2;
@@ -9,13 +9,13 @@ const LEAF: usize = 4;
 struct Node {
     low: DVec2,
     high: DVec2,
-    /// Leaf: its first segment. Else: its right child (the left one follows it).
+    /// In a leaf, its first segment. Otherwise its right child; the left child follows the node.
     next: u32,
-    /// Segments of a leaf; 0: not a leaf.
+    /// Number of segments of a leaf; 0 if the node is not a leaf.
     count: u32,
 }
 
-/// A segment ready to be measured.
+/// A segment prepared for distances.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     a: DVec2,
@@ -47,7 +47,7 @@ impl Tree {
         Self { lines, nodes }
     }
 
-    /// Whether a segment lies nearer to `p` than `distance` (none does if that is not positive).
+    /// True if a segment is nearer to `p` than `distance`. False if `distance` is not positive.
     pub fn any_nearer(&self, p: DVec2, distance: f64) -> bool {
         if distance <= 0.0 || self.nodes.is_empty() {
             return false;
@@ -87,7 +87,7 @@ impl Line {
         } else if place >= self.length {
             from_a.distance_squared(self.unit * self.length) < square
         } else {
-            // Along the normal: exact to the last bits.
+            // The distance along the normal is exact to the last bits.
             from_a.perp_dot(self.unit).abs() < distance
         }
     }

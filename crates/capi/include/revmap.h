@@ -138,7 +138,7 @@ enum RevmapSolver
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * What this version takes where none is named: REVMAP_SOLVER_HULL.
+     * What this version takes where none is named: REVMAP_SOLVER_EXACT.
      */
     REVMAP_SOLVER_DEFAULT = 0,
     /**
@@ -176,7 +176,7 @@ enum RevmapSolver
     /**
      * The same pieces, found by the rasteriser or by tiles of pixels.
      */
-    REVMAP_SOLVER_HULL = 9,
+    REVMAP_SOLVER_EXACT = 9,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -1716,3 +1716,6 @@ RevmapResult revmap_search_defaults(struct RevmapSearch *search);
 #endif  // __cplusplus
 
 #endif  /* REVMAP_H */
+
+/* An earlier name. */
+#define REVMAP_SOLVER_HULL REVMAP_SOLVER_EXACT

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Tolerance};
+use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_lab::method::{Method, MethodSettings};
 
 /// The largest width and height of a picture.
@@ -28,12 +28,16 @@ pub const STAGES: [(&str, Tracing); 3] = [
     ("reference", Tracing::Reference),
 ];
 
+/// An earlier name of `exact`, which scripts may use.
+pub const ALIAS: &str = "hull";
+
 /// Names of the searches; the first is the one taken when none is named.
-pub const SOLVERS: [(&str, Method); Method::ALL.len() + 1] = {
-    let mut all = [("default", Method::DEFAULT); Method::ALL.len() + 1];
+pub const SOLVERS: [(&str, Method); Method::ALL.len() + 2] = {
+    let mut all = [("default", Method::DEFAULT); Method::ALL.len() + 2];
+    all[1] = (ALIAS, Method::Search(Solver::Exact));
     let mut i = 0;
     while i < Method::ALL.len() {
-        all[i + 1] = (Method::ALL[i].name(), Method::ALL[i]);
+        all[i + 2] = (Method::ALL[i].name(), Method::ALL[i]);
         i += 1;
     }
     all
@@ -164,7 +168,9 @@ fn read_by(method: Method) -> &'static [&'static str] {
 pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     names: &'static [(&'static str, T); N],
 ) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).try_map(move |name: String| {
+    let listed = |name: &'static str| PossibleValue::new(name).hide(name == ALIAS);
+    let all = names.iter().map(|(name, _)| listed(name));
+    PossibleValuesParser::new(all).try_map(move |name: String| {
         let found = names.iter().find(|(known, _)| *known == name);
         found.map(|&(_, value)| value).ok_or("not known")
     })
@@ -193,6 +199,7 @@ impl TypedValueParser for MethodParser {
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let names = SOLVERS.iter().map(|(name, _)| *name);
+        let names = names.filter(|name| *name != ALIAS);
         let all = names.chain(["mesh:SEGMENTSxRINGS", Method::Floor.name()]);
         Some(Box::new(all.map(PossibleValue::new)))
     }

@@ -2,7 +2,7 @@
 
 mod techniques;
 
-use super::options::named;
+use super::options::{ALIAS, named};
 use super::output;
 use clap::Args;
 use revmap::gpu::DeviceReport;
@@ -12,11 +12,12 @@ use serde_json::{Map, Value, json};
 use techniques::techniques;
 
 /// Names of the searches.
-const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 1] = {
-    let mut all = [("default", Solver::DEFAULT); revmap_searches::ALL.len() + 1];
+const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 2] = {
+    let mut all = [("default", Solver::DEFAULT); revmap_searches::ALL.len() + 2];
+    all[1] = (ALIAS, Solver::Exact);
     let mut i = 0;
     while i < revmap_searches::ALL.len() {
-        all[i + 1] = (revmap_searches::ALL[i].name(), revmap_searches::ALL[i]);
+        all[i + 2] = (revmap_searches::ALL[i].name(), revmap_searches::ALL[i]);
         i += 1;
     }
     all

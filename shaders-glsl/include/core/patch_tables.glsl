@@ -52,6 +52,12 @@ uvec4 listed_table(uint at)
     return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[solid.hull.z + at];
 }
 
+// A component of one: software drivers load each component lane by lane.
+uint listed_word(uint at, uint k)
+{
+    return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[solid.hull.z + at][k];
+}
+
 // Least and largest r^2.
 vec2 node_extent(uint word)
 {

@@ -7,13 +7,17 @@
 
 shared float listed[8u * LONGEST_LIST];
 
-// Shares the patches of a tile of this solid.
-void share_patches(uint number)
+// Shares the tile's patches.
+void share_patches()
 {
     uint self = gl_LocalInvocationIndex;
-    solid.hull.z = ONE_SOLID != 0u ? own_solid.hull.z : solids[number].solid.hull.z;
-    uint none = patch_tables[solid.hull.z].x;
-    uint runs = tile_runs;
+    if (ONE_SOLID != 0u) {
+        solid.hull.z = own_solid.hull.z;
+    } else {
+        solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record[1] + 16u]].solid.hull.z;
+    }
+    uint none = listed_word(0u, 0u);
+    uint runs = tile_record[2];
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
         uint place = j + self;
         if (place < 8u * LIST_LENGTH) {
@@ -21,7 +25,7 @@ void share_patches(uint number)
             uint lower = runs >> 9 & 63u;
             uint k = number < lower ? (runs & 511u) + number : (runs >> 15 & 511u) + number - lower;
             k = number < lower + (runs >> 24) ? k : none;
-            listed[place] = uintBitsToFloat(listed_table(1u + 3u * k + (place >> 2 & 1u))[place & 3u]);
+            listed[place] = uintBitsToFloat(listed_word(1u + 3u * k + (place >> 2 & 1u), place & 3u));
         }
     }
 }

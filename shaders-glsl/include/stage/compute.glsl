@@ -16,8 +16,9 @@ layout(push_constant) uniform Pushed {
 
 // Lists of tiles, made by tile_lists.comp for N records:
 // - TILE_LISTS heads of four words: an indirect dispatch of a work group for each tile in the list, one unused;
-// - for each list 2 N words: a record's number, and the two runs of patches that its tile's rays may meet:
-//   first | number << 9 | first << 15 | number << 24. The last list is of tiles that walk the tree, without runs.
+// - for each list 4 N words: a tile's corner, the number of its instance, the two runs of patches that its rays may
+//   meet, first | number << 9 | first << 15 | number << 24, and one unused. Tiles of the last list walk the tree and
+//   have no runs.
 #ifndef LIST_WORDS
 #define LIST_WORDS readonly
 #endif
@@ -34,7 +35,7 @@ uint list_head(uint k)
 // Where its tiles begin.
 uint list_tiles(uint k)
 {
-    return pushed.tiles + 2u * k * pushed.count;
+    return pushed.tiles + 4u * k * pushed.count;
 }
 
 #endif

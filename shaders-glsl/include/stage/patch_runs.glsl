@@ -35,7 +35,7 @@ uvec2 lengths_of(PatchRuns runs)
 }
 
 // Adds a record to list number `n`. The first makes a whole dispatch of the head, which begins as zeros.
-void append(uint n, uint record, uint runs)
+void append(uint n, uvec2 record, uint runs)
 {
     uint head = list_head(n);
     uint place = atomicAdd(list_words[head], 1u);
@@ -43,12 +43,13 @@ void append(uint n, uint record, uint runs)
         list_words[head + 1u] = 1u;
         list_words[head + 2u] = 1u;
     }
-    uint at = list_tiles(n) + 2u * place;
-    list_words[at] = record;
-    list_words[at + 1u] = runs;
+    uint at = list_tiles(n) + 4u * place;
+    list_words[at] = record.x;
+    list_words[at + 1u] = record.y;
+    list_words[at + 2u] = runs;
 }
 
-void append_runs(uint record, PatchRuns runs)
+void append_runs(uvec2 record, PatchRuns runs)
 {
     uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;

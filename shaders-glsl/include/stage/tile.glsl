@@ -12,28 +12,32 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
     uint instance_words[];
 };
 
+shared uint tile_record[3]; // corner, number of the instance, runs of its listed patches
 shared uint tile_instance[INSTANCE_WORDS];
-uint tile_runs; // of its listed patches
-uvec2 tile_corner;
 Look tile_look;
 PixelRays tile_rays;
 
-// Shares what begin_tile() reads after a barrier. The number of the tile's solid.
-uint share_tile()
+// Shares what share_instance() reads after a barrier.
+void share_record()
 {
-    uint entry = list_tiles(pushed.list) + 2u * gl_WorkGroupID.x;
-    uint record = pushed.first + gl_WorkGroupID.x;
-    if (LIST_LENGTH != 0u) {
-        record = list_words[entry];
-        tile_runs = list_words[entry + 1u];
+    uint n = gl_LocalInvocationIndex;
+    if (n < 3u) {
+        tile_record[n] = LIST_LENGTH != 0u ? list_words[list_tiles(pushed.list) + 4u * gl_WorkGroupID.x + n]
+                                           : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
     }
-    uint place = tile_words[4u * record];
-    uint begin = INSTANCE_WORDS * tile_words[4u * record + 1u];
-    tile_corner = uvec2(place & 0xffffu, place >> 16);
+}
+
+uvec2 tile_corner()
+{
+    return uvec2(tile_record[0] & 0xffffu, tile_record[0] >> 16);
+}
+
+// Shares what begin_tile() reads after a barrier.
+void share_instance()
+{
     if (gl_LocalInvocationIndex < INSTANCE_WORDS) {
-        tile_instance[gl_LocalInvocationIndex] = instance_words[begin + gl_LocalInvocationIndex];
+        tile_instance[gl_LocalInvocationIndex] = instance_words[INSTANCE_WORDS * tile_record[1] + gl_LocalInvocationIndex];
     }
-    return instance_words[begin + 16u];
 }
 
 vec4 instance_vector(uint n)

@@ -8,7 +8,7 @@ use std::ffi::CStr;
 
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// The least version whose core holds all that is used.
+/// The lowest version whose core holds everything that is used.
 pub(crate) const API_VERSION: u32 = vk::API_VERSION_1_2;
 
 /// The environment variable that switches the validation layers on.
@@ -22,10 +22,10 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
-    /// Loads Vulkan. With `validate` the layers' core and synchronization checks are on, and their
-    /// absence is an error.
+    /// Loads Vulkan. `validate` turns on the layers' core and synchronization checks. Missing
+    /// layers are then an error.
     pub fn new(validate: bool) -> Result<Self> {
-        // SAFETY: the loader is the system's; nothing else of this process replaces it meanwhile.
+        // SAFETY: the loader is the system's; nothing else in this process replaces it meanwhile.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
             Error::new(
                 ErrorKind::Unsupported,
@@ -96,7 +96,7 @@ impl Instance {
         })
     }
 
-    /// As the environment asks.
+    /// An instance with the validation that the environment variable sets.
     pub fn from_environment() -> Result<Self> {
         Self::new(std::env::var_os(VALIDATION_VARIABLE).is_some_and(|v| v != "0" && !v.is_empty()))
     }

@@ -1,4 +1,4 @@
-//! Messages of the validation layers, kept until somebody asks for them.
+//! Messages of the validation layers, kept until they are read.
 
 use crate::error::Result;
 use crate::gpu::vk::call::Call;
@@ -42,7 +42,7 @@ impl Messages {
         })
     }
 
-    /// Takes what came since the last call.
+    /// Takes all messages since the last call.
     pub fn take(&self) -> Vec<String> {
         self.store
             .lock()
@@ -63,7 +63,7 @@ impl Drop for Messages {
 }
 
 /// # Safety
-/// Called by the driver alone, with the data that `new` registered.
+/// Only the driver may call this, with the data that `new` registered.
 unsafe extern "system" fn keep(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,

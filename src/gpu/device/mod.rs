@@ -21,7 +21,7 @@ use gpu_allocator::vulkan::Allocator;
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex, MutexGuard, Weak};
 
-/// A Vulkan device and what all renderers on it share: memory and pipelines. Clones share it, too.
+/// A Vulkan device, with memory and pipelines that all its renderers share. Clones share them, too.
 #[derive(Clone)]
 pub struct Device {
     pub(crate) shared: Arc<Shared>,
@@ -34,11 +34,11 @@ pub struct HostDevice<'a> {
     pub instance: &'a ash::Instance,
     /// The physical device.
     pub physical: vk::PhysicalDevice,
-    /// The device, opened with what [`Requirements`](super::Requirements) lists.
+    /// The device, opened with everything that [`Requirements`](crate::gpu::Requirements) lists.
     pub device: &'a ash::Device,
     /// The family of the queues to which recorded commands are submitted.
     pub queue_family: u32,
-    /// A queue for [`Offscreen`](super::Offscreen), which submits by itself; renderers need none.
+    /// A queue for [`Offscreen`](crate::gpu::Offscreen), which submits by itself; renderers need none.
     pub queue: Option<vk::Queue>,
     /// The features that the device was opened with.
     pub features: vk::PhysicalDeviceFeatures,
@@ -48,7 +48,7 @@ pub struct HostDevice<'a> {
     pub pipeline_cache: Option<vk::PipelineCache>,
 }
 
-/// What everything made on a device keeps alive.
+/// The state of a device, which everything made on it keeps alive.
 pub(crate) struct Shared {
     // Dropped before the device: see Drop.
     allocator: Option<Arc<Mutex<Allocator>>>,
@@ -56,30 +56,30 @@ pub(crate) struct Shared {
     pub raw: ash::Device,
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
     pub family: u32,
-    /// Of its instance.
+    /// The functions of the instance.
     pub functions: ash::Instance,
     pub physical: vk::PhysicalDevice,
-    /// Whether fragment shaders may write to buffers.
+    /// True if fragment shaders may write to buffers.
     pub fragment_stores: bool,
     pub limits: vk::PhysicalDeviceLimits,
     pub constants: DeviceConstants,
-    /// Invocations that run together.
+    /// The number of invocations that run together.
     pub subgroup_size: u32,
     pub timestamp_bits: u32,
     pub anisotropy: Option<f32>,
-    /// As [`Candidate::clips`].
+    /// Same as [`Candidate::clips`].
     pub clips: bool,
-    /// As [`Candidate::most_draws`].
+    /// Same as [`Candidate::most_draws`].
     pub most_draws: u32,
-    /// What renderers share, while there are any.
+    /// The geometry that renderers share, while there are any.
     pub geometry: Mutex<Weak<Geometry>>,
     pub report: DeviceReport,
     pub budget: MemoryBudget,
-    /// Bits of the types of memory that is the host's alone, coherent.
+    /// Bits of the memory types that are host-visible and coherent, but not device-local.
     pub host_types: u32,
-    /// None of a borrowed device.
+    /// `None` for a borrowed device.
     instance: Option<Instance>,
-    /// What must outlive this: of [`Device::with_shaders`] the device's own.
+    /// The device that [`Device::with_shaders`] was called on; it must outlive this one.
     #[cfg(feature = "other-shaders")]
     #[allow(dead_code)]
     opened: Option<Arc<Shared>>,
@@ -88,19 +88,19 @@ pub(crate) struct Shared {
 impl Device {
     /// Opens the device chosen by `choice` (index, or part of a name), else by the environment
     /// variable `REVMAP_DEVICE`, else the first by kind: discrete, integrated, virtual, CPU. With
-    /// `REVMAP_VALIDATION=1` in the environment the validation layers watch every call.
+    /// `REVMAP_VALIDATION=1` in the environment the validation layers check every call.
     ///
     /// # Errors
-    /// [`ErrorKind::Unsupported`] when there is none, or it lacks what is needed.
+    /// [`ErrorKind::Unsupported`] if there is no device, or if the device lacks a requirement.
     pub fn open(choice: Option<&str>) -> Result<Self> {
         Self::on(Instance::from_environment()?, choice)
     }
 
-    /// As [`Device::open`], with the validation layers on whatever the environment says: core
+    /// Same as [`Device::open`], with the validation layers on whatever the environment says: core
     /// checks and synchronization.
     ///
     /// # Errors
-    /// As `open`, and [`ErrorKind::Unsupported`] when the layer is not installed.
+    /// Same as [`Device::open`], and [`ErrorKind::Unsupported`] if the layer is not installed.
     pub fn open_validated(choice: Option<&str>) -> Result<Self> {
         Self::on(Instance::new(true)?, choice)
     }
@@ -108,18 +108,18 @@ impl Device {
     /// Borrows a host's device.
     ///
     /// # Errors
-    /// [`ErrorKind::Unsupported`] when the device lacks what is needed; of Vulkan.
+    /// [`ErrorKind::Unsupported`] if the device lacks a requirement; errors of Vulkan calls.
     ///
     /// # Safety
-    /// This call makes layouts, and an allocator and a pipeline cache where the host gives none.
-    /// They are destroyed with the last of: this value, its clones, and all that was made with
-    /// them.
+    /// The call makes layouts. An allocator and a pipeline cache are made if the host gives none.
+    /// All are destroyed with the last of: this value, its clones, and everything that was made
+    /// with them.
     ///
-    /// The caller must see to it that
-    /// * all handles belong together and stay valid until then;
+    /// The caller must ensure that
+    /// * all handles belong together and stay valid until that destruction;
     /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or
     ///   later;
-    /// * `host.queue`, where there is one, is used by nobody else while an `Offscreen` submits.
+    /// * `host.queue`, if given, is used by nothing else while an `Offscreen` submits.
     pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
         let mut candidate = inspect(host.instance, 0, host.physical);
         refuse(&candidate)?;
@@ -136,15 +136,15 @@ impl Device {
         })
     }
 
-    /// As [`Device::borrow`], with pipelines made of the SPIR-V that `shaders` gives: for work on
-    /// the shaders while a program runs.
+    /// Same as [`Device::borrow`], with pipelines made of the SPIR-V that `shaders` returns. Use it
+    /// to work on shaders while a program runs.
     ///
     /// # Errors
-    /// As `borrow`.
+    /// Same as [`Device::borrow`].
     ///
     /// # Safety
-    /// As `borrow`. What `shaders` gives is valid and has the interface of this version's shaders:
-    /// their bindings, blocks and specialisation constants.
+    /// Same as [`Device::borrow`]. The SPIR-V of `shaders` must be valid and have the interface of
+    /// this version's shaders: their bindings, blocks and specialisation constants.
     #[cfg(feature = "other-shaders")]
     pub unsafe fn borrow_with_shaders(
         host: &HostDevice<'_>,
@@ -159,14 +159,14 @@ impl Device {
         Ok(device)
     }
 
-    /// The same device with pipelines of its own, made of the SPIR-V that `shaders` gives; it keeps
-    /// this value alive.
+    /// Returns the same device with its own pipelines, made of the SPIR-V that `shaders` returns.
+    /// The new value keeps this value alive.
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Errors of Vulkan calls.
     ///
     /// # Safety
-    /// As of [`Device::borrow_with_shaders`], of `shaders`.
+    /// Same as [`Device::borrow_with_shaders`], for `shaders`.
     #[cfg(feature = "other-shaders")]
     pub unsafe fn with_shaders(&self, shaders: super::ShaderSource) -> Result<Self> {
         let shared = &self.shared;
@@ -200,14 +200,14 @@ impl Device {
         })
     }
 
-    /// Bounds the bytes of all buffers and images on the device, those of pictures included;
-    /// `None`: as many as it has. What was taken before counts; what would exceed the budget fails,
-    /// and nothing else does.
+    /// Limits the bytes of all buffers and images on the device, including those of pictures.
+    /// `None` allows as many as the device has. Earlier allocations count. Only an allocation that
+    /// exceeds the budget fails.
     pub fn set_memory_budget(&self, bytes: Option<u64>) {
         self.shared.budget.set(bytes);
     }
 
-    /// What all buffers and images on the device take.
+    /// The memory that all buffers and images on the device take.
     #[must_use]
     pub fn memory_use(&self) -> MemoryUse {
         self.shared.budget.memory_use()
@@ -217,7 +217,7 @@ impl Device {
         let variable = variable();
         let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
         let raw = create(&instance, &chosen, &[], None)?;
-        // SAFETY: the queue was asked for when the device was made.
+        // SAFETY: the queue was requested when the device was made.
         let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
         let made = allocator(&instance.raw, chosen.physical, &raw).and_then(|memory| {
             Shared::new(
@@ -237,49 +237,49 @@ impl Device {
                 })
             }
             Err(error) => {
-                // SAFETY: what was made on the device is gone again.
+                // SAFETY: everything that was made on the device is gone again.
                 unsafe { raw.destroy_device(None) };
                 Err(error)
             }
         }
     }
 
-    /// What it is.
+    /// The description of the device.
     #[must_use]
     pub fn report(&self) -> &DeviceReport {
         &self.shared.report
     }
 
-    /// How many pipelines have been compiled on it.
+    /// The number of pipelines that were compiled on the device.
     #[must_use]
     pub fn pipelines_compiled(&self) -> u64 {
         self.shared.pipelines().map_or(0, Pipelines::compiled)
     }
 
-    /// Adds what [`Device::pipeline_cache_data`] gave in another process: pipelines compiled there
-    /// are found instead of compiled. Data of another driver is passed over.
+    /// Adds the data that [`Device::pipeline_cache_data`] returned in another process. Pipelines
+    /// that were compiled there are found instead of compiled. Data of another driver is ignored.
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Errors of Vulkan calls.
     pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
         self.shared.pipelines()?.add_cache(data)
     }
 
-    /// The driver's compiled pipelines, to be kept for [`Device::add_pipeline_cache`].
+    /// The driver's compiled pipelines, to be saved for [`Device::add_pipeline_cache`].
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Errors of Vulkan calls.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
         self.shared.pipelines()?.cache_data()
     }
 
-    /// The device's functions and handle, for what is drawn beside.
+    /// The device's functions and handle, for other drawing on the device.
     #[must_use]
     pub fn raw(&self) -> &ash::Device {
         &self.shared.raw
     }
 
-    /// Where device memory comes from, for what is drawn beside.
+    /// The source of device memory, for other drawing on the device.
     ///
     /// # Errors
     /// [`ErrorKind::Other`] while the device is being closed.
@@ -288,10 +288,11 @@ impl Device {
         self.shared.allocator.clone().ok_or_else(closed)
     }
 
-    /// A buffer for what is drawn beside, called `name` in messages; it counts in the memory budget.
+    /// Makes a buffer for other drawing on the device, called `name` in messages. The buffer counts
+    /// in the memory budget.
     ///
     /// # Errors
-    /// Of Vulkan; [`ErrorKind::OutOfDeviceMemory`] beyond the budget, too.
+    /// Errors of Vulkan calls; [`ErrorKind::OutOfDeviceMemory`] also beyond the budget.
     pub fn buffer(
         &self,
         name: &str,
@@ -302,8 +303,8 @@ impl Device {
         Buffer::new(&self.shared, name, bytes, usage, location)
     }
 
-    /// Takes the validation layers' messages since the last call; always empty without the layers,
-    /// and of a borrowed device.
+    /// Takes the validation layers' messages since the last call. The list is always empty without
+    /// the layers, and for a borrowed device.
     #[must_use]
     pub fn take_messages(&self) -> Vec<String> {
         self.messages()
@@ -315,7 +316,7 @@ impl Device {
         self.shared.instance.as_ref()?.messages.as_ref()
     }
 
-    /// Fails when the validation layers have had anything to say since the last call.
+    /// Returns an error if the validation layers have sent any message since the last call.
     ///
     /// # Errors
     /// [`ErrorKind::Other`] with the first message and the number of them.
@@ -334,14 +335,14 @@ impl Device {
         }
     }
 
-    /// Whether the validation layers watch.
+    /// Returns true if the validation layers are on.
     #[must_use]
     pub fn validated(&self) -> bool {
         self.messages().is_some()
     }
 }
 
-/// A device with the features that are used where they are offered, and with these extensions.
+/// Makes a device with the optional features that it offers, and with these extensions.
 pub(in crate::gpu) fn create(
     instance: &Instance,
     chosen: &Candidate,
@@ -364,7 +365,7 @@ pub(in crate::gpu) fn create(
     if let Some(more) = more {
         info = info.push_next(more);
     }
-    // SAFETY: `info` asks only for what the physical device offers.
+    // SAFETY: `info` requests only what the physical device offers.
     unsafe { instance.raw.create_device(chosen.physical, &info, None) }.call("vkCreateDevice")
 }
 
@@ -429,7 +430,7 @@ impl Shared {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        // SAFETY: everything made on the device held this alive and is gone by now; a host has
+        // SAFETY: everything made on the device kept this alive and is gone by now; a host has
         // waited for its own work.
         unsafe {
             if self.instance.is_some() {

@@ -1,4 +1,4 @@
-//! What each Vulkan device offers, and which of them to take.
+//! The capabilities of each Vulkan device, and the choice of one.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::instance::{API_VERSION, Instance};
@@ -7,13 +7,13 @@ use crate::shader::generated::GROUP_PIXELS;
 use ash::vk;
 use std::ffi::CStr;
 
-/// The environment variable that names the device to take.
+/// The environment variable that names the device to open.
 pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
 
-/// What a Vulkan device is and offers.
+/// The description and the capabilities of a Vulkan device.
 #[derive(Clone, Debug)]
 pub struct DeviceReport {
-    /// Position in the loader's list; [`Device::open`](super::Device::open) takes it.
+    /// Position in the loader's list; [`Device::open`](crate::gpu::Device::open) takes it.
     pub index: usize,
     /// The device's name.
     pub name: String,
@@ -21,17 +21,17 @@ pub struct DeviceReport {
     pub kind: &'static str,
     /// Driver's name and version.
     pub driver: String,
-    /// Vulkan version, as `1.3.230`.
+    /// Vulkan version, such as `1.3.230`.
     pub api_version: String,
-    /// What a renderer would use of it: `(what, whether or which)`.
+    /// Features and limits that a renderer would use: `(name, value)`.
     pub uses: Vec<(String, String)>,
-    /// What it lacks that is needed; empty: renderers can be made on it.
+    /// Requirements that the device lacks. Renderers can be made on it if this is empty.
     pub missing: Vec<String>,
-    /// Whether [`Device::open`](super::Device::open) takes it where none is named.
+    /// True if [`Device::open`](crate::gpu::Device::open) opens this device when none is named.
     pub preferred: bool,
 }
 
-/// A device with what opening it takes.
+/// A device with the values that opening it needs.
 pub(crate) struct Candidate {
     pub report: DeviceReport,
     pub physical: vk::PhysicalDevice,
@@ -44,17 +44,17 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether textures are filtered anisotropically. Software devices take ten times as long over
-    /// it, and llvmpipe filters otherwise in fragment than in compute shaders.
+    /// Returns true if textures are filtered anisotropically. Software devices take ten times as
+    /// long for it, and llvmpipe filters differently in fragment and compute shaders.
     pub fn anisotropic(&self) -> bool {
         self.features.sampler_anisotropy == vk::TRUE
             && self.properties.device_type != vk::PhysicalDeviceType::CPU
     }
 
-    /// Whether triangles can be clipped by the four sides of a box, and corners are placed as well
-    /// as the strips of these sides need it: hulls are drawn of solids that the sides cut. Of
-    /// SwiftShader, which places corners at sixteenths of a pixel, 10 pixels of 14,000 were lost
-    /// along the edges of sides.
+    /// Returns true if triangles can be clipped by the four sides of a box, and corners are placed
+    /// precisely enough for the strips of these sides. Hulls then draw solids that the sides cut.
+    /// SwiftShader places corners at sixteenths of a pixel: 10 pixels of 14,000 were lost along the
+    /// edges of sides.
     pub fn clips(&self) -> bool {
         let limits = &self.properties.limits;
         self.features.shader_clip_distance == vk::TRUE
@@ -62,8 +62,9 @@ impl Candidate {
             && limits.sub_pixel_precision_bits >= 8
     }
 
-    /// Whether squares of up to eight pixels a side are drawn as points: one vertex for six, and
-    /// no diagonal, along which blocks of pixels are searched twice.
+    /// Returns true if squares of up to eight pixels a side are drawn as points. A point takes one
+    /// vertex in place of six. A point has no diagonal, along which blocks of pixels are searched
+    /// twice.
     pub fn large_points(&self) -> bool {
         let limits = &self.properties.limits;
         let [least, most] = limits.point_size_range;
@@ -74,7 +75,7 @@ impl Candidate {
             && (step == 0.0 || (1.0 / step).fract() == 0.0)
     }
 
-    /// How many indexed draws one indirect command takes.
+    /// The largest number of indexed draws in one indirect command; 0 without the needed features.
     pub fn most_draws(&self) -> u32 {
         let both = [
             self.features.multi_draw_indirect,
@@ -87,13 +88,13 @@ impl Candidate {
         }
     }
 
-    /// Whether it offers an extension.
+    /// Returns true if the device offers an extension.
     pub fn offers(&self, extension: &CStr) -> bool {
         let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
         self.extensions.iter().any(named)
     }
 
-    /// The features that are used where they are offered.
+    /// The optional features that are enabled if the device offers them.
     pub fn wanted_features(&self) -> vk::PhysicalDeviceFeatures {
         vk::PhysicalDeviceFeatures {
             fragment_stores_and_atomics: vk::TRUE,
@@ -106,7 +107,7 @@ impl Candidate {
         }
     }
 
-    /// [`DeviceReport::uses`].
+    /// The rows of [`DeviceReport::uses`].
     fn uses(&self) -> Vec<(String, String)> {
         let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
         let limits = &self.properties.limits;
@@ -134,7 +135,7 @@ impl Candidate {
 /// All devices that the Vulkan loader offers.
 ///
 /// # Errors
-/// [`ErrorKind::Unsupported`] when there is no loader or no device.
+/// [`ErrorKind::Unsupported`] if there is no loader or no device.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let instance = Instance::from_environment()?;
     let found = candidates(&instance)?;
@@ -174,8 +175,8 @@ pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
         .collect())
 }
 
-/// The candidate that `choice` names (an index, or part of a name, in any case); none named: the
-/// first by kind.
+/// The candidate that `choice` names (an index, or part of a name, in any case). The default is
+/// the first by kind.
 pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
     let chosen = all.swap_remove(position(&all, choice)?);
     refuse(&chosen)?;
@@ -210,7 +211,7 @@ fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
     })
 }
 
-/// Fails for a device that lacks something.
+/// Returns an error for a device that lacks a requirement.
 pub(crate) fn refuse(candidate: &Candidate) -> Result<()> {
     let report = &candidate.report;
     if report.missing.is_empty() {
@@ -250,7 +251,7 @@ fn version(v: u32) -> String {
     )
 }
 
-/// A driver's text, up to its zero.
+/// A driver's text, up to its terminating zero.
 pub(crate) fn text(raw: &[std::ffi::c_char]) -> String {
     let bytes: Vec<u8> = raw
         .iter()
@@ -281,7 +282,7 @@ pub(crate) fn inspect(
     let mut missing = Vec::new();
     if basic.api_version >= API_VERSION {
         extended = extended.push_next(&mut driver).push_next(&mut subgroup);
-        // SAFETY: the device is of version 1.2, whose core has the query.
+        // SAFETY: the device has version 1.2 or later, whose core has the query.
         unsafe { raw.get_physical_device_properties2(physical, &mut extended) };
     } else {
         missing.push(format!("Vulkan {}", version(API_VERSION)));

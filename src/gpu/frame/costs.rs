@@ -1,4 +1,4 @@
-//! What each object is drawn by, and the memory that it takes on the device.
+//! The draw path of each object, and the memory that it takes on the device.
 
 use crate::gpu::entry::Entry;
 use crate::gpu::frame::planned::PlannedObject;
@@ -7,26 +7,26 @@ use crate::gpu::resources::blocks::InstanceBlock;
 use crate::plan::{DrawPath, View};
 use crate::solid::table_slot::Part;
 
-/// How an object was drawn in the last prepared frame, and what it takes on the device.
+/// The draw path of an object in the last prepared frame, and its memory on the device.
 ///
-/// Objects that show one profile under one offset share tables and maps: each counts them as its
-/// own.
+/// Objects that show one profile under one offset share tables and maps. Every such object counts
+/// the shared bytes in full.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectCost {
-    /// How it was drawn.
+    /// The draw path.
     pub path: DrawPath,
-    /// Level of its patches; 0 is the exact one. None of searches that have no patches.
+    /// Level of the patches; 0 is the exact level. `None` for searches without patches.
     pub level: Option<u32>,
-    /// The most that the patches of this level move its silhouette, pixels; none where it reaches
-    /// the eye.
+    /// Upper bound on the shift of the silhouette by patches of this level, in pixels. `None` if
+    /// the object reaches the eye, and for searches without patches.
     pub error_pixels: Option<f64>,
     /// Number of patches.
     pub patches: usize,
     /// Bytes of patches, trees and hulls.
     pub table_bytes: u64,
-    /// Bytes of its shape map and its table of lengths.
+    /// Bytes of the shape map and the table of lengths.
     pub map_bytes: u64,
-    /// Bytes of its copies, for one frame in flight.
+    /// Bytes of the copies, for one frame in flight.
     pub instance_bytes: u64,
 }
 
@@ -34,7 +34,7 @@ pub struct ObjectCost {
 pub const INSTANCE_BYTES: u64 = size_of::<InstanceBlock>() as u64;
 
 impl Renderer {
-    /// What each object is drawn by and takes, in order, in the last planned frame.
+    /// The costs of all objects in the last planned frame, in order.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
         let Some(planned) = &self.planned else {
@@ -49,7 +49,7 @@ impl Renderer {
     }
 
     /// Bytes of all buffers and images of the renderer on the device, and of the geometry that all
-    /// renderers of the device share; a target and the pipelines are not among them.
+    /// renderers of the device share. Targets and pipelines are not counted.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let slots: u64 = self.slots.iter().map(|slot| slot.bytes()).sum();

@@ -1,4 +1,4 @@
-//! What a renderer draws into: formats and conventions, told once.
+//! The output of a renderer: formats and conventions, set once.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -9,46 +9,46 @@ use crate::plan::DepthOrder;
 use crate::settings::{Planes, Solver};
 use ash::vk;
 
-/// Where a renderer's work ends up. Told once, when the renderer is made.
+/// The destination of a renderer's work, fixed when the renderer is made.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Output {
     /// Fragments, in a render pass or dynamic rendering that the host begins.
     Pass(PassFormats),
-    /// Pixels that a compute shader traces, into a [`ComputeTarget`](super::ComputeTarget).
+    /// Pixels that a compute shader traces and writes to a [`ComputeTarget`](crate::gpu::ComputeTarget).
     Compute(Planes),
 }
 
 /// The pass in which fragments are drawn.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PassFormats {
-    /// How the host begins it.
+    /// Kind of pass: a render pass or dynamic rendering.
     pub begun: PassKind,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
-    /// number.
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres at any sample
+    /// count.
     pub samples: u32,
-    /// Which end of the depth range is near.
+    /// The end of the depth range that is near.
     pub depth: DepthOrder,
-    /// Which planes the fragment shader writes, one an attachment.
+    /// The planes that the fragment shader writes, one per attachment.
     pub planes: Planes,
 }
 
-/// How the host begins a pass.
+/// Kind of pass that the host begins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum PassKind {
-    /// As a subpass of a render pass. Passes that are compatible with it may be begun instead.
+    /// A subpass of a render pass. The host may begin any compatible pass instead.
     RenderPass {
-        /// The pass. It must live as long as the renderer.
+        /// The pass, which must live as long as the renderer.
         pass: vk::RenderPass,
         /// The subpass, which has the colour attachments of the planes and a depth attachment.
         subpass: u32,
     },
-    /// By dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
+    /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
     Dynamic {
-        /// Formats of the colour attachments in order; none for depth alone.
+        /// Formats of the colour attachments in order; empty if only depth is drawn.
         color: Vec<vk::Format>,
         /// Format of the depth attachment.
         depth: vk::Format,
-        /// Format of the stencil attachment, `UNDEFINED` where there is none.
+        /// Format of the stencil attachment; `UNDEFINED` if there is none.
         stencil: vk::Format,
     },
 }
@@ -63,7 +63,7 @@ impl Output {
         }
     }
 
-    /// Which end of the depth range is near.
+    /// The end of the depth range that is near.
     #[must_use]
     pub fn depth_order(&self) -> DepthOrder {
         match self {
@@ -72,7 +72,7 @@ impl Output {
         }
     }
 
-    /// Fails for what cannot be drawn into, or not by this search.
+    /// Returns an error for an output that the device or the solver cannot draw.
     pub(crate) fn check(&self, device: &Shared, solver: Solver) -> Result<()> {
         let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
         let in_pass = matches!(self, Self::Pass(_));
@@ -101,7 +101,7 @@ impl Output {
         }
     }
 
-    /// Fails where shaders of this output write to a target and there is none, or another one.
+    /// Returns an error for a missing target, a target that does not fit, or an unneeded target.
     pub(crate) fn check_target(&self, target: Option<&ComputeTarget>) -> Result<()> {
         let compute = matches!(self, Self::Compute(_));
         let all = self.planes() == Planes::All;
@@ -137,7 +137,7 @@ impl PassFormats {
         Err(usage("samples", message))
     }
 
-    /// The formats of a render pass cannot be queried.
+    /// Checks the handle and the sample count. Vulkan cannot return the formats of a render pass.
     fn check_render_pass(&self, device: &Shared, raw: vk::RenderPass) -> Result<()> {
         if raw == vk::RenderPass::null() {
             return Err(usage("pass", "the render pass is null; give one".into()));
@@ -245,7 +245,7 @@ fn has_stencil(format: vk::Format) -> bool {
     )
 }
 
-/// Formats are called as in the specification, where the last part says how numbers are held.
+/// Reads the name of the format in the specification, whose last part is the numeric type.
 fn is_integer(format: vk::Format) -> bool {
     let name = format!("{format:?}");
     name.contains("_UINT") || name.contains("_SINT")

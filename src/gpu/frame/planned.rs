@@ -1,4 +1,4 @@
-//! A frame's plan and the surfaces that it is of.
+//! A frame's plan and the surfaces that it draws.
 
 use crate::error::Result;
 use crate::gpu::entry::{Entry, Prepared};
@@ -13,12 +13,12 @@ use crate::solid::table_slot::Part;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What a view shows of a renderer's objects, as they were in one version.
+/// The plan of one view, for one version of a renderer's objects.
 pub(crate) struct Planned {
     pub view: View,
     pub version: u64,
     pub plan: FramePlan,
-    /// One a drawn object, in order.
+    /// One per drawn object, in order.
     pub objects: Vec<PlannedObject>,
 }
 
@@ -26,12 +26,12 @@ pub(crate) struct Planned {
 pub(crate) struct PlannedObject {
     pub number: u32,
     pub level: u8,
-    /// What its search walks.
+    /// The surface that the search walks; `None` for searches on the map.
     pub surface: Option<Arc<OffsetSurface>>,
 }
 
 impl Renderer {
-    /// The plan of a view, made where it is not the last one.
+    /// Returns the plan of a view. Makes a new plan if the last one is of another view or version.
     pub(in crate::gpu) fn planned(&mut self, view: &View) -> Result<Arc<Planned>> {
         self.refresh(Some(view))?;
         let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
@@ -57,7 +57,7 @@ impl Renderer {
         Ok(made)
     }
 
-    /// What a plan depends on besides view and objects.
+    /// The inputs of a plan other than view and objects.
     pub(in crate::gpu) fn conditions(&self) -> Conditions {
         let limits = &self.device.limits;
         let target = self.target.as_ref();
@@ -78,13 +78,14 @@ impl Renderer {
         }
     }
 
-    /// Whether objects are drawn by other levels than the exact one.
+    /// Returns true if objects may be drawn at other levels than the exact one.
     pub(in crate::gpu) fn has_levels(&self) -> bool {
         self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
     }
 
-    /// All objects with the surfaces of the levels that the view allows. With shadows all take the
-    /// finest level that one of them needs: a shadow may fall nearer to the eye than what casts it.
+    /// Returns all objects with the surfaces of the levels that the view allows. With shadows, all
+    /// objects take the finest level that one of them needs. The reason is that a shadow may fall
+    /// nearer to the eye than its caster.
     fn with_surfaces(&mut self, view: &View) -> Result<Vec<PlannedObject>> {
         let casts = self.lighting.shadow != Shadow::Off;
         let level_of = |entry: &Entry, prepared: &Prepared| {
@@ -95,7 +96,7 @@ impl Renderer {
             if pixels > 0.0 || casts {
                 coarsest(self.settings.tolerance, pixels)
             } else {
-                // What does not show takes what it has.
+                // An object that does not show takes a level that is already made.
                 prepared.levels.first().map_or(0, |(level, _)| *level)
             }
         };
@@ -145,7 +146,7 @@ impl Renderer {
         Ok(found)
     }
 
-    /// Makes those that are not made yet, on all cores, with the part that the solver reads.
+    /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
     pub(in crate::gpu) fn make_surfaces(&mut self, surfaces: &[Arc<OffsetSurface>]) {
         let mut new: Vec<_> = surfaces.iter().filter(|s| !s.is_made()).collect();
         new.sort_unstable_by_key(|s| Arc::as_ptr(s));
@@ -162,35 +163,35 @@ impl Renderer {
         self.rebuilds += new.len() as u64;
     }
 
-    /// Whether tiles are traced in compute.
+    /// Returns true if tiles are traced in compute.
     pub(in crate::gpu) fn is_compute(&self) -> bool {
         matches!(self.output, crate::gpu::frame::output::Output::Compute(_))
     }
 
-    /// Whether a view of parallel rays is drawn.
+    /// Returns true if the view has parallel rays.
     pub(in crate::gpu) fn is_parallel(&self) -> bool {
         self.output.planes() == Planes::Depth { parallel: true }
     }
 }
 
 impl Entry {
-    /// By how much the box has grown with the offset.
+    /// The growth of the box with the offset.
     pub(in crate::gpu) fn growth(&self) -> Growth {
         self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
     }
 
-    /// The most pixels that one unit of the profile takes in a view; `all`: of copies that are
-    /// beside the picture, too.
+    /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
+    /// copies outside the picture.
     pub(in crate::gpu) fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
         pixels_per_unit(self.drawn(), self.growth().height(), view, all)
     }
 
-    /// The most that the patches of a level move the silhouette in a view, pixels.
+    /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
     pub(in crate::gpu) fn error_pixels(&self, level: u8, view: &View) -> f64 {
         levels::bound(level) * self.pixels_per_unit(view, false)
     }
 
-    /// As a plan reads it; none before it is prepared.
+    /// The object in the form that a plan reads; `None` before it is prepared.
     pub(in crate::gpu) fn plan_object<'a>(
         &'a self,
         planned: &'a PlannedObject,

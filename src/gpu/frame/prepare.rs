@@ -1,4 +1,4 @@
-//! What a frame needs before it can be recorded: a plan, places of tables, pipelines, blocks. The
+//! Preparation of a frame before it is recorded: plan, places of tables, pipelines, blocks. The
 //! cost follows what has changed.
 
 use crate::error::{Error, ErrorKind, Result};
@@ -14,8 +14,8 @@ use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
 
-/// A frame that was prepared in a slot: what [`Renderer::record`] takes. It is of no use once its
-/// slot is prepared again.
+/// A frame that was prepared in a slot; the argument of [`Renderer::record`]. Preparing the slot
+/// again makes the frame invalid.
 #[derive(Debug, PartialEq, Eq)]
 #[must_use]
 pub struct PreparedFrame {
@@ -26,8 +26,8 @@ pub struct PreparedFrame {
 }
 
 impl PreparedFrame {
-    /// Whether compute compares with the depths of its target and leaves its own there. Where it
-    /// does not, the target's depths may hold anything.
+    /// Returns true if compute compares with the depths of its target and writes its own depths
+    /// there. If false, the target's depths may hold anything.
     #[must_use]
     pub fn reads_depths(&self) -> bool {
         self.reads_depths
@@ -35,30 +35,32 @@ impl PreparedFrame {
 }
 
 impl Renderer {
-    /// Takes over what was set, and plans what `view` shows, as the next [`Renderer::prepare`] does
-    /// by itself: to learn early whether that succeeds, or how objects are drawn.
+    /// Applies the values that were set, and plans the frame of `view`. The next
+    /// [`Renderer::prepare`] does this itself. Call `plan` to find errors early, or to learn how
+    /// objects are drawn.
     ///
     /// # Errors
-    /// As `prepare`.
+    /// Same as [`Renderer::prepare`].
     pub fn plan(&mut self, view: &View) -> Result<()> {
         self.planned(view).map(|_| ())
     }
 
-    /// Prepares a frame in slot `slot`, seen by `view`: takes over what was set, writes what
-    /// changed, records copies of new textures. To be called outside of a render pass.
+    /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
+    /// changed, and records copies of new textures. Call it outside of a render pass.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for what cannot be drawn, with the key `object.N...`, N counted in
-    /// order: everything stays as it was before it was set. [`ErrorKind::Usage`] for a slot that is
-    /// not there, a view of the other depth order, or a target that is missing. Of Vulkan.
+    /// [`ErrorKind::Content`] for content that cannot be drawn, with the key `object.N...`; N
+    /// counts objects in order. Everything then stays as it was before that content was set.
+    /// [`ErrorKind::Usage`] for a missing slot, a view of the other depth order, or a missing
+    /// target. Errors of Vulkan calls.
     ///
     /// # Safety
-    /// This call writes to memory that the frame before in `slot` read; records image copies and
-    /// their barriers into `cmd`; drops what that frame alone has held.
+    /// The call writes to memory that the previous frame in `slot` read. Image copies and their
+    /// barriers are recorded into `cmd`. Resources that only the previous frame held are dropped.
     ///
-    /// The caller must see to it that
+    /// The caller must ensure that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
-    /// * the commands recorded for `slot` before have run, or were never submitted;
+    /// * earlier commands that were recorded for `slot` have run, or were never submitted;
     /// * command buffers of prepared frames are submitted in the order of their `prepare`.
     pub unsafe fn prepare(
         &mut self,
@@ -109,7 +111,7 @@ impl Renderer {
         self.output.check_target(self.target.as_ref().map(|t| &t.0))
     }
 
-    /// Places the tables of a plan, and finds what its steps bind.
+    /// Places the tables of a plan, and finds the bindings of its steps.
     fn bind(&self, planned: &Arc<Planned>) -> Result<Bound> {
         let plan = &planned.plan;
         let parts = planned.objects.iter().zip(&plan.parts);
@@ -144,13 +146,13 @@ impl Renderer {
         })
     }
 
-    /// Writes what of a slot is older than the renderer, or of another view.
+    /// Writes blocks of a slot that are older than the renderer, or of another view.
     fn write(&mut self, slot: usize, view: &View, planned: &Planned) -> Result<()> {
         let casts = self.lighting.shadow != Shadow::Off;
         let to = &mut self.slots[slot];
         to.fit(self.objects.places(), self.objects.instances())?;
         to.write_plan(&planned.plan)?;
-        // Instances are as the eye sees them.
+        // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
         let known = known.map_or(0, |(_, version)| version);
         let mut throwing: Vec<SolidBlock> = Vec::new();

@@ -1,4 +1,4 @@
-//! From the bytes of a target to a frame.
+//! Conversion of a target's bytes to a frame.
 
 use crate::antialias::{self, Solids};
 use crate::error::Result;
@@ -8,7 +8,8 @@ use crate::scene::CameraFrame;
 use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;
 
-/// `planes` as [`Target::read`](crate::gpu::frame::target::Target::read) gives them.
+/// Makes a frame of `planes`, which [`Target::read`](crate::gpu::frame::target::Target::read)
+/// returns.
 pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]]) -> Result<Frame> {
     let mut frame = Frame::new(settings.width, settings.height, background)?;
     match settings.planes {
@@ -47,7 +48,7 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
     Ok(frame)
 }
 
-/// The same with smoothed silhouettes, by depths where these are read beside colours.
+/// Makes a frame with smoothed silhouettes. Uses depths if they are read beside colours.
 pub(crate) fn smoothed(
     settings: &Settings,
     background: [f32; 4],
@@ -66,8 +67,8 @@ pub(crate) fn smoothed(
     let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
     let size = (settings.width, settings.height);
     let mut changes = Vec::new();
-    // Neither needs the other. The frame is made on this thread, which is to free it: memory that
-    // goes from one to another is slow to take again.
+    // The two tasks are independent. The frame is made on the thread that also frees it: memory
+    // that goes from one thread to another is slow to take again.
     let mut frame = rayon::in_place_scope(|scope| {
         scope.spawn(|_| changes = solids.changes(camera, size, &depth, &color));
         frame(settings, background, planes)
@@ -76,7 +77,7 @@ pub(crate) fn smoothed(
     Ok(frame)
 }
 
-/// Linear values of 8-bit ones.
+/// Linear values of all 8-bit values.
 struct Linear([f32; 256]);
 
 impl Linear {
@@ -86,7 +87,7 @@ impl Linear {
         }))
     }
 
-    /// The colour of a pixel.
+    /// The linear colour of a pixel.
     fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
         let [r, g, b] = [r, g, b].map(|byte| self.0[usize::from(byte)]);
         [r, g, b, f32::from(a) / 255.0]

@@ -1,5 +1,5 @@
-//! The commands of a frame: its plan's steps, translated. Their number follows the pipelines and
-//! sets of textures that are in use, and the size of the picture.
+//! The commands of a frame, translated from the steps of its plan. The number of commands follows
+//! the pipelines and texture sets in use, and the size of the picture.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::frame::prepare::PreparedFrame;
@@ -16,25 +16,25 @@ impl Renderer {
     /// Records the draws of a prepared frame, within a pass of the output's formats.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for a frame of another renderer or of a slot that was prepared again:
-    /// nothing is recorded.
+    /// [`ErrorKind::Usage`] for a frame of another renderer, or of a slot that was prepared again.
+    /// Nothing is recorded then.
     ///
     /// # Safety
-    /// This call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. It sets
-    /// neither viewport nor scissor, which are dynamic.
+    /// The call binds pipelines, descriptor sets 0 to 2 and an index buffer, and draws. Viewport
+    /// and scissor are dynamic and are not set.
     ///
-    /// The caller must see to it that
+    /// The caller must ensure that
     /// * `cmd` is recording, within a pass that is compatible with the output, with the view's
     ///   viewport and a scissor set;
-    /// * the renderer lives, and the frame's slot is not prepared again, until the commands have
-    ///   run.
+    /// * the renderer lives until the commands have run, and the frame's slot is not prepared again
+    ///   before that.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer, frame: &PreparedFrame) -> Result<()> {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
         let point = vk::PipelineBindPoint::GRAPHICS;
         let large_points = self.device.constants.large_points;
         let vertices = if large_points { 1 } else { 6 };
-        // SAFETY: `cmd` is recording within a render pass; all that is bound lives as long as the
+        // SAFETY: `cmd` is recording within a render pass; all bound objects live as long as the
         // caller promised.
         unsafe {
             let indices = bound.placed.indices.raw;
@@ -54,21 +54,21 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the dispatches of a prepared frame, outside of a pass, into a target that was
-    /// cleared.
+    /// Records the dispatches of a prepared frame, outside of a pass, into a cleared target.
     ///
     /// # Errors
-    /// As [`Renderer::record`].
+    /// Same as [`Renderer::record`].
     ///
     /// # Safety
-    /// This call binds compute pipelines and sets, dispatches, and records barriers between its own
-    /// dispatches. It records none before its first and after its last write to the target.
+    /// The call binds compute pipelines and sets, dispatches, and records barriers between its own
+    /// dispatches. No barrier is recorded before the first write to the target, and none after the
+    /// last.
     ///
-    /// The caller must see to it that
-    /// * `cmd` is recording, outside of a pass; writes to the target before are made available to
+    /// The caller must ensure that
+    /// * `cmd` is recording, outside of a pass; earlier writes to the target are available to
     ///   compute shaders;
-    /// * the renderer lives, and the frame's slot is not prepared again, until the commands have
-    ///   run.
+    /// * the renderer lives until the commands have run, and the frame's slot is not prepared again
+    ///   before that.
     pub unsafe fn record_compute(
         &self,
         cmd: vk::CommandBuffer,
@@ -80,7 +80,7 @@ impl Renderer {
         let barrier = |from, to| buffer_barrier(&self.device, cmd, &slot.lists, from, to);
         if plan.list_heads > 0 {
             let bytes = 4 * u64::from(plan.list_heads);
-            // SAFETY: `cmd` is recording outside of a pass, and the words lie within the buffer.
+            // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
             unsafe { raw.cmd_fill_buffer(cmd, slot.lists.raw, 0, bytes, 0) };
             barrier(Usage::TransferWrite, Usage::ComputeWrite);
         }
@@ -89,20 +89,20 @@ impl Renderer {
             if step.phase != phase {
                 match phase {
                     0 => barrier(Usage::ComputeWrite, Usage::TileRead),
-                    // What is next reads the depths that were written before.
+                    // The next phase reads the depths that were written before.
                     _ => self.wait_for_writes(cmd),
                 }
                 phase = step.phase;
             }
             self.bind_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n)?;
-            // SAFETY: `cmd` is recording, outside a render pass; all that is bound lives as long as
+            // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long as
             // the caller promised.
             unsafe { self.dispatch(cmd, slot, step) };
         }
         Ok(())
     }
 
-    /// The slot of a frame, and what it binds.
+    /// The slot of a frame, and its bindings.
     pub(in crate::gpu) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &Bound)> {
         let slot = self.slots.get(frame.slot);
         let own =
@@ -117,7 +117,7 @@ impl Renderer {
             })
     }
 
-    /// Draws of a plan, by one command where the device takes that.
+    /// Records draws of a plan, many by one indirect command if the device supports that.
     unsafe fn draw(
         &self,
         cmd: vk::CommandBuffer,
@@ -139,7 +139,7 @@ impl Renderer {
         for start in (first..end).step_by(most as usize) {
             let count = most.min(end - start);
             let at = u64::from(start * DRAW_BYTES);
-            // SAFETY: as the caller promised; the draws lie within the buffer.
+            // SAFETY: as the caller promised; the draws are within the buffer.
             unsafe {
                 raw.cmd_draw_indexed_indirect(cmd, slot.draws.raw, at, count, DRAW_BYTES);
             }
@@ -148,7 +148,7 @@ impl Renderer {
 
     unsafe fn dispatch(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, step: &Step) {
         let raw = &self.device.raw;
-        // SAFETY: as the caller promised; heads lie within the buffer.
+        // SAFETY: as the caller promised; heads are within the buffer.
         unsafe {
             match &step.call {
                 Call::Dispatch(groups, pushed) => {
@@ -164,7 +164,8 @@ impl Renderer {
         }
     }
 
-    /// Between two dispatches of which one reads, or writes again, what the other wrote.
+    /// Records a barrier between two dispatches. The second dispatch reads, or writes again, the
+    /// results of the first.
     pub(in crate::gpu) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
         let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
         let barrier = vk::MemoryBarrier::default()
@@ -218,8 +219,8 @@ impl Renderer {
         let layout = self.device.pipelines()?.layout;
         let sets = [slot.frame_set, textures, slot.target_set];
         let raw = &self.device.raw;
-        // SAFETY: the sets fit the layout, and all they name lives as long as the caller of
-        // `record` promised.
+        // SAFETY: the sets fit the layout, and all objects that they name live as long as the
+        // caller of `record` promised.
         unsafe {
             raw.cmd_bind_pipeline(cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, offsets);

@@ -1,5 +1,5 @@
-//! What one prepared frame reads and no other: its blocks, instances, tiles and draws, the sets that
-//! bind them, and hold of all else that its commands read.
+//! The resources that only one prepared frame reads: blocks, instances, tiles, draws, and the sets
+//! that bind them. The slot also keeps alive all else that its commands read.
 
 use crate::error::Result;
 use crate::gpu::device::Shared;
@@ -29,34 +29,35 @@ pub(crate) struct FrameSlot {
     tiles: Buffer,
     pub lists: Buffer,
     pub draws: Buffer,
-    /// What is recorded, once it is prepared.
+    /// The plan and bindings to record; `None` before the slot is prepared.
     pub bound: Option<Bound>,
-    /// Counts its frames: a token of an earlier one records nothing.
+    /// Counts the slot's frames. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The view and the renderer's version that solids and instances were written for; none: all
-    /// must be written.
+    /// The view and the renderer's version that solids and instances were written for. `None` if
+    /// all must be written.
     pub written: Option<(View, u64)>,
     /// Copies that the frame's commands make.
     pub staging: Vec<Upload>,
-    /// What the sets name: the tables, and how often the target was set.
+    /// The buffer of tables that the sets name, and how often the target was set.
     named: Option<(vk::Buffer, u64)>,
     pool: vk::DescriptorPool,
     device: Arc<Shared>,
 }
 
-/// A plan with all that its commands bind.
+/// A plan with all objects that its commands bind.
 pub(crate) struct Bound {
     pub planned: Arc<Planned>,
-    /// One a step.
+    /// One per step.
     pub steps: Vec<BoundStep>,
     pub placed: Placed,
 }
 
-/// What a step binds.
+/// The bindings of a step.
 pub(crate) struct BoundStep {
     pub pipeline: vk::Pipeline,
     pub textures: Arc<TextureSet>,
-    /// Bytes at which the only tables and the only solid begin.
+    /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
+    /// solid.
     pub offsets: [u32; 2],
 }
 
@@ -89,8 +90,8 @@ impl FrameSlot {
         Ok(slot)
     }
 
-    /// Sees to it that so many solids and instances fit. Whoever calls this knows that no frame
-    /// reads the buffers.
+    /// Makes room for this many solids and instances. The caller must ensure that no frame reads
+    /// the buffers.
     pub fn fit(&mut self, solids: usize, instances: u32) -> Result<()> {
         let solids = solids as u64 * u64::from(SOLID_STRIDE);
         let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
@@ -107,7 +108,7 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Bytes of its buffers.
+    /// Bytes of all buffers of the slot.
     pub fn bytes(&self) -> u64 {
         let all = [
             &self.frame,
@@ -164,7 +165,7 @@ impl FrameSlot {
         write_slice(&mut self.draws, &plan.draws)
     }
 
-    /// Points the sets to their buffers, where those have changed.
+    /// Points the sets to their buffers, if those have changed.
     pub fn name(&mut self, tables: &Buffer, target: Option<(&ComputeTarget, u64)>) {
         let now = (tables.raw, target.map_or(0, |t| t.1));
         if self.named == Some(now) {
@@ -189,8 +190,8 @@ impl FrameSlot {
             of_target.extend((2u32..).zip(images));
         }
         let raw = &self.device.raw;
-        // SAFETY: the frame that used the sets before is done; what they name lives as long as the
-        // slot, or as long as the host promised.
+        // SAFETY: the previous frame that used the sets is done; the objects that they name live as
+        // long as the slot, or as long as the host promised.
         unsafe {
             descriptors::write(raw, self.frame_set, FRAME_SET, &frame);
             descriptors::write(raw, self.target_set, TARGET_SET, &of_target);
@@ -199,7 +200,8 @@ impl FrameSlot {
     }
 }
 
-/// A storage buffer with half as much again to spare: what moves grows in small steps.
+/// Makes a storage buffer with half as much again to spare, because moving objects grow it in small
+/// steps.
 fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
     let limit = u64::from(device.limits.max_storage_buffer_range);
     storage(device, name, bytes.max((bytes + bytes / 2).min(limit)))
@@ -207,8 +209,8 @@ fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
 
 impl Drop for FrameSlot {
     fn drop(&mut self) {
-        // SAFETY: the slot's last frame is done; the sets go with their pool, and a null
-        // pool may be destroyed.
+        // SAFETY: the slot's last frame is done; the pool frees its sets, and a null pool may be
+        // destroyed.
         unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
     }
 }

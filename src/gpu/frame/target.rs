@@ -1,5 +1,5 @@
-//! What is drawn into: the planes' images, the depth buffer, and two words a pixel; and reading
-//! them back.
+//! The memory that is drawn into: images of the planes, the depth buffer, two words per pixel.
+//! Copies of it to the host.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -14,26 +14,27 @@ use crate::settings::{DrawStage, Planes};
 use ash::vk;
 use std::sync::Arc;
 
-/// What compute shaders write to, and fragments of all planes besides their attachments.
+/// Memory that compute shaders write to. Fragment shaders that draw all planes write to it besides
+/// their attachments.
 #[derive(Clone, Debug)]
 pub struct ComputeTarget {
-    /// A storage buffer of two 32-bit words a pixel, row by row from the top: the depths of all
-    /// pixels, as bits of floats; then a second word of each, which is the colour, packed as
-    /// `R8G8B8A8_SRGB`, where colour alone is drawn, else a count of look-ups. The host clears it
-    /// before a frame, depths to 1.0 and colours to its background, or fills in what is already
-    /// drawn.
+    /// A storage buffer of two 32-bit words per pixel, row by row from the top. The first half
+    /// holds the depths of all pixels, as bits of floats. The second half holds a second word of
+    /// each pixel. This word is the colour, packed as `R8G8B8A8_SRGB`, if only colour is drawn,
+    /// else a count of look-ups. Before a frame the host clears depths to 1.0 and colours to its
+    /// background, or fills in what is already drawn.
     pub words: vk::Buffer,
-    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`; none where
-    /// colour alone is drawn, or fragments draw.
+    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`. Empty if only
+    /// colour is drawn, or if fragments draw.
     pub images: Vec<vk::ImageView>,
-    /// Whether depths count: compute compares with those that are there, and leaves its own. If
-    /// not, they may hold anything, and are read and written only where objects have to be told
-    /// apart ([`PreparedFrame::reads_depths`](super::PreparedFrame::reads_depths)).
+    /// True if depths count: compute compares with the depths in the buffer, and writes its own. If
+    /// false, the depths may hold anything. Shaders then read and write them only to distinguish
+    /// objects ([`PreparedFrame::reads_depths`](crate::gpu::PreparedFrame::reads_depths)).
     pub depths: bool,
 }
 
 impl ComputeTarget {
-    /// The second word of a pixel of this linear colour, where colour alone is drawn.
+    /// The second word of a pixel of this linear colour, if only colour is drawn.
     #[must_use]
     pub fn color_word(linear: [f32; 4]) -> u32 {
         pack_srgb(linear)
@@ -46,26 +47,45 @@ pub(crate) struct Target {
     pub height: u32,
     stage: DrawStage,
     planes: Planes,
-    /// The fragment path's attachments, or the compute path's storage images; none where compute
-    /// draws colour alone.
+    /// The fragment path's attachments, or the compute path's storage images. Empty if compute
+    /// draws only colour.
     pub images: Vec<Image>,
     depth: Option<Image>,
     framebuffer: vk::Framebuffer,
-    /// Depth of each pixel, then the second word of each (see `pixel_words.glsl`); none where
-    /// fragments draw colour alone.
+    /// The depths of all pixels, then their second words (see `pixel_words.glsl`). `None` if
+    /// fragments draw only colour.
     pub words: Option<Buffer>,
-    /// Whether depths are read beside colours.
+    /// True if depths are read beside colours.
     keeps_depths: bool,
-    /// What is read is copied to it; made by the first reading.
+    /// Host memory that `read` copies to; made by the first call.
     host: Option<Buffer>,
     device: Arc<Shared>,
 }
 
-/// What is copied to the host as a whole.
+/// A part that is copied to the host as a whole.
 enum Part<'a> {
     Image(&'a Image),
-    /// Half of the words: depths are the first.
+    /// Half of the words, from this byte on. Depths are the first half.
     Words(&'a Buffer, u64),
+}
+
+/// Returns an error for more pixels than the device draws, or than fit into a buffer at two words
+/// per pixel.
+fn check_size(device: &Shared, (width, height): (u32, u32), needs_words: bool) -> Result<()> {
+    let limits = &device.limits;
+    let side = limits.max_image_dimension2_d;
+    let most_x = limits.max_framebuffer_width.min(side);
+    let most_y = limits.max_framebuffer_height.min(side);
+    let most_words = limits.max_storage_buffer_range / 8;
+    let words_fit = u64::from(width) * u64::from(height) <= u64::from(most_words);
+    if width <= most_x && height <= most_y && (words_fit || !needs_words) {
+        return Ok(());
+    }
+    let name = &device.report.name;
+    let message = format!(
+        "{width}x{height} pixels are more than {name} takes ({most_x}x{most_y}, and {most_words} in all for this kind of picture); make it smaller"
+    );
+    Err(Error::new(ErrorKind::TooLarge, message).at_key("size"))
 }
 
 impl Target {
@@ -77,29 +97,8 @@ impl Target {
         keeps_depths: bool,
         (width, height): (u32, u32),
     ) -> Result<Self> {
-        let limits = &device.limits;
-        let (most_x, most_y) = (
-            limits
-                .max_framebuffer_width
-                .min(limits.max_image_dimension2_d),
-            limits
-                .max_framebuffer_height
-                .min(limits.max_image_dimension2_d),
-        );
-        let pixels = u64::from(width) * u64::from(height);
         let needs_words = stage == DrawStage::Compute || planes == Planes::All;
-        let words_fit = 8 * pixels <= u64::from(limits.max_storage_buffer_range);
-        if width > most_x || height > most_y || (needs_words && !words_fit) {
-            return Err(Error::new(
-                ErrorKind::TooLarge,
-                format!(
-                    "{width}x{height} pixels are more than {} takes ({most_x}x{most_y}, and {} in all for this kind of picture); make it smaller",
-                    device.report.name,
-                    limits.max_storage_buffer_range / 8
-                ),
-            )
-            .at_key("size"));
-        }
+        check_size(device, (width, height), needs_words)?;
         let mut target = Self {
             width,
             height,
@@ -161,12 +160,13 @@ impl Target {
         if needs_words {
             use vk::BufferUsageFlags as B;
             let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
+            let pixels = u64::from(width) * u64::from(height);
             target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
         }
         Ok(target)
     }
 
-    /// What shaders write to besides attachments.
+    /// The memory that shaders write to besides attachments.
     pub fn for_shaders(&self) -> Option<ComputeTarget> {
         let storage = |i: &&Image| i.kind.usage.contains(vk::ImageUsageFlags::STORAGE);
         Some(ComputeTarget {
@@ -176,7 +176,7 @@ impl Target {
         })
     }
 
-    /// Records the clearing of what no render pass clears.
+    /// Records clears of all memory that no render pass clears.
     pub fn clear(&self, cmd: vk::CommandBuffer, background: [f32; 4], depths: bool) {
         let raw = &self.device.raw;
         let next = self.shader_use();
@@ -193,7 +193,7 @@ impl Target {
                 Usage::TransferRead,
                 Usage::TransferWrite,
             );
-            // SAFETY: `cmd` is recording and both ranges lie within the buffer.
+            // SAFETY: `cmd` is recording and both ranges are within the buffer.
             unsafe {
                 if depths {
                     raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
@@ -230,7 +230,7 @@ impl Target {
         }
     }
 
-    /// How shaders use images and words.
+    /// The use of images and words by shaders.
     fn shader_use(&self) -> Usage {
         if self.stage == DrawStage::Compute {
             Usage::ComputeWrite
@@ -282,8 +282,8 @@ impl Target {
         }
     }
 
-    /// What is read, in order: the planes' images or the colours among the words; of all planes the
-    /// counts of look-ups; depths that are kept.
+    /// The parts to read, in order: images of the planes, or colours among the words; counts of
+    /// look-ups, if all planes are drawn; depths, if kept.
     fn parts(&self) -> Vec<Part<'_>> {
         let mut parts: Vec<_> = self.images.iter().map(Part::Image).collect();
         if let Some(words) = &self.words {
@@ -299,7 +299,7 @@ impl Target {
         parts
     }
 
-    /// Copies what [`Target::parts`] names to the host: the bytes of each.
+    /// Copies the parts of [`Target::parts`] to the host, and returns the bytes of each.
     pub fn read(&mut self, commands: &Commands) -> Result<Vec<&[u8]>> {
         let pixels = u64::from(self.width) * u64::from(self.height);
         let bytes = |part: &Part| match part {
@@ -355,7 +355,7 @@ impl Target {
                         height: self.height,
                         depth: 1,
                     });
-                // SAFETY: the region is the whole image, the buffer holds it from there on.
+                // SAFETY: the region is the whole image, and the buffer holds it from byte `at` on.
                 unsafe {
                     raw.cmd_copy_image_to_buffer(
                         cmd,
@@ -384,7 +384,8 @@ impl Target {
     }
 }
 
-/// What a pixel holds where nothing is hit: the background; no normal, at infinity; nothing else.
+/// Clear values of a pixel that hits nothing: the background; no normal, at infinity; zeros
+/// elsewhere.
 fn clear_values(planes: Planes, background: [f32; 4]) -> Vec<vk::ClearColorValue> {
     let color = |float32| vk::ClearColorValue { float32 };
     match planes {

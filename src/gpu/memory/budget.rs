@@ -1,44 +1,44 @@
-//! How much of the device's memory is taken, and may be taken.
+//! The device memory in use, and its limit.
 
 use crate::error::{Error, ErrorKind, Result};
 use ash::vk::MemoryPropertyFlags as Flags;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// Bytes that all buffers and images on a device take, by the kind of heap that they are in.
+/// Bytes that all buffers and images on a device take, by kind of heap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryUse {
-    /// Of the device, not seen by the host: what the device alone touches.
+    /// Device memory that the host cannot map: data that only the device touches.
     pub device: u64,
-    /// Of the device, seen by the host: what changes every frame, where there is such memory.
+    /// Device memory that the host can map: data that changes every frame, if there is such memory.
     /// Integrated and software devices have no other.
     pub visible: u64,
-    /// Of the host: what is copied to the device once or read back, and what changes every frame
-    /// where the device shows the host nothing.
+    /// Host memory: data that is copied to the device once or read back. Data that changes every
+    /// frame is also here if the host can map no device memory.
     pub host: u64,
 }
 
 impl MemoryUse {
-    /// Of all heaps.
+    /// Bytes of all heaps.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.device + self.visible + self.host
     }
 }
 
-/// Bytes that buffers and images take, and the most that they may.
+/// Bytes that buffers and images take, and the limit on them.
 #[derive(Default)]
 pub(crate) struct MemoryBudget {
-    /// With what is about to be allocated.
+    /// Bytes in use, including allocations in progress.
     used: AtomicU64,
-    /// 0: as much as the device has.
+    /// 0 allows as much as the device has.
     limit: AtomicU64,
-    /// In the order of [`MemoryUse`].
+    /// Bytes in use by heap, in the order of [`MemoryUse`].
     by_heap: [AtomicU64; 3],
 }
 
 impl MemoryBudget {
     pub fn set(&self, bytes: Option<u64>) {
-        // A budget of nothing is one byte: nothing fits.
+        // A budget of zero is stored as one byte: nothing fits.
         self.limit.store(bytes.map_or(0, |b| b.max(1)), Relaxed);
     }
 
@@ -51,8 +51,8 @@ impl MemoryBudget {
         }
     }
 
-    /// Allocates so many bytes by `make`, which returns what was made and the flags of its memory,
-    /// if the budget has them.
+    /// Allocates this many bytes by `make`, if the budget has them. `make` returns the result and
+    /// the flags of its memory.
     pub fn take<T>(
         &self,
         name: &str,
@@ -85,14 +85,14 @@ impl MemoryBudget {
         }
     }
 
-    /// Gives back what was taken.
+    /// Returns bytes to the budget.
     pub fn give(&self, bytes: u64, flags: Flags) {
         self.used.fetch_sub(bytes, Relaxed);
         self.by_heap[heap(flags)].fetch_sub(bytes, Relaxed);
     }
 }
 
-/// The place of a kind of heap in [`MemoryUse`].
+/// The index of a kind of heap in [`MemoryUse`].
 fn heap(flags: Flags) -> usize {
     if !flags.contains(Flags::DEVICE_LOCAL) {
         2
@@ -126,7 +126,7 @@ mod tests {
         budget.set(Some(7));
         let full = budget.take("a", 2, || Ok(((), seen))).unwrap_err();
         assert_eq!(full.kind, ErrorKind::OutOfDeviceMemory);
-        // What could not be allocated is not counted, either.
+        // A failed allocation is not counted, either.
         let failed = || Err::<((), Flags), _>(Error::new(ErrorKind::DeviceLost, "planted"));
         budget.take("a", 1, failed).unwrap_err();
         assert_eq!(budget.memory_use(), all);

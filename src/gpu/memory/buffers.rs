@@ -1,4 +1,4 @@
-//! Buffers by what touches them, which decides the memory that they get.
+//! Buffers by their users, which decide the kind of memory.
 //!
 //! | constructor | the host | the device | memory |
 //! |---|---|---|---|
@@ -7,8 +7,8 @@
 //! | [`per_frame`] | writes it every frame | reads it | of the device, seen by the host |
 //! | [`read_back`] | reads it | copies into it | of the host, cached where there is such |
 //!
-//! The device's own memory stands in for the host's, and the other way round, where a device has no
-//! other. Memory that the host sees is coherent: the allocator takes no other, so nothing is flushed.
+//! Device memory replaces host memory, and the reverse, on a device that has no other. Memory that
+//! the host sees is coherent: the allocator takes no other, so nothing is flushed.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -18,7 +18,7 @@ use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 use vk::BufferUsageFlags as B;
 
-/// A buffer that the device alone writes and reads.
+/// A buffer that only the device writes and reads.
 pub(crate) fn device_local(
     device: &Arc<Shared>,
     name: &str,
@@ -33,7 +33,7 @@ pub(crate) fn per_frame(device: &Arc<Shared>, name: &str, bytes: u64, usage: B) 
     make(device, name, bytes, usage, MemoryLocation::CpuToGpu)
 }
 
-/// A buffer that is written once and copied from once.
+/// A buffer that the host writes once, and that is copied from once.
 pub(crate) fn upload(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
     let (usage, location) = (B::TRANSFER_SRC, MemoryLocation::CpuToGpu);
     Buffer::among(device, name, bytes, usage, location, device.host_types)
@@ -50,7 +50,7 @@ pub(crate) fn uniform(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Bu
     per_frame(device, name, bytes, B::UNIFORM_BUFFER)
 }
 
-/// Tables and instances, which are read both ways.
+/// Tables and instances, bound both as storage buffers and as uniform buffers.
 pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
     per_frame(device, name, bytes, B::STORAGE_BUFFER | B::UNIFORM_BUFFER)
 }

@@ -14,11 +14,11 @@ use gpu_allocator::vulkan::{
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
 use std::sync::{Arc, Mutex};
 
-/// A buffer with its memory. Whoever drops it has waited for the device.
+/// A buffer with its memory. The owner must wait for the device before dropping it.
 pub struct Buffer {
     /// The buffer.
     pub raw: vk::Buffer,
-    /// How many bytes it holds.
+    /// The size in bytes.
     pub bytes: u64,
     allocation: Option<Allocation>,
     device: Arc<Shared>,
@@ -35,7 +35,7 @@ impl Buffer {
         Self::among(device, name, bytes, usage, location, u32::MAX)
     }
 
-    /// In memory of one of these types, if one of them will do.
+    /// Makes a buffer in memory of one of these types, if one of them fits, else of any type.
     pub(crate) fn among(
         device: &Arc<Shared>,
         name: &str,
@@ -66,11 +66,11 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator asks for
-    /// it.
+    /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator takes no
+    /// other.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for a buffer elsewhere.
+    /// [`ErrorKind::Usage`] for a buffer in other memory.
     pub fn mapped(&mut self) -> Result<&mut [u8]> {
         let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
         self.allocation
@@ -80,13 +80,13 @@ impl Buffer {
             .ok_or_else(|| Error::new(ErrorKind::Usage, "the buffer is not in host memory"))
     }
 
-    /// Writes bytes of a buffer in host memory that others may hold, too.
+    /// Writes bytes of a buffer in host memory that may have other owners, too.
     ///
     /// # Safety
-    /// This call writes from byte `at` on.
+    /// The call writes from byte `at` on.
     ///
-    /// The caller must see to it that nothing else reads or writes these bytes meanwhile, here or on
-    /// the device.
+    /// The caller must ensure that nothing else reads or writes these bytes during the call, here
+    /// or on the device.
     pub(crate) unsafe fn write_shared(&self, at: usize, bytes: &[u8]) -> Result<()> {
         let mapped = self.allocation.as_ref().and_then(Allocation::mapped_ptr);
         let fits = at
@@ -95,7 +95,7 @@ impl Buffer {
         let Some(mapped) = mapped.filter(|_| fits) else {
             return Err(Error::new(ErrorKind::Other, "a host buffer is not mapped"));
         };
-        // SAFETY: the allocation is mapped as long as it lives, and the bytes lie within it; no
+        // SAFETY: the allocation is mapped as long as it lives, and the bytes are within it; no
         // other access happens by the caller's promise.
         unsafe {
             let to = mapped.as_ptr().cast::<u8>().add(at);
@@ -113,7 +113,7 @@ impl Drop for Buffer {
     }
 }
 
-/// What an image is made as; always 2D, one layer.
+/// The parameters of an image; always 2D, one layer.
 #[derive(Clone, Copy)]
 pub(crate) struct ImageKind {
     pub format: vk::Format,
@@ -189,7 +189,7 @@ impl Image {
         Ok(image)
     }
 
-    /// Bytes of memory it takes.
+    /// Bytes of memory that the image takes.
     pub fn bytes(&self) -> u64 {
         self.allocation.as_ref().map_or(0, Allocation::size)
     }
@@ -228,10 +228,9 @@ fn allocate(
     })
 }
 
-/// Hands an allocation to its owner before anything else can fail: whoever owns it frees it.
+/// Moves an allocation to its owner, which frees it, before anything else can fail.
 fn bound(owner: &mut Option<Allocation>, allocation: Allocation) -> (vk::DeviceMemory, u64) {
-    // SAFETY: the handle is used to bind the resource that owns the allocation, and for nothing
-    // else.
+    // SAFETY: the handle is used only to bind the resource that owns the allocation.
     let place = (unsafe { allocation.memory() }, allocation.offset());
     *owner = Some(allocation);
     place
@@ -244,12 +243,12 @@ fn free(device: &Shared, allocation: Option<Allocation>) {
     let (bytes, flags) = (allocation.size(), allocation.memory_properties());
     device.budget.give(bytes, flags);
     if let Ok(mut allocator) = device.allocator() {
-        // An error here can only be reported, and nobody is left to report it to.
+        // An error here can only be reported, and no caller is left to receive it.
         let _ = allocator.free(allocation);
     }
 }
 
-/// Bits of the types of memory that is the host's alone, coherent.
+/// Bits of the memory types that are host-visible and coherent, but not device-local.
 pub(crate) fn host_types(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
     use vk::MemoryPropertyFlags as Flags;
     // SAFETY: plain query of a live physical device.
@@ -262,7 +261,7 @@ pub(crate) fn host_types(instance: &ash::Instance, physical: vk::PhysicalDevice)
         .fold(0, |bits, (number, _)| bits | 1 << number)
 }
 
-/// An allocator for a host that gives none.
+/// An allocator for devices whose host gives none.
 pub(crate) fn allocator(
     instance: &ash::Instance,
     physical_device: vk::PhysicalDevice,

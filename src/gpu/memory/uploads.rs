@@ -1,4 +1,4 @@
-//! Bytes on their way to the device: written to staging buffers at once, copied by the next
+//! Uploads to the device: bytes are written to staging buffers at once, and copied by the next
 //! commands that are prepared.
 
 use crate::error::{Error, ErrorKind, Result};
@@ -15,7 +15,7 @@ pub(crate) struct Uploads {
     owner: u32,
 }
 
-/// One image's copy.
+/// The copy of one image.
 pub(crate) struct Upload {
     staging: Buffer,
     image: Arc<Image>,
@@ -23,7 +23,7 @@ pub(crate) struct Upload {
 }
 
 impl Uploads {
-    /// Those of the renderer of this identity.
+    /// No copies yet, for the renderer of this identity.
     pub fn of(owner: u32) -> Self {
         Self {
             waiting: Vec::new(),
@@ -36,7 +36,7 @@ impl Uploads {
         self.owner
     }
 
-    /// Makes a sampled image of `levels`, the bytes of each mip level from the largest.
+    /// Makes a sampled image of `levels`: the bytes of each mip level, the largest first.
     pub fn image(
         &mut self,
         device: &Arc<Shared>,
@@ -92,13 +92,13 @@ impl Uploads {
         Ok(image)
     }
 
-    /// Records all copies; what is returned must live until they have run.
+    /// Records all copies. The returned values must live until the copies have run.
     #[must_use]
     pub fn record(&mut self, device: &Shared, cmd: vk::CommandBuffer) -> Vec<Upload> {
         for upload in &self.waiting {
             let image = &upload.image;
             image_barrier(device, cmd, image, Usage::Nothing, Usage::TransferWrite);
-            // SAFETY: `cmd` is recording, outside a render pass; the regions lie within buffer and
+            // SAFETY: `cmd` is recording, outside a render pass; the regions are within buffer and
             // image.
             unsafe {
                 device.raw.cmd_copy_buffer_to_image(

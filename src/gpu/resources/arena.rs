@@ -1,5 +1,5 @@
-//! One storage buffer for the tables and frusta of all surfaces: each stands at one place for as
-//! long as it lives.
+//! One storage buffer for the tables and frusta of all surfaces. A surface's parts keep their
+//! places as long as they live.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -10,19 +10,19 @@ use crate::solid::table_slot::{Part, Ranges, Slot};
 use range_alloc::RangeAllocator;
 use std::sync::{Arc, Mutex, Weak};
 
-/// The buffer and what of it is free.
+/// The buffer and its free ranges.
 pub(crate) struct TableArena {
     pub buffer: Arc<Buffer>,
     ranges: Ranges,
-    /// Vectors of 16 bytes to a unit: what every beginning is aligned to.
+    /// The number of 16-byte vectors in a unit. Every slot begins at a whole unit.
     unit: u32,
     placed: Vec<(Weak<OffsetSurface>, Part)>,
-    /// Length of `placed` from which on the dead are taken out.
+    /// The length of `placed` above which dead entries are removed.
     crowded: usize,
     device: Arc<Shared>,
 }
 
-/// Units of an arena that is made anew.
+/// Units of a new arena.
 const FIRST_UNITS: u32 = 1024;
 
 impl TableArena {
@@ -39,7 +39,7 @@ impl TableArena {
         })
     }
 
-    /// Gives a part of a surface its place and writes it there, if it has none.
+    /// Gives a part of a surface a place and writes it there, if it has no place yet.
     pub fn place(&mut self, surface: &Arc<OffsetSurface>, part: Part) -> Result<()> {
         if surface.slot(part).is_some() {
             return Ok(());
@@ -73,7 +73,7 @@ impl TableArena {
         self.ranges.lock().map_err(|_| full())
     }
 
-    /// Twice the room, with everything that lives at the places where it was.
+    /// Makes at least twice the room. Everything that lives keeps its place.
     fn grow(&mut self, more: u32) -> Result<()> {
         let units = self.ranges()?.initial_range().end;
         let wanted = units.saturating_mul(2).max(units.saturating_add(more));
@@ -94,8 +94,8 @@ impl TableArena {
 
     fn write(&mut self, begin: u32, vectors: &[[u32; 4]]) -> Result<()> {
         let bytes: &[u8] = bytemuck::cast_slice(vectors);
-        // SAFETY: the range belongs to one surface, whose parts are written once in a buffer, before
-        // any frame reads them; the arena is behind a lock.
+        // SAFETY: the range belongs to one surface, whose parts are written once in a buffer,
+        // before any frame reads them; the arena is behind a lock.
         unsafe { self.buffer.write_shared(16 * begin as usize, bytes) }
     }
 }
@@ -107,8 +107,8 @@ fn full() -> Error {
     )
 }
 
-/// With a window's length behind the last unit: the window on the last tables is as long as on all
-/// others.
+/// Makes a buffer with a window's length after the last unit. The window on the last tables is then
+/// as long as all others.
 fn buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
     let vectors = u64::from(unit) * u64::from(units) + u64::from(device.constants.own_vectors);
     storage(device, "tables", 16 * vectors)

@@ -1,4 +1,4 @@
-//! From values of a scene to what shaders read.
+//! Conversion of scene values to the blocks that shaders read.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::resources::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
@@ -12,7 +12,7 @@ use crate::shader::is_beveled;
 use crate::solid::reach::{farthest_corner, largest_width};
 use glam::DVec3;
 
-/// Fails where a map's format cannot show what the object asks for.
+/// Returns an error if a map's format cannot show the object's offset.
 pub(crate) fn check_format(
     object: &Object,
     solver: Solver,
@@ -28,8 +28,8 @@ pub(crate) fn check_format(
     Ok(())
 }
 
-/// The batch's block; `instances` are its range, `shadow_map` its map's index among those that
-/// shadows read.
+/// The object's block. `instances` is the range of its copies, `shadow_map` the index of its map
+/// among the maps that shadows read.
 pub(crate) fn solid_block(
     object: &Object,
     map: &MapFacts,
@@ -43,7 +43,7 @@ pub(crate) fn solid_block(
     let width = largest_width(&object.offset);
     let grow = width.max(0.0) + texel;
     let [x, y] = object.axis_offset();
-    // Where the map ends, what is read from it ends.
+    // The map gives no values beyond its last column.
     let reach = if solver.reads_map() {
         f64::from(map.columns) * texel
     } else {
@@ -110,7 +110,8 @@ pub(crate) fn solid_block(
     }
 }
 
-/// What textures need to find the profile's box in a larger one, whose radius is `radius`.
+/// Adds the values by which textures find the profile's box in a larger box, whose radius is
+/// `radius`.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) {
     block.specular[2] = growth.height() as f32;
@@ -118,7 +119,7 @@ pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) 
     block.texturing[3] = (2.0 * (radius * growth.height() - growth.side)) as f32;
 }
 
-/// A copy of `object` as a view sees it. World coordinates are subtracted here, in double
+/// The block of one copy of `object` in a view. World coordinates are subtracted here, in double
 /// precision.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn instance_block(
@@ -195,7 +196,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
     }
 }
 
-/// Fails for more lights than shaders hold.
+/// Returns an error for more lights than shaders hold.
 pub(crate) fn check_lights(lighting: &Lighting) -> Result<()> {
     let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
     if count > most as usize {

@@ -13,7 +13,7 @@ use crate::solid::proxy_hull;
 use crate::solid::table_slot::Part;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// What is shared, behind one lock.
+/// The shared state, behind one lock.
 pub(crate) struct Geometry {
     state: Mutex<State>,
 }
@@ -23,12 +23,12 @@ pub(crate) struct State {
     pub solids: SolidCache,
     arena: TableArena,
     indices: Arc<Buffer>,
-    /// Frusta that there are indices for.
+    /// The number of frusta that have indices.
     frusta: u32,
     device: Arc<Shared>,
 }
 
-/// The buffers of a frame: what was placed when it was prepared stays where it is in these.
+/// The buffers of a frame. Parts that were placed for the frame stay at their places in these.
 #[derive(Clone)]
 pub(crate) struct Placed {
     pub tables: Arc<Buffer>,
@@ -36,7 +36,7 @@ pub(crate) struct Placed {
 }
 
 impl Geometry {
-    /// That of a device.
+    /// The geometry of a device, made now if there is none.
     pub fn of(device: &Arc<Shared>) -> Result<Arc<Self>> {
         let mut known = device.geometry.lock().map_err(|_| poisoned())?;
         if let Some(geometry) = known.upgrade() {
@@ -61,8 +61,7 @@ impl Geometry {
 }
 
 impl State {
-    /// Gives parts of surfaces their places. Frames that were prepared before keep the buffers that
-    /// they have.
+    /// Gives parts of surfaces their places. Frames that were prepared earlier keep their buffers.
     pub fn place<'a>(
         &mut self,
         surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, Parts)>,
@@ -86,12 +85,12 @@ impl State {
         })
     }
 
-    /// Bytes of its buffers.
+    /// Bytes of the shared buffers.
     pub fn bytes(&self) -> u64 {
         self.arena.buffer.bytes + self.indices.bytes
     }
 
-    /// Sees to it that there are indices for so many frusta.
+    /// Makes indices for this many frusta, if there are fewer.
     fn fit(&mut self, frusta: u32) -> Result<()> {
         if frusta > self.frusta {
             let frusta = frusta.next_power_of_two();

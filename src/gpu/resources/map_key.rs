@@ -1,4 +1,4 @@
-//! Which shape map an object reads.
+//! The choice of an object's shape map.
 
 use crate::maps::{Bounds, MapFormat, MapSource};
 use crate::profile::Profile;
@@ -6,10 +6,10 @@ use crate::scene::{Growth, Object};
 use crate::settings::SearchSettings;
 use crate::solid::reach::reach;
 
-/// Most rows of a map whose box has grown.
+/// Upper limit on rows of a map whose box has grown.
 const MOST_ROWS: f64 = 16384.0;
 
-/// What a shape map is baked from.
+/// The parameters that a shape map is baked from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MapKey {
     pub rows: u32,
@@ -18,7 +18,7 @@ pub(crate) struct MapKey {
     pub columns: u32,
 }
 
-/// What a shader must know of a map, baked or not.
+/// Facts about a map that a shader needs, baked or not.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapFacts {
     pub columns: u32,
@@ -28,11 +28,12 @@ pub(crate) struct MapFacts {
 }
 
 impl MapKey {
-    /// The map that `object` wants; `columns` as many as its solid needs under its offset.
+    /// The key of the map that `object` needs. `columns` is the number that its solid needs under
+    /// its offset.
     pub fn new(object: &Object, growth: &Growth, settings: &SearchSettings) -> Self {
         let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
-        // Texels of a grown box are as large as those of its own.
+        // Texels of a grown box are as large as texels of the object's own box.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
         let rows = (f64::from(rows) * growth.height())
             .ceil()
@@ -47,7 +48,8 @@ impl MapKey {
         }
     }
 
-    /// Whether a map of this key serves where `other` is wanted: it may reach farther.
+    /// Returns true if a map of this key can replace a map of the key `other`. Such a map may reach
+    /// farther.
     pub fn holds(&self, other: &Self) -> bool {
         self.columns >= other.columns
             && Self {
@@ -56,14 +58,13 @@ impl MapKey {
             } == *other
     }
 
-    /// What a shader is told of the map where no map is baked: its size, and what the solid
-    /// occupies.
+    /// The facts for a shader if no map is baked: the map's size, and the bounds of the solid.
     pub fn unbaked(&self, profile: &Profile) -> MapFacts {
         MapFacts {
             columns: self.columns,
             rows: self.rows,
             scale: 1.0,
-            // Of a solid that is not there nothing is clipped; nothing is met either.
+            // A missing solid clips nothing and returns no hit.
             bounds: profile.outline.bounds().unwrap_or(Bounds {
                 r_min: 0.0,
                 r_max: profile.radius,

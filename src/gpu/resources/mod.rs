@@ -1,5 +1,4 @@
-//! What scenes become on a device: blocks that shaders read, maps and textures, tables in one
-//! buffer.
+//! Device resources of a scene: blocks that shaders read, maps and textures, tables in one buffer.
 
 pub(crate) mod arena;
 pub(crate) mod block;

@@ -19,13 +19,13 @@ pub(crate) struct ShapeTexture {
 
 /// Lengths along the outline on the device, for a map of the same size.
 pub(crate) struct ArcTexture {
-    /// Length of the longest part of the outline, object units.
+    /// Length of the longest part of the outline, in object units.
     pub length: f64,
     pub texture: Arc<Image>,
 }
 
 impl ShapeTexture {
-    /// Bakes it, and has it on its way to the device.
+    /// Bakes the map, and queues its upload to the device.
     pub fn bake(
         device: &Arc<Shared>,
         uploads: &mut Uploads,
@@ -59,7 +59,7 @@ impl ShapeTexture {
 }
 
 impl ArcTexture {
-    /// For a map with these facts.
+    /// Makes the lengths for a map with these facts.
     pub fn new(
         device: &Arc<Shared>,
         uploads: &mut Uploads,
@@ -68,7 +68,7 @@ impl ArcTexture {
     ) -> Result<Self> {
         let lengths = ArcLength::new(profile)?;
         let table = lengths.table(facts.columns, facts.rows);
-        // 16-bit normalised textures are not everywhere; 32-bit floats are.
+        // Not every device has 16-bit normalised textures; all have 32-bit floats.
         let texels: Vec<f32> = table
             .texels
             .iter()

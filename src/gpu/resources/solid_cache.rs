@@ -1,8 +1,8 @@
-//! Prepared solids: everything that is made from one profile, keyed in one place and shared by all
-//! objects that show it.
+//! Prepared solids: everything that is made from one profile, keyed in one place. All objects that
+//! show the profile share the solid.
 //!
-//! The cache holds nothing alive. Objects do, and frames in flight; what the last of them lets go
-//! is gone.
+//! The cache keeps nothing alive. Objects and frames in flight do; a value is dropped with the last
+//! of them.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -22,17 +22,18 @@ use std::sync::{Arc, Mutex};
 /// Solids by profile.
 #[derive(Default)]
 pub(crate) struct SolidCache {
-    /// By the profile's address, which a solid keeps from being used again.
+    /// The key is the profile's address. A solid keeps its profile, so no other profile gets the
+    /// address.
     solids: Kept<usize, Solid>,
     /// Profiles in boxes that have grown with offsets.
     pub grown: GrownProfiles,
 }
 
-/// All that is made from one profile.
+/// Everything that is made from one profile.
 pub(crate) struct Solid {
     pub outline: Arc<OutlineCache>,
     surfaces: Shelf<SurfaceKey, OffsetSurface>,
-    /// By who uploads them, too: commands of two renderers may run in any order.
+    /// The key includes the uploading renderer: commands of two renderers may run in any order.
     maps: Shelf<(u32, MapKey), ShapeTexture>,
     arcs: Shelf<(u32, u32, u32), ArcTexture>,
 }
@@ -51,9 +52,9 @@ fn shelved<K: Hash + Eq, V>(
 
 #[derive(PartialEq, Eq, Hash)]
 enum SurfaceKey {
-    /// Bits of the offset, level.
+    /// Bits of the offset; level.
     Patches([u64; 3], u8),
-    /// Likewise; rows.
+    /// The search; bits of the offset; rows.
     Search(&'static Search, [u64; 3], u32),
 }
 
@@ -76,7 +77,7 @@ impl Solid {
         }
     }
 
-    /// The boundary as quadrics; not made yet where it is new.
+    /// The boundary as quadrics. A new surface is not made yet.
     pub fn patches(
         &self,
         offset: &Offset,
@@ -91,7 +92,7 @@ impl Solid {
         })
     }
 
-    /// The table of a search of another crate; not made yet where it is new.
+    /// The table of a search of another crate. A new table is not made yet.
     pub fn search_table(
         &self,
         search: &'static Search,
@@ -105,7 +106,7 @@ impl Solid {
         })
     }
 
-    /// The shape map, baked and on its way to the device where it is new.
+    /// The shape map. A new map is baked, and its upload is queued.
     pub fn map(
         &self,
         device: &Arc<Shared>,
@@ -132,7 +133,7 @@ impl Solid {
     }
 }
 
-/// Of both zeros one.
+/// The bits of an offset; both zeros give the same bits.
 fn bits(offset: &Offset) -> [u64; 3] {
     [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits())
 }

@@ -1,5 +1,5 @@
-//! What an object's shader samples: colour and displacement maps, each on the device once, and the
-//! sets that bind them.
+//! The textures that an object's shader samples: colour and displacement maps, each on the device
+//! once. The sets that bind them.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -15,7 +15,7 @@ use crate::solid::kept::Kept;
 use ash::vk;
 use std::sync::{Arc, Mutex};
 
-/// A colour or displacement map on the device. It keeps the map, whose address is its key.
+/// A colour or displacement map on the device. The map is kept because its address is the key.
 struct Covering<M> {
     _map: Arc<M>,
     image: Arc<Image>,
@@ -38,7 +38,7 @@ pub(crate) struct ShadowMaps {
     pub maps: Vec<Arc<ShapeTexture>>,
 }
 
-/// What a set is made of, by address.
+/// Addresses of the textures of a set, and the address mode of its surface textures.
 type Key = ([usize; 5], bool);
 
 /// All textures of a renderer.
@@ -46,15 +46,15 @@ pub(crate) struct Textures {
     colors: Kept<usize, Covering<ColorMap>>,
     slopes: Kept<usize, Covering<DisplacementMap>>,
     sets: Kept<Key, TextureSet>,
-    /// Bound where an object has no texture of a kind.
+    /// The texture that is bound if an object has none of a kind.
     blank: Arc<Image>,
     map_sampler: Sampler,
-    /// Around and along repeated; around repeated and along clamped.
+    /// First repeats around and along; second repeats around and clamps along.
     surface_samplers: [Sampler; 2],
     pool: Arc<SetPool>,
 }
 
-/// What an object binds.
+/// The textures that an object binds.
 pub(crate) struct Bound<'a> {
     pub look: &'a Texturing,
     pub shape: Option<Arc<ShapeTexture>>,
@@ -84,7 +84,7 @@ impl Textures {
         })
     }
 
-    /// The set of an object, shared by all that bind the same.
+    /// The set of an object, shared by all objects that bind the same textures.
     pub fn set(
         &mut self,
         device: &Arc<Shared>,
@@ -175,7 +175,7 @@ impl Textures {
         })
     }
 
-    /// Points a new set to its textures: four of the object's own, then those that shadows read.
+    /// Points a new set to its textures: four of the object, then the maps that shadows read.
     fn write(&self, device: &Shared, made: &TextureSet, around: bool) {
         let info = |image: &Image, sampler: &Sampler| {
             vk::DescriptorImageInfo::default()
@@ -249,8 +249,8 @@ impl Drop for TextureSet {
     }
 }
 
-/// Descriptor sets of textures: pools grow as sets are wanted, and sets that were given back are
-/// taken again.
+/// Descriptor sets of textures. New pools are made as sets are needed, and returned sets are used
+/// again.
 struct SetPool {
     state: Mutex<Sets>,
     device: Arc<Shared>,
@@ -262,7 +262,7 @@ struct Sets {
     free: Vec<vk::DescriptorSet>,
 }
 
-/// Sets of one pool.
+/// Number of sets in one pool.
 const SETS: u32 = 64;
 
 impl SetPool {
@@ -304,7 +304,7 @@ impl Drop for SetPool {
             return;
         };
         for pool in state.pools.drain(..) {
-            // SAFETY: the renderer's frames are done; the sets go with their pool.
+            // SAFETY: the renderer's frames are done; the pool frees its sets.
             unsafe { self.device.raw.destroy_descriptor_pool(pool, None) };
         }
     }

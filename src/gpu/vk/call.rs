@@ -1,4 +1,4 @@
-//! Vulkan's results, and the allocator's, as errors of ours.
+//! Conversion of Vulkan's and the allocator's results to errors of this crate.
 
 use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
@@ -6,7 +6,7 @@ use gpu_allocator::AllocationError;
 
 /// Adds the call's name to a failed Vulkan call.
 pub(crate) trait Call<T> {
-    /// `name` as in the specification, e.g. `vkCreateImage`.
+    /// Adds `name`, written as in the specification, e.g. `vkCreateImage`.
     fn call(self, name: &str) -> Result<T>;
 }
 
@@ -16,20 +16,20 @@ impl<T> Call<T> for std::result::Result<T, vk::Result> {
     }
 }
 
-/// The failure of the Vulkan call `name`, for what is drawn beside.
+/// The error of the failed Vulkan call `name`, for other drawing on the device.
 #[must_use]
 pub fn vulkan_error(name: &str, code: vk::Result) -> Error {
     let kind = kind_of(code);
     Error::new(kind, format!("{name} failed: {code:?}{}", remedy(kind)))
 }
 
-/// The failure of an allocation of `bytes` for `name`, for what is drawn beside.
+/// The error of a failed allocation of `bytes` for `name`, for other drawing on the device.
 #[must_use]
 pub fn allocation_error(name: &str, bytes: u64, error: &AllocationError) -> Error {
     let kind = match error {
         AllocationError::OutOfMemory => ErrorKind::OutOfDeviceMemory,
         AllocationError::NoCompatibleMemoryTypeFound => ErrorKind::Unsupported,
-        // The allocator gives Vulkan's result in words alone.
+        // The allocator gives Vulkan's result only in words.
         AllocationError::FailedToMap(words) | AllocationError::Internal(words) => {
             let says = |code: &vk::Result| {
                 words.contains(&format!("{code:?}")) || words.contains(&code.to_string())
@@ -49,7 +49,7 @@ pub fn allocation_error(name: &str, bytes: u64, error: &AllocationError) -> Erro
     Error::new(kind, message)
 }
 
-/// What `vkAllocateMemory` and `vkMapMemory` fail with.
+/// The results with which `vkAllocateMemory` and `vkMapMemory` fail.
 const ALLOCATIONS: [vk::Result; 5] = [
     vk::Result::ERROR_DEVICE_LOST,
     vk::Result::ERROR_OUT_OF_HOST_MEMORY,
@@ -62,7 +62,7 @@ pub(in crate::gpu) fn kind_of(code: vk::Result) -> ErrorKind {
     use vk::Result as R;
     match code {
         R::ERROR_DEVICE_LOST => ErrorKind::DeviceLost,
-        // A mapping fails where the process has no addresses left.
+        // A mapping fails if the process has no addresses left.
         R::ERROR_OUT_OF_HOST_MEMORY | R::ERROR_MEMORY_MAP_FAILED => ErrorKind::OutOfHostMemory,
         R::ERROR_OUT_OF_DEVICE_MEMORY
         | R::ERROR_OUT_OF_POOL_MEMORY
@@ -115,7 +115,7 @@ mod tests {
                 "fewer",
             ),
         ] {
-            // As the allocator writes them.
+            // The allocator writes results in these two forms.
             let told = AllocationError::Internal(format!("in vkAllocateMemory: {code:?}"));
             let mapped = AllocationError::FailedToMap(code.to_string());
             let errors = [

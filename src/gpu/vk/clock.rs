@@ -1,4 +1,4 @@
-//! GPU timestamps around a patch of work.
+//! GPU timestamps around a piece of work.
 
 use crate::error::Result;
 use crate::gpu::device::Shared;
@@ -6,7 +6,7 @@ use crate::gpu::vk::call::Call;
 use ash::vk;
 use std::sync::Arc;
 
-/// Two timestamps. On a queue without them, times are `None`.
+/// Two timestamps. Times are `None` on a queue without timestamps.
 pub(crate) struct Clock {
     pool: Option<vk::QueryPool>,
     device: Arc<Shared>,
@@ -45,7 +45,7 @@ impl Clock {
         }
     }
 
-    /// Records the second, after all work before it.
+    /// Records the second timestamp, after all work before it.
     pub fn stop(&self, cmd: vk::CommandBuffer) {
         if let Some(pool) = self.pool {
             // SAFETY: as in `start`.
@@ -60,7 +60,7 @@ impl Clock {
         }
     }
 
-    /// Milliseconds between the two, once the work is done.
+    /// Milliseconds between the two timestamps, once the work is done.
     pub fn milliseconds(&self) -> Result<Option<f64>> {
         let Some(pool) = self.pool else {
             return Ok(None);

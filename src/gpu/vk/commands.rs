@@ -6,7 +6,7 @@ use crate::gpu::vk::call::Call;
 use ash::vk;
 use std::sync::Arc;
 
-/// One command buffer and the fence that tells when it has run.
+/// One command buffer and the fence that signals its end.
 pub(crate) struct Commands {
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
@@ -58,11 +58,11 @@ impl Commands {
         self.submit_and_wait()
     }
 
-    /// Records by `record`; [`Commands::submit_and_wait`] runs it, as often as wanted.
+    /// Records by `record`. [`Commands::submit_and_wait`] runs the commands, any number of times.
     pub fn record(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
         let raw = &self.device.raw;
-        // SAFETY: the last submission was waited for, so the buffer is free to record; what failed
-        // half way is taken back, and its pool allows that.
+        // SAFETY: the last submission was waited for, so the buffer is free to record; a recording
+        // that failed half way is reset, and its pool allows that.
         unsafe {
             raw.begin_command_buffer(self.buffer, &vk::CommandBufferBeginInfo::default())
                 .call("vkBeginCommandBuffer")?;
@@ -78,7 +78,7 @@ impl Commands {
         }
     }
 
-    /// Runs what was recorded last and waits for it.
+    /// Runs the commands that were recorded last, and waits for them.
     pub fn submit_and_wait(&self) -> Result<()> {
         let raw = &self.device.raw;
         let buffers = [self.buffer];

@@ -1,9 +1,9 @@
-//! What a driver's compiler says of the pipelines: registers, spills, instructions. For the report of
-//! the program alone.
+//! Statistics of a driver's compiler on the pipelines: registers, spills, instructions. Only the
+//! program's report uses them.
 //!
-//! This makes an instance, a device and pipelines, and no image, memory or fence. Some drivers
-//! compile for GPUs that are not there and can do nothing else, not even destroy their device: it
-//! is left to the end of the process.
+//! This module makes an instance, a device and pipelines, and no image, memory or fence. Some
+//! drivers compile for GPUs that are not there. Such drivers can do nothing else, not even destroy
+//! their device: it is left to the end of the process.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::create;
@@ -21,16 +21,16 @@ use crate::shader::{Kind, ShadowCasters, Variant, listed};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
-/// What is drawn, as far as pipelines depend on it.
+/// The properties of a drawing that pipelines depend on.
 #[derive(Clone, Debug)]
 pub struct Look {
     /// The object.
     pub object: Object,
-    /// Its light.
+    /// The lighting of the object.
     pub lighting: Lighting,
-    /// The format of its map.
+    /// The format of the object's map.
     pub format: MapFormat,
-    /// What is stored.
+    /// The planes that are stored.
     pub planes: Planes,
 }
 
@@ -39,7 +39,7 @@ pub struct Look {
 pub struct PipelineChoice(Variant, Kind);
 
 impl PipelineChoice {
-    /// What is drawn or dispatched: `cells`, `boxes`, `tiles of one copy`, ...
+    /// The name of the draw or dispatch: `cells`, `boxes`, `tiles of one copy`, ...
     #[must_use]
     pub fn path(&self) -> String {
         let Self(variant, kind) = *self;
@@ -61,12 +61,12 @@ impl PipelineChoice {
 pub struct Executable {
     /// The driver's name of the shader: `vertex`, `fragment`, `compute`.
     pub shader: String,
-    /// The SPIR-V module that it was compiled from; of a search of another crate the one that it was
-    /// asked for.
+    /// The SPIR-V module that the shader was compiled from. For a search of another crate, the
+    /// module that was requested of it.
     pub module: String,
     /// Invocations in a subgroup.
     pub subgroup_size: u32,
-    /// What the driver says, in its order and by its names; hashes are left out.
+    /// The driver's statistics, in its order and by its names; hashes are left out.
     pub statistics: Vec<(String, f64)>,
 }
 
@@ -74,7 +74,7 @@ pub struct Executable {
 pub struct PipelineCompiler {
     /// The device.
     pub report: DeviceReport,
-    /// Of a device that does everything.
+    /// The conditions of a device with every capability.
     conditions: Conditions,
     asked: khr::pipeline_executable_properties::Device,
     // Never destroyed.
@@ -83,11 +83,11 @@ pub struct PipelineCompiler {
 }
 
 impl PipelineCompiler {
-    /// The device, chosen as by [`Device::open`](super::Device::open).
+    /// Opens the device, chosen as by [`Device::open`](crate::gpu::Device::open).
     ///
     /// # Errors
-    /// As `open`; [`ErrorKind::Unsupported`] for a driver without
-    /// `VK_KHR_pipeline_executable_properties`; of Vulkan.
+    /// Same as [`Device::open`](crate::gpu::Device::open); [`ErrorKind::Unsupported`] for a driver
+    /// without `VK_KHR_pipeline_executable_properties`; errors of Vulkan calls.
     pub fn open(choice: Option<&str>) -> Result<Self> {
         let instance = ManuallyDrop::new(Instance::from_environment()?);
         let variable = variable();
@@ -169,8 +169,8 @@ impl PipelineCompiler {
                 outline: None,
             };
             for (v, kind) in conditions.reachable(&of, alone) {
-                // What other values of the parameters lead to is another look's, and so are tables
-                // that are too large and many solids.
+                // Pipelines for other values of the parameters belong to another look. Pipelines
+                // for tables that are too large, and for many solids, do so too.
                 let own = variant.of_kind(kind);
                 let look_of = |v: &Variant| (v.lights, v.beveled, v.external);
                 let seen = Variant { outside, ..v }.of_kind(kind) == v;
@@ -183,7 +183,7 @@ impl PipelineCompiler {
         all
     }
 
-    /// Where a stage draws.
+    /// The output that a stage draws into.
     fn output(&self, stage: DrawStage, planes: Planes) -> Result<Output> {
         Ok(match stage {
             DrawStage::Compute => Output::Compute(planes),
@@ -199,10 +199,10 @@ impl PipelineCompiler {
         })
     }
 
-    /// Compiles a pipeline, and asks the driver about its shaders.
+    /// Compiles a pipeline, and queries the driver's statistics of its shaders.
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Errors of Vulkan calls.
     pub fn compile(
         &self,
         choice: PipelineChoice,
@@ -245,17 +245,17 @@ impl PipelineCompiler {
 
 const EXECUTABLES: &str = "vkGetPipelineExecutablePropertiesKHR";
 
-/// Versions of a driver say `Fragment Shader` or `fragment`.
+/// The stage in lower case: versions of a driver write `Fragment Shader` or `fragment`.
 fn stage_name(name: &str) -> String {
     let name = name.to_lowercase();
     name.strip_suffix(" shader").unwrap_or(&name).to_owned()
 }
 
-/// A number by its name, unless it is a hash.
+/// A number with its name; `None` for a hash.
 fn statistic(said: &vk::PipelineExecutableStatisticKHR<'_>) -> Option<(String, f64)> {
     use vk::PipelineExecutableStatisticFormatKHR as F;
     let name = text(&said.name);
-    // SAFETY: the format says which of the values is there.
+    // SAFETY: the format says which of the values is valid.
     #[allow(clippy::cast_precision_loss)]
     let value = unsafe {
         match said.format {

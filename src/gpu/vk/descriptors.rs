@@ -1,5 +1,5 @@
-//! The one table of descriptors: layouts, pools and writes follow from it, and a test compares it
-//! with the shaders.
+//! The one table of descriptors. Layouts, pools and writes follow from this table, and a test
+//! compares it with the shaders.
 
 use crate::error::Result;
 use crate::gpu::vk::call::Call;
@@ -96,7 +96,7 @@ pub(crate) fn layout(raw: &ash::Device, set: usize) -> Result<vk::DescriptorSetL
     unsafe { raw.create_descriptor_set_layout(&info, None) }.call("vkCreateDescriptorSetLayout")
 }
 
-/// A pool of `count` of each of these sets, and the sets, in order.
+/// Makes a pool of `count` of each of these sets, and the sets, in order.
 pub(crate) fn allocate(
     raw: &ash::Device,
     layouts: &[vk::DescriptorSetLayout; 3],
@@ -126,17 +126,17 @@ pub(crate) fn allocate(
     match unsafe { raw.allocate_descriptor_sets(&info) }.call("vkAllocateDescriptorSets") {
         Ok(made) => Ok((pool, made)),
         Err(error) => {
-            // SAFETY: nothing was allocated from it.
+            // SAFETY: nothing was allocated from the pool.
             unsafe { raw.destroy_descriptor_pool(pool, None) };
             Err(error)
         }
     }
 }
 
-/// What a binding is pointed to.
+/// A resource that a binding points to.
 #[derive(Clone, Copy)]
 pub(crate) enum Resource {
-    /// A buffer and how much of it.
+    /// A buffer and the number of bytes to bind.
     Buffer(vk::Buffer, u64),
     /// A storage image.
     Image(vk::ImageView),
@@ -145,8 +145,8 @@ pub(crate) enum Resource {
 /// Points bindings of a set of this number to resources.
 ///
 /// # Safety
-/// This call writes to the set. The caller must see to it that the resources live while the set is
-/// used, and that no frame that is recorded or in flight reads it.
+/// The call writes to the set. The caller must ensure that the resources live while the set is
+/// used, and that no frame that is recorded or in flight reads the set.
 pub(crate) unsafe fn write(
     raw: &ash::Device,
     set: vk::DescriptorSet,

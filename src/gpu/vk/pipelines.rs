@@ -1,5 +1,5 @@
-//! Pipelines, one per variant, use and output: shared by all renderers of a device, compiled once
-//! and kept.
+//! Pipelines, one per variant, use and output. All renderers of a device share them; each pipeline
+//! is compiled once and kept.
 
 mod compile;
 
@@ -22,9 +22,9 @@ use std::sync::{Mutex, MutexGuard};
 /// Specialisation constants that are the same for all pipelines of a device.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DeviceConstants {
-    /// Vectors of one solid's tables that its uniform buffers hold.
+    /// The number of vectors of one solid's tables that its uniform buffers hold.
     pub own_vectors: u32,
-    /// Whether squares of pixels are drawn as points.
+    /// True if squares of pixels are drawn as points.
     pub large_points: bool,
 }
 
@@ -47,28 +47,28 @@ impl DeviceConstants {
 
 /// Set layouts, the pipeline layout, and the pipelines made so far.
 pub(crate) struct Pipelines {
-    /// Those of [`descriptors::SETS`].
+    /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
     pub layout: vk::PipelineLayout,
     cache: vk::PipelineCache,
-    /// Whether `cache` is ours to destroy.
+    /// True if this value made `cache` and destroys it.
     owns_cache: bool,
     made: Mutex<HashMap<Key, vk::Pipeline>>,
     compiled: AtomicU64,
     owners: AtomicU64,
-    /// The passes of off-screen frames. They live as long as the pipelines that are keyed by them.
+    /// The passes of off-screen frames. A pass lives as long as the pipelines that are keyed by it.
     passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
-    /// Those of the device, of every pipeline.
+    /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
-    /// Where modules come from that are not those embedded.
+    /// The source of modules that replace the embedded ones.
     #[cfg(feature = "other-shaders")]
     pub source: Option<ShaderSource>,
     raw: ash::Device,
 }
 
-/// Gives the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros; `None`:
-/// the words that the library holds.
+/// Returns the SPIR-V words of an entry file of `shaders-glsl/`, compiled with these macros. `None`
+/// selects the words that the library holds.
 #[cfg(feature = "other-shaders")]
 pub type ShaderSource =
     Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
@@ -78,12 +78,12 @@ struct Key {
     variant: Variant,
     kind: Kind,
     output: Output,
-    /// The renderer whose host's pass it is for; 0 where all may share it.
+    /// The renderer whose host's pass the pipeline is for; 0 if all renderers may share it.
     owner: u64,
 }
 
 impl Pipelines {
-    /// `cache`: a host's.
+    /// Makes the layouts, without pipelines. `cache` is a host's, if it gives one.
     pub fn new(
         raw: ash::Device,
         cache: Option<vk::PipelineCache>,
@@ -129,15 +129,15 @@ impl Pipelines {
         Ok(all)
     }
 
-    /// The driver keeps its compiler's statistics of what is compiled from now on.
+    /// Makes the driver keep its compiler's statistics of everything compiled from now on.
     #[cfg(feature = "other-shaders")]
     pub fn capturing_statistics(mut self) -> Self {
         self.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
         self
     }
 
-    /// The pipeline of `variant` and `kind` for `output`, compiled now if it is new. `owner` as of
-    /// [`Pipelines::owner`].
+    /// Returns the pipeline of `variant` and `kind` for `output`, compiled now if it is new.
+    /// [`Pipelines::owner`] returns `owner`.
     pub fn get(
         &self,
         variant: Variant,
@@ -154,11 +154,11 @@ impl Pipelines {
         if let Some(made) = self.made()?.get(&key) {
             return Ok(*made);
         }
-        // Compiled without the lock: others compile meanwhile.
+        // Compilation holds no lock, so that others can compile meanwhile.
         let made = self.compile(&variant, kind, output)?;
         let mut all = self.made()?;
         if let Some(before) = all.get(&key) {
-            // SAFETY: nobody has seen the new one.
+            // SAFETY: nothing else has seen the new pipeline.
             unsafe { self.raw.destroy_pipeline(made, None) };
             return Ok(*before);
         }
@@ -167,8 +167,8 @@ impl Pipelines {
         Ok(made)
     }
 
-    /// Who owns pipelines for an output: nobody, or a new owner. A host may destroy its render pass
-    /// once its renderer is gone, and make another of the same handle.
+    /// Returns the owner of pipelines for an output: 0 for shared ones, else a new owner. A host
+    /// may destroy its render pass once its renderer is gone, and make another of the same handle.
     pub fn owner(&self, output: &Output) -> u64 {
         match output {
             Output::Pass(PassFormats {
@@ -179,7 +179,7 @@ impl Pipelines {
         }
     }
 
-    /// Destroys what is owned by `owner`, whose frames are done.
+    /// Destroys all pipelines of `owner`, whose frames are done.
     pub fn forget(&self, owner: u64) {
         if owner == 0 {
             return;
@@ -187,7 +187,7 @@ impl Pipelines {
         if let Ok(mut made) = self.made.lock() {
             made.retain(|key, pipeline| {
                 if key.owner == owner {
-                    // SAFETY: the frames that used it are done.
+                    // SAFETY: the frames that used the pipeline are done.
                     unsafe { self.raw.destroy_pipeline(*pipeline, None) };
                 }
                 key.owner != owner
@@ -200,7 +200,7 @@ impl Pipelines {
         passes.is_ok_and(|passes| passes.values().any(|own| *own == pass))
     }
 
-    /// The render pass of off-screen frames.
+    /// Returns the render pass of off-screen frames, made now if it is new.
     pub fn own_pass(&self, planes: Planes, keeps_depths: bool) -> Result<vk::RenderPass> {
         let mut passes = self
             .passes
@@ -214,16 +214,16 @@ impl Pipelines {
         Ok(made)
     }
 
-    /// How many have been compiled.
+    /// The number of pipelines that were compiled.
     pub fn compiled(&self) -> u64 {
         self.compiled.load(Ordering::Relaxed)
     }
 
-    /// Adds what [`Pipelines::cache_data`] gave another time.
+    /// Adds data that [`Pipelines::cache_data`] returned at another time.
     pub fn add_cache(&self, data: &[u8]) -> Result<()> {
         let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: drivers look at the data's header and pass over what is not theirs; the second
-        // cache is gone again.
+        // SAFETY: drivers read the data's header and ignore data of other drivers; the second cache
+        // is gone again.
         unsafe {
             let other = self
                 .raw
@@ -235,7 +235,7 @@ impl Pipelines {
         }
     }
 
-    /// What the driver wants to be kept for another process.
+    /// The driver's data to keep for another process.
     pub fn cache_data(&self) -> Result<Vec<u8>> {
         // SAFETY: the cache is live.
         unsafe { self.raw.get_pipeline_cache_data(self.cache) }.call("vkGetPipelineCacheData")

@@ -16,8 +16,43 @@ pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
 
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// Cleared at its start; its colours are left ready to be copied from, and its depths where they
-/// are kept.
+/// Dependencies from the previous frame to this frame's clears, and from its writes to the copies
+/// after it.
+fn dependencies(keeps_depths: bool) -> [vk::SubpassDependency; 2] {
+    use vk::AccessFlags as A;
+    use vk::PipelineStageFlags as S;
+    let fragment_tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
+    let (left, written) = if keeps_depths {
+        (fragment_tests, A::DEPTH_STENCIL_ATTACHMENT_WRITE)
+    } else {
+        (S::empty(), A::empty())
+    };
+    [
+        // The last frame's copies and depth tests are over before this frame's clears.
+        vk::SubpassDependency::default()
+            .src_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(S::TRANSFER | fragment_tests | S::COLOR_ATTACHMENT_OUTPUT)
+            .dst_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | fragment_tests)
+            .src_access_mask(
+                A::TRANSFER_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_WRITE,
+            )
+            .dst_access_mask(
+                A::COLOR_ATTACHMENT_WRITE
+                    | A::DEPTH_STENCIL_ATTACHMENT_READ
+                    | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
+            ),
+        // This frame's writes are over before they are copied.
+        vk::SubpassDependency::default()
+            .dst_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | left)
+            .dst_stage_mask(S::TRANSFER)
+            .src_access_mask(A::COLOR_ATTACHMENT_WRITE | written)
+            .dst_access_mask(A::TRANSFER_READ),
+    ]
+}
+
+/// Makes a render pass that clears its attachments at its start. At the end, colours and kept
+/// depths are ready to be copied from.
 pub(crate) fn render_pass(
     raw: &ash::Device,
     planes: Planes,
@@ -68,36 +103,7 @@ pub(crate) fn render_pass(
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
         .color_attachments(&colors)
         .depth_stencil_attachment(&depth)];
-    use vk::AccessFlags as A;
-    use vk::PipelineStageFlags as S;
-    let fragment_tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
-    let (left, written) = if keeps_depths {
-        (fragment_tests, A::DEPTH_STENCIL_ATTACHMENT_WRITE)
-    } else {
-        (S::empty(), A::empty())
-    };
-    let dependencies = [
-        // The last frame's copies and depth tests are over before this one's clears.
-        vk::SubpassDependency::default()
-            .src_subpass(vk::SUBPASS_EXTERNAL)
-            .src_stage_mask(S::TRANSFER | fragment_tests | S::COLOR_ATTACHMENT_OUTPUT)
-            .dst_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | fragment_tests)
-            .src_access_mask(
-                A::TRANSFER_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_WRITE,
-            )
-            .dst_access_mask(
-                A::COLOR_ATTACHMENT_WRITE
-                    | A::DEPTH_STENCIL_ATTACHMENT_READ
-                    | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
-            ),
-        // What this frame leaves is there before it is copied.
-        vk::SubpassDependency::default()
-            .dst_subpass(vk::SUBPASS_EXTERNAL)
-            .src_stage_mask(S::COLOR_ATTACHMENT_OUTPUT | left)
-            .dst_stage_mask(S::TRANSFER)
-            .src_access_mask(A::COLOR_ATTACHMENT_WRITE | written)
-            .dst_access_mask(A::TRANSFER_READ),
-    ];
+    let dependencies = dependencies(keeps_depths);
     let info = vk::RenderPassCreateInfo::default()
         .attachments(&attachments)
         .subpasses(&subpasses)

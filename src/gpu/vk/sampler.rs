@@ -12,7 +12,7 @@ pub(crate) struct Sampler {
     device: Arc<Shared>,
 }
 
-/// How a texture is read.
+/// The filter and the address modes of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wrap {
     /// A map whose texels shaders gather and weigh themselves.
@@ -21,7 +21,7 @@ pub(crate) enum Wrap {
     MapLinear,
     /// A surface's texture, repeated both ways.
     SurfaceRepeated,
-    /// Repeated around the axis alone: the poles' rows do not run into each other.
+    /// Repeated only around the axis: the poles' rows do not run into each other.
     SurfaceAround,
 }
 

@@ -1,11 +1,11 @@
-//! The usage table: for each use of a resource its stages, accesses and image layout, so that a
-//! barrier is named by what was done and what comes next.
+//! The usage table: the stages, accesses and image layout of each use of a resource. A barrier is
+//! named by the use before it and the use after it.
 
 use crate::gpu::device::Shared;
 use crate::gpu::memory::{Buffer, Image};
 use ash::vk;
 
-/// What a resource is used for.
+/// A use of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Usage {
     /// Contents do not matter.
@@ -113,7 +113,7 @@ pub(crate) fn buffer_barrier(
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .buffer(buffer.raw)
         .size(vk::WHOLE_SIZE);
-    // SAFETY: as for images.
+    // SAFETY: `cmd` is recording, outside a render pass, and the buffer lives until it has run.
     unsafe {
         device.raw.cmd_pipeline_barrier(
             cmd,

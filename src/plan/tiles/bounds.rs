@@ -1,12 +1,12 @@
-//! A copy as the view sees it: its rectangle of pixels and its nearest depth.
+//! The projection of one copy: its rectangle of pixels and its nearest depth.
 
 use super::cover::{first_pixel, last_pixel};
 use crate::plan::View;
 use crate::scene::Placement;
 use glam::{DMat3, DVec2, DVec3};
 
-/// What of a box can be solid: a cylinder about the axis, object units from the middle of the
-/// box's lower face.
+/// The part of a box that can be solid: a cylinder about the axis. Object units, from the middle of
+/// the box's lower face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cylinder {
     pub axis: DVec2,
@@ -15,47 +15,48 @@ pub(crate) struct Cylinder {
     pub high: f64,
 }
 
-/// The view as three linear projector: a point's pixel is the first two over the third, its depth.
+/// The view as three linear maps. The first two over the third give a point's pixel, and the third
+/// is its depth.
 pub(crate) struct Projector {
     pub(super) eye: DVec3,
     pub(super) rows: DMat3,
     /// First and last pixel centre, both axes.
     pub(super) low: DVec2,
     pub(super) high: DVec2,
-    /// First and last pixel of both axes whose middles the viewport holds: left, top, right, bottom.
+    /// First and last pixel of both axes whose centres are in the viewport: left, top, right,
+    /// bottom.
     pub(super) ends: [i32; 4],
     /// A pixel's longer side at unit depth.
     pixel: f64,
 }
 
-/// Ways along an object's axes, one object unit each, and the place of its axis at `z = 0`; as
-/// projector have them, and in the world.
+/// Steps of one object unit along an object's axes, and the position of its axis at `z = 0`, both
+/// under the three linear maps. The eye and the scale are in object and world units.
 pub(crate) struct ProjectedAxes {
     pub middle: DVec3,
     pub along: [DVec3; 3],
     /// The eye in object space, about the axis.
     pub eye: DVec3,
-    /// World units of the shortest object unit.
+    /// World units in the shortest object unit.
     least_scale: f64,
 }
 
-/// What a copy covers.
+/// The pixels and depth of a copy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScreenBounds {
-    /// Left, top, right, bottom: pixels, all included.
+    /// Left, top, right, bottom: pixels, all inclusive.
     pub pixels: [u16; 4],
     /// No point of the copy is nearer.
     pub near: f32,
 }
 
-/// By how much a rectangle is wider than computed, pixels: more than roundings of 32 bits amount
-/// to.
+/// Margin of a rectangle on each side, in pixels: more than the roundings of 32 bits.
 pub(super) const MARGIN: f64 = 1.0 / 16.0;
-/// By how much depths are moved to the safe side, as a part.
+/// Relative margin of depths, towards the safe side.
 pub(super) const SLACK: f64 = 1e-5;
 
 impl Projector {
-    /// Of a view of perspective.
+    /// Makes the projector of a perspective view.
     pub fn new(view: &View) -> Self {
         let row = |d: DVec3| {
             let d = d / d.length_squared();
@@ -101,14 +102,14 @@ impl Projector {
         }
     }
 
-    /// Object units that are seen as [`MARGIN`] or more all over a cylinder.
+    /// A length in object units that covers at least [`MARGIN`] pixels everywhere on a cylinder.
     pub fn margin(&self, axes: &ProjectedAxes, of: &Cylinder) -> f64 {
         let [x, y, z] = axes.along.map(|way| way.z);
         let deep = of.radius * (x.abs() + y.abs()) + (z * of.low).max(z * of.high);
         MARGIN * self.pixel * (axes.middle.z + deep) / axes.least_scale
     }
 
-    /// None where no pixel's ray can meet the cylinder.
+    /// The bounds of a cylinder. Returns none if no pixel's ray can meet it.
     pub fn bounds(&self, axes: &ProjectedAxes, of: &Cylinder) -> Option<ScreenBounds> {
         let [x, y, z] = axes.along;
         let square = |i: usize, k: usize| of.radius * of.radius * (x[i] * x[k] + y[i] * y[k]);
@@ -123,7 +124,7 @@ impl Projector {
         for i in 0..2 {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             if near > 1e-3 * far {
-                // Lines of sight that touch a disc: the roots of a quadratic.
+                // Lines of sight that are tangent to a disc: the roots of a quadratic.
                 for c in &discs {
                     let a = c.z * c.z - square(2, 2);
                     let b = c[i] * c.z - square(i, 2);
@@ -133,8 +134,8 @@ impl Projector {
                     high = high.max((b + root) * inverse);
                 }
             } else {
-                // Around or beside the eye: everything, unless it lies beyond an edge of the
-                // picture.
+                // A cylinder around the eye, or beside it, covers everything unless it is beyond an
+                // edge of the picture.
                 (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
                 let beyond = |edge: f64, sense: f64| {
                     let side = |c: &DVec3| sense * (c[i] - edge * c.z);
@@ -169,8 +170,9 @@ mod tests {
     use crate::scene::Copies;
     use glam::{DMat4, DVec4};
 
-    /// Wherever a host's viewport begins and ends: copies that are larger than it are seen in the
-    /// pixels whose middles it holds, and so is a cluster of them, before the eye and around it.
+    /// A viewport may begin and end anywhere. Copies larger than it cover the pixels whose centres
+    /// it holds. A cluster of such copies covers the same pixels, in front of the eye and around
+    /// it.
     #[test]
     fn viewports_need_not_begin_at_the_first_pixel() {
         let shape = Cylinder {
@@ -195,7 +197,7 @@ mod tests {
                     height,
                 };
                 let look = DMat4::from_translation(-eye);
-                // Along x, z upwards; from 0.1 to 1000.
+                // The view is along x with z upwards; depth is from 0.1 to 1000.
                 let deep = 1000.0 / 999.9;
                 let lens = DMat4::from_rows(
                     DVec4::new(0.0, -1.0, 0.0, 0.0),
@@ -235,7 +237,7 @@ mod tests {
         }
     }
 
-    /// Far clusters between the middles of two pixels are none.
+    /// A far cluster between the centres of two pixels has no bounds.
     #[test]
     fn clusters_below_a_pixel_have_sound_rectangles() {
         let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);

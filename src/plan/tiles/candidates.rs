@@ -1,4 +1,4 @@
-//! Clusters of copies, and single copies, that may show: from the nearest to the farthest.
+//! Clusters of copies, and single copies, that may show, sorted from the nearest to the farthest.
 
 use super::bounds::{Projector, ScreenBounds};
 use super::{Batch, Item, Placements};
@@ -10,22 +10,22 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A cluster, or a single copy, that may be in the picture.
 pub(super) struct Candidate<'a> {
-    /// Bits of a depth; none of its copies is nearer.
+    /// Bits of a depth; no copy of the candidate is nearer.
     pub near: u32,
-    /// Pixels that hold those of its copies.
+    /// A rectangle that contains the pixels of its copies.
     pub pixels: [u16; 4],
     batch: u32,
-    /// None of a single copy.
+    /// None for a single copy.
     cluster: Option<&'a Cluster>,
-    /// Whether nothing depends on its copies but what they show.
+    /// True if its copies affect nothing but the pixels that show them.
     pub may_be_hidden: bool,
-    /// Its copies, once they are read.
+    /// The copies, after they are read.
     items: OnceLock<Vec<Item>>,
 }
 
 #[cfg(test)]
 impl Candidate<'_> {
-    /// Whether its copies were read.
+    /// True if its copies were read.
     pub fn is_opened(&self) -> bool {
         self.items.get().is_some()
     }
@@ -35,18 +35,18 @@ impl Candidate<'_> {
 pub(super) struct Candidates<'a> {
     pub projector: &'a Projector,
     pub batches: &'a [Batch<'a>],
-    /// The nearest first.
+    /// The candidates, nearest first.
     pub all: Vec<Candidate<'a>>,
-    /// One a batch.
+    /// One entry per batch.
     facts: Vec<Facts>,
 }
 
-/// What holds for all copies of a batch that were read.
+/// Facts that hold for all copies of a batch that were read.
 #[derive(Clone, Copy)]
 pub(super) struct CopyFacts {
-    /// The eye is outside of each one's bounding cylinder.
+    /// True if the eye is outside of each copy's bounding cylinder.
     pub apart: bool,
-    /// The sides of no box are in too large a ratio for beams of 32-bit floats.
+    /// True if the ratio of each box's sides is small enough for beams of 32-bit floats.
     pub even: bool,
 }
 
@@ -120,7 +120,7 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// The copy in a place among its batch's clusters, if some pixel may show it.
+    /// The copy at a position among its batch's clusters, if some pixel may show it.
     pub fn item(&self, number: u32, place: u32) -> Option<Item> {
         let (batch, facts) = (&self.batches[number as usize], &self.facts[number as usize]);
         let (copy, placement) = batch.placements.at(place);
@@ -141,7 +141,7 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// What holds for the copies of each batch.
+    /// The facts about the copies of each batch.
     pub fn facts(&self) -> Vec<CopyFacts> {
         let of = |facts: &Facts| CopyFacts {
             apart: facts.apart.load(Relaxed),
@@ -152,7 +152,7 @@ impl<'a> Candidates<'a> {
 }
 
 impl<'a> Placements<'a> {
-    /// Which copy is in a place, and where it stands.
+    /// The number of the copy at a position, and its placement.
     pub fn at(&self, place: u32) -> (u32, &'a Placement) {
         match self {
             Self::One(placement) => (0, placement),
@@ -160,7 +160,7 @@ impl<'a> Placements<'a> {
         }
     }
 
-    /// How many there are.
+    /// Number of copies.
     pub fn len(&self) -> usize {
         match self {
             Self::One(_) => 1,

@@ -1,12 +1,12 @@
-//! A cluster of copies as the view sees it.
+//! The projection of a cluster of copies.
 
 use super::bounds::{Cylinder, MARGIN, Projector, SLACK, ScreenBounds};
 use super::cover::{first_pixel, last_pixel};
 use crate::scene::Cluster;
 
 impl Projector {
-    /// A rectangle that holds those of all copies, and a depth of which no copy's is less; none
-    /// where no copy can be met.
+    /// A rectangle that contains the rectangles of all copies, and a lower bound of their depths.
+    /// Returns none if no ray can meet a copy.
     pub fn cluster_bounds(&self, cluster: &Cluster, of: &Cylinder) -> Option<ScreenBounds> {
         let beside = of.axis.length() + of.radius;
         let around = cluster.around(self.eye, [beside, of.low.abs().max(of.high.abs())]);
@@ -20,7 +20,7 @@ impl Projector {
             let [first, last] = [self.low[i] - MARGIN, self.high[i] + MARGIN];
             let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             if near > 1e-3 * far {
-                // As the middle is seen, and by how much all others are off.
+                // The projected middle, and the largest distance of any copy from it.
                 let at = around.middle.dot(row) / around.middle.dot(depth);
                 let off = around.along(row - depth * at)[1] / near + 2.0 * MARGIN;
                 (low, high) = (at - off, at + off);
@@ -36,7 +36,8 @@ impl Projector {
                 first_pixel(low).max(self.ends[i]),
                 last_pixel(high).min(self.ends[i + 2]),
             );
-            // Between the middles of two pixels, as no copy's rectangle then holds one.
+            // The cluster is between the centres of two pixels, so no copy's rectangle contains
+            // one.
             if low > high {
                 return None;
             }

@@ -1,5 +1,6 @@
-//! Pixels that solids are proven to cover, and how deep: squares of 8 x 8 pixels, a bit for each,
-//! with one depth for each row, as on a field rows are as deep as what stands there.
+//! Pixels that solids are proven to cover, and their depths. A square of 8 x 8 pixels has one bit
+//! per pixel and one depth per row. One depth per row is enough because, on a field, the copies in
+//! a row of pixels have similar depths.
 
 use super::bounds::{MARGIN, ProjectedAxes, SLACK};
 use crate::surface::{CylinderPiece, InnerCylinders};
@@ -9,10 +10,10 @@ use std::ops::Range;
 /// Pixels along a square's side.
 pub(super) const SIDE: u32 = 8;
 
-/// Some columns of squares.
+/// A range of columns of squares.
 pub(super) struct Cover {
     squares: Vec<Square>,
-    /// In squares.
+    /// Unit: squares.
     columns: Range<u32>,
     down: u32,
 }
@@ -20,12 +21,12 @@ pub(super) struct Cover {
 #[derive(Clone, Copy, Default)]
 struct Square {
     covered: u64,
-    /// Of all that covers, in each row.
+    /// Largest depth of the covered pixels of each row.
     depths: [f32; SIDE as usize],
 }
 
 impl Square {
-    /// The pixels that are covered by what is nearer than `near`.
+    /// The covered pixels whose cover is nearer than `near`.
     fn hidden(&self, near: f32) -> u64 {
         if self.covered == 0 {
             return 0;
@@ -35,21 +36,21 @@ impl Square {
     }
 }
 
-/// Bits from column `low` to `high` in every row from `top` to `bottom`, all included.
+/// Bits from column `low` to `high` in every row from `top` to `bottom`, all inclusive.
 pub(super) fn block([low, top, high, bottom]: [u32; 4]) -> u64 {
     let row = (0xffu64 >> (7 - (high - low))) << low;
     let rows = (u64::MAX >> (8 * (7 - (bottom - top)))) << (8 * top);
     (row * 0x0101_0101_0101_0101) & rows
 }
 
-/// The bits of a square, `x` and `y` in squares, that a rectangle of pixels holds.
+/// The bits of a square that are in a rectangle of pixels. Unit of `x` and `y`: squares.
 pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
     let inside = |pixel: u32, square: u32| pixel.clamp(square * SIDE, square * SIDE + 7) % SIDE;
     block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
 }
 
 impl Cover {
-    /// Of these columns of squares in so many rows.
+    /// An empty cover of these columns of squares and `down` rows.
     pub fn new(columns: Range<u32>, down: u32) -> Self {
         Self {
             squares: vec![Square::default(); columns.len() * down as usize],
@@ -58,13 +59,13 @@ impl Cover {
         }
     }
 
-    /// Whether some of these pixels are here.
+    /// True if some of these pixels are in the columns.
     pub fn meets(&self, [x0, _, x1, _]: [u16; 4]) -> bool {
         u32::from(x0) < SIDE * self.columns.end && u32::from(x1) >= SIDE * self.columns.start
     }
 
-    /// Whether nothing that is not nearer than `near` will ever show in these pixels, whatever else
-    /// comes to cover others of the rows that they are in.
+    /// True if nothing at `near` or farther can ever show in these pixels. Later copies may cover
+    /// other pixels of the same rows without changing this.
     pub fn hides(&self, pixels: [u16; 4], near: f32) -> bool {
         let [x0, y0, x1, y1] = self.squares_of(pixels);
         let [_, top, _, bottom] = pixels.map(u32::from);
@@ -75,19 +76,20 @@ impl Cover {
         })
     }
 
-    /// The squares here that hold some of these pixels: left, top, right, bottom, all included.
+    /// The squares of the cover that hold some of these pixels: left, top, right, bottom, all
+    /// inclusive.
     fn squares_of(&self, pixels: [u16; 4]) -> [u32; 4] {
         let [x0, y0, x1, y1] = pixels.map(|pixel| u32::from(pixel) / SIDE);
         let Range { start, end } = self.columns;
         [x0.max(start), y0, x1.min(end - 1), y1.min(self.down - 1)]
     }
 
-    /// The place of the square in this column and row.
+    /// The index of the square in this column and row.
     fn at(&self, x: u32, y: u32) -> usize {
         (y * (self.columns.end - self.columns.start) + x - self.columns.start) as usize
     }
 
-    /// Whether some of these pixels may show what is not nearer than `near`.
+    /// True if some of these pixels may show a copy at `near` or farther.
     pub fn is_open(&self, pixels: [u16; 4], near: f32) -> bool {
         let [x0, y0, x1, y1] = self.squares_of(pixels);
         let pixels = pixels.map(u32::from);
@@ -97,9 +99,9 @@ impl Cover {
         (y0..=y1).any(|y| (x0..=x1).any(|x| open(x, y)))
     }
 
-    /// Visits the squares in which some of these pixels may show what is not nearer than `near`:
-    /// the square's place in the picture and the pixels. `rows`: of each row of these pixels the
-    /// ends of what may show, where they are known.
+    /// Visits the squares in which some of these pixels may show a copy at `near` or farther.
+    /// Passes the square's position in the picture and the pixels. `rows`: the ends of the copy in
+    /// each row of these pixels, if known.
     pub fn open(
         &self,
         pixels: [u16; 4],
@@ -146,7 +148,7 @@ impl Cover {
         }
     }
 
-    /// Adds what a copy hides, which is wholly in front of the eye.
+    /// Adds the pixels that a copy hides. The copy must be wholly in front of the eye.
     pub fn add(&mut self, axes: &ProjectedAxes, inner: &InnerCylinders, pixels: [u16; 4]) {
         let high = pixels[3] - pixels[1];
         // The section through the axis that faces the eye.
@@ -163,7 +165,7 @@ impl Cover {
         }
     }
 
-    /// The end of a piece that the eye looks down upon, where it looks steeply.
+    /// Adds the end of a piece that faces the eye, if the eye sees it from a steep angle.
     fn disc(&mut self, axes: &ProjectedAxes, piece: &CylinderPiece, beside: f64) {
         let z = axes.eye.z.clamp(piece.low, piece.high);
         if (axes.eye.z - z).abs() < 0.3 * beside {
@@ -185,7 +187,7 @@ impl Cover {
         self.polygon(&corners.map(|(a, b)| middle + x * a + y * b));
     }
 
-    /// Marks the pixels whose centres a flat convex polygon in the solid covers.
+    /// Marks the pixels whose centres are in a flat convex polygon inside the solid.
     fn polygon<const N: usize>(&mut self, corners: &[DVec3; N]) {
         let mut flat = [DVec2::ZERO; N];
         let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0f64);
@@ -194,7 +196,7 @@ impl Cover {
             (low, high, depth) = (low.min(*at), high.max(*at), depth.max(corner.z));
         }
         let depth = (depth * (1.0 + SLACK)) as f32;
-        // Much of what is far away holds the middle of no pixel.
+        // Many distant polygons contain the centre of no pixel.
         let ends = [self.columns.start, self.columns.end].map(|x| (x * SIDE) as i32);
         let left = first_pixel(low.x + MARGIN).max(ends[0]);
         let right = last_pixel(high.x - MARGIN).min(ends[1] - 1);
@@ -207,7 +209,7 @@ impl Cover {
         if area == 0.0 || !area.is_finite() {
             return;
         }
-        // Bounds on x that edges are: at the top of the picture, and from row to row.
+        // Bounds on x from the edges: the value at the top of the picture, and the change per row.
         let mut lows = [[f64::from(ends[0]), 0.0]; N];
         let mut highs = [[f64::from(ends[1]), 0.0]; N];
         for k in 0..N {
@@ -233,7 +235,7 @@ impl Cover {
         }
     }
 
-    /// Marks pixels of a row, none if the last comes before the first.
+    /// Marks the pixels of a row from `low` to `high`; none if `low > high`.
     fn span(&mut self, y: u32, low: i32, high: i32, depth: f32) {
         if low > high {
             return;
@@ -254,16 +256,16 @@ impl Cover {
     }
 }
 
-/// The first pixel whose middle does not come before a place.
+/// The first pixel whose centre is not before a position.
 ///
-/// Casts are faster than the library's rounding, which is called.
+/// Casts are faster than the library's rounding, which is a function call.
 pub(super) fn first_pixel(place: f64) -> i32 {
     let place = place - 0.5;
     let whole = place as i32;
     whole.saturating_add(i32::from(f64::from(whole) < place))
 }
 
-/// The last pixel whose middle does not come after a place.
+/// The last pixel whose centre is not after a position.
 pub(super) fn last_pixel(place: f64) -> i32 {
     let place = place - 0.5;
     let whole = place as i32;
@@ -300,7 +302,7 @@ mod tests {
         let mut hidden = true;
         cover.open([3, 4, 20, 19], None, 2.1, |_, _| hidden = false);
         assert!(hidden);
-        // Any way round, at a slant: nothing without.
+        // Clockwise or counterclockwise, and slanted: no pixel outside is marked.
         cover.polygon(&[
             at(31.0, 31.0),
             at(20.0, 31.0),

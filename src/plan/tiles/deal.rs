@@ -1,4 +1,4 @@
-//! Copies dealt out to records of tiles, or of single pixels of them.
+//! Distribution of copies to records of tiles, or of single pixels of tiles.
 
 use super::Drawer;
 use super::cover::SIDE;
@@ -8,59 +8,60 @@ use crate::shader::generated::TILE_SPLIT;
 /// A copy in a tile.
 #[derive(Clone, Copy)]
 pub(super) struct Listed {
-    /// Counted within the band.
+    /// Number of the tile in the band.
     pub tile: u32,
     pub batch: u32,
     /// Number of the instance.
     pub copy: u32,
     pub near: u32,
-    /// Those that it may show in, one bit each.
+    /// Pixels of the tile that may show the copy, one bit each.
     pub pixels: u64,
 }
 
-/// Records and lists of one layer in one band, as `tile_words.glsl` has them. Lists count from the
-/// band's first.
+/// Records and lists of one layer in one band, in the layout of `tile_words.glsl`. Lists count from
+/// the band's first.
 #[derive(Default)]
 pub(super) struct BandLists {
     /// Compute: tiles of several copies.
     pub several: Vec<[u32; 4]>,
-    /// Compute: tiles of one copy each, no two of one tile: with lists of patches, and without.
+    /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
+    /// has two such records.
     pub listed: Vec<[u32; 4]>,
     pub single: Vec<[u32; 4]>,
     /// Fragments: quads of one copy each.
     pub quads: Vec<[u32; 4]>,
     pub words: Vec<u32>,
-    /// Pixels that wait for others to fill a record: where they are, where their list begins, how
-    /// many copies it holds.
+    /// Pixels that wait until a record is full: their position, the start of their list and its
+    /// number of copies.
     waiting: Vec<[u32; 3]>,
 }
 
 /// Pixels of a tile.
 const PIXELS: usize = (SIDE * SIDE) as usize;
-/// One list serves a tile if its copies cover at least three quarters of it on average.
+/// A single list serves a tile if its copies cover at least three quarters of it on average.
 const LEAST_PART: [u32; 2] = [3, 4];
-/// A copy that covers so many of a tile's pixels has a record of its own.
+/// Least number of a tile's pixels for which a copy gets a record of its own.
 const SINGLE_PIXELS: u32 = 24;
-/// Most copies a pixel, on average, of the lists of a tile's pixels: where many copies lie behind
-/// each other these would take too much memory.
+/// Most copies per pixel, on average, in the lists of a tile's pixels. Longer lists would take too
+/// much memory where many copies are behind each other.
 const MOST_COPIES: u32 = 8;
 
-/// How a band is dealt out.
+/// Parameters of the distribution of a band.
 pub(super) struct Dealer<'a> {
     pub drawer: Drawer,
     /// The layer of each batch.
     pub layer_of: &'a [u32],
-    /// Whether patches may be listed for a batch's tiles.
+    /// True if patches may be listed for a batch's tiles.
     pub lists: &'a [bool],
-    /// Whether a batch has one copy.
+    /// True if a batch has one copy.
     pub single: &'a [bool],
     /// Pixels: left, top, right, bottom.
     pub picture: [u32; 4],
 }
 
 impl Dealer<'_> {
-    /// Deals copies, nearest first, out to so many tiles: the lists of each layer. `corner`: where a
-    /// tile is, in tiles.
+    /// Distributes copies, nearest first, to this many tiles and returns the lists of each layer.
+    /// `corner`: position of a tile, in tiles.
     pub fn deal(
         &self,
         listed: &[Listed],
@@ -101,13 +102,13 @@ impl Dealer<'_> {
         lists
     }
 
-    /// Which of a tile's copies has a record of its own.
+    /// Index of the tile's copy that gets a record of its own.
     fn single_of(&self, here: &[Listed]) -> Option<usize> {
         let is_large = |one: &Listed| one.pixels.count_ones() >= SINGLE_PIXELS;
         match here {
             [one] if is_large(one) || self.single[one.batch as usize] => Some(0),
             _ => (0..here.len()).find(|&n| {
-                // Copies that coincide are searched alike: of equal depths the first stays.
+                // Copies that coincide need the same search: the first of equal depths stays.
                 let alike = |other: &Listed| other.near == here[n].near;
                 let unique = here.iter().filter(|one| alike(one)).count() == 1;
                 self.lists[here[n].batch as usize] && is_large(&here[n]) && unique
@@ -116,7 +117,8 @@ impl Dealer<'_> {
     }
 }
 
-/// Copies by tile, in each as they come; and where those of each tile begin and end.
+/// Copies sorted by tile, in their given order within a tile, and the start and end of each tile's
+/// copies.
 fn by_tile(listed: &[Listed], tiles: u32) -> (Vec<Listed>, Vec<u32>) {
     let mut ends = vec![0u32; tiles as usize + 1];
     for one in listed {
@@ -136,7 +138,7 @@ fn by_tile(listed: &[Listed], tiles: u32) -> (Vec<Listed>, Vec<u32>) {
 }
 
 impl BandLists {
-    /// A tile's only copy, or one that has a record of its own.
+    /// Adds a tile's only copy, or a copy with a record of its own.
     fn add_single(&mut self, one: &Listed, [x, y]: [u32; 2], lists: bool) {
         let corner = (x * SIDE) | ((y * SIDE) << 16);
         let to = if lists {
@@ -147,7 +149,7 @@ impl BandLists {
         to.push([corner, one.copy, 0, one.near]);
     }
 
-    /// The copies of a tile.
+    /// Adds the copies of a tile.
     fn add<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone, [x, y]: [u32; 2]) {
         let at = |x: u32, y: u32| x | (y << 16);
         let corner = at(x * SIDE, y * SIDE);
@@ -173,7 +175,7 @@ impl BandLists {
         self.several.push([corner, first, count, near]);
     }
 
-    /// Lists of each of a tile's pixels: where it begins, and how many copies it holds.
+    /// Makes a list for each of a tile's pixels: its start and its number of copies.
     fn split(&mut self, here: impl Iterator<Item = Listed> + Clone) -> [[u32; 2]; PIXELS] {
         let mut lists = [[0u32; 2]; PIXELS];
         let each = |one: Listed, visit: &mut dyn FnMut(usize)| {
@@ -204,7 +206,7 @@ impl BandLists {
         lists
     }
 
-    /// A record of the pixels that wait, and of some that are nowhere.
+    /// Makes a record of the waiting pixels; empty entries fill it up.
     fn gather(&mut self) {
         if self.waiting.is_empty() {
             return;
@@ -218,8 +220,8 @@ impl BandLists {
     }
 }
 
-/// Whether each pixel of a tile has a list of its own: of so many copies that have so many of its
-/// pixels together.
+/// True if each pixel of a tile gets a list of its own. `count`: copies in the tile; `pixels`: sum
+/// of the pixels that they cover.
 fn splits(count: u32, pixels: u32) -> bool {
     let [part, whole] = LEAST_PART;
     let area = PIXELS as u32;
@@ -234,7 +236,7 @@ mod tests {
     const ACROSS: u32 = 5;
     const TILES: u32 = 3 * ACROSS;
 
-    /// What is searched in each pixel, and whether its list is its own.
+    /// The copies that are searched in each pixel, and true if the pixel has a list of its own.
     type Found = BTreeMap<(u32, u32), (Vec<u32>, bool)>;
 
     /// Copies of many sizes, from whole tiles to single pixels, nearest first.
@@ -264,7 +266,7 @@ mod tests {
             .collect()
     }
 
-    /// What each pixel may show.
+    /// The copies that each pixel may show.
     fn shown() -> BTreeMap<(u32, u32), Vec<u32>> {
         let mut all = BTreeMap::<_, Vec<u32>>::new();
         for one in copies() {
@@ -296,7 +298,7 @@ mod tests {
         dealer.deal(copies, tiles, 1, corner).remove(0)
     }
 
-    /// Lists hold what a pixel may show, in order; those of whole tiles maybe more.
+    /// Lists hold the copies that a pixel may show, in order. Lists of whole tiles may hold more.
     fn check(found: &Found) {
         for (pixel, wanted) in shown() {
             let (list, own) = &found[&pixel];
@@ -310,12 +312,12 @@ mod tests {
         let lists = dealt(&copies(), TILES, Drawer::Groups { lists: false });
         let (found, idle) = visited(&lists);
         check(&found);
-        // In the last record alone.
+        // Only the last record has idle invocations.
         assert!(idle < 64);
         assert_eq!(lists.listed.len() + lists.single.len(), 0);
     }
 
-    /// What work groups search, and how many invocations are idle.
+    /// The lists that work groups search, and the number of idle invocations.
     fn visited(lists: &BandLists) -> (Found, u32) {
         let mut found = BTreeMap::new();
         let mut idle = 0;
@@ -391,8 +393,8 @@ mod tests {
         assert_eq!(of(&deep[..10]).several[0][2], TILE_SPLIT);
     }
 
-    /// Copies of two layers in one tile: each layer lists its own, in order, and one of all has the
-    /// record of its own.
+    /// Two layers have copies in one tile. A layer lists its own copies in order, and one copy of
+    /// the two layers has a record of its own.
     #[test]
     fn layers_share_tiles() {
         let mut all = copies();
@@ -426,11 +428,11 @@ mod tests {
         }
     }
 
-    /// Quads of a copy hold all its pixels, none twice, and none outside of the picture.
+    /// Quads of a copy cover all its pixels once, and no pixel outside of the picture.
     #[test]
     fn quads_hold_what_their_copies_show() {
         use crate::shader::generated::QUAD_BITS;
-        // The picture ends within tiles, on either side.
+        // The picture ends within tiles on all sides.
         let picture = [3, 2, 8 * ACROSS - 2, 20];
         let [left, top, right, bottom] = picture;
         let inside = |x: u32, y: u32| (left..=right).contains(&x) && (top..=bottom).contains(&y);

@@ -1,21 +1,23 @@
 //! Tiles of the screen and the copies that each may show, nearest first: one list for all objects
 //! and copies of a frame.
 //!
-//! 1. Clusters of copies that stand near each other are found in the picture ([`cluster_bounds`])
-//!    and sorted, the nearest first ([`candidates`]).
-//! 2. From the nearest to the farthest they are opened, but for those that are hidden as a whole
-//!    ([`strip`]): of each copy a rectangle of pixels and the nearest depth are found ([`bounds`]);
-//!    copies that no pixel's ray can meet are left out, and the others sorted, the nearest first.
-//! 3. In this order they are listed in the tiles in which they may show ([`outer`]). What a copy is
-//!    sure to hide is marked there ([`cover`]), and later copies are not listed for pixels in which
-//!    all of them lies behind it.
-//! 4. What is listed is dealt out to records ([`deal`], [`quads`]).
+//! 1. Clusters of neighbouring copies are projected to the picture ([`cluster_bounds`]) and sorted,
+//!    nearest first ([`candidates`]).
+//! 2. Clusters are opened from the nearest to the farthest, except for wholly hidden ones
+//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth
+//!    ([`bounds`]). Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
+//!    first.
+//! 3. In this order, copies are listed in the tiles that may show them ([`outer`]). The pixels that
+//!    a copy is sure to hide are marked there ([`cover`]). Later copies are not listed for pixels
+//!    where they are wholly behind that copy.
+//! 4. The listed copies are distributed to records ([`deal`], [`quads`]).
 //!
-//! A copy is left out only where its solid is proven not to be, or solids that it lies behind are
-//! proven to be: pictures are those of unculled copies to the last bit, or but for roundings where
-//! patches are listed. Nothing is taken from an earlier frame. Strips of the picture are filled in
-//! parallel, columns of tiles from top to bottom: on a field they are all alike, where rows near
-//! the horizon hold most copies. Records are made in parallel in bands of rows.
+//! A copy is dropped only where its solid is proven absent, or where solids in front of it are
+//! proven present. Pictures are identical to unculled ones to the last bit, except for roundings
+//! where patches are listed. No data comes from an earlier frame. Strips of the picture, which are
+//! columns of tiles from top to bottom, are filled in parallel. Strips have similar loads on a
+//! field, where rows near the horizon hold most copies. Records are made in parallel, in bands of
+//! rows.
 
 mod bounds;
 mod candidates;
@@ -42,64 +44,64 @@ use strip::Strip;
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
     pub placements: Placements<'a>,
-    /// The number of the first among all instances.
+    /// The number of its first copy among all instances.
     pub first: u32,
     pub shape: Cylinder,
-    /// What each is sure to hide; none where that is not known.
+    /// Cylinders inside the solid, which hide everything behind them; none if unknown.
     pub inner: Option<&'a InnerCylinders>,
-    /// Where each can show, and by how many object units more; none where its cylinder alone is
-    /// known.
+    /// Cylinders around the solid, and a margin in object units; none if only its bounding cylinder
+    /// is known.
     pub outer: Option<(&'a OuterCylinders, f64)>,
-    /// The surface, where patches of it are searched and there are no replicas.
+    /// The surface; none unless its patches are searched and there are no replicas.
     pub surface: Option<&'a OffsetSurface>,
     /// Half of the box's side.
     pub half_side: f64,
-    /// Whether patches may be listed for its tiles.
+    /// True if patches may be listed for its tiles.
     pub lists: bool,
 }
 
-/// Where the copies of an object stand.
+/// The placements of an object's copies.
 #[derive(Clone, Copy)]
 pub(crate) enum Placements<'a> {
     One(&'a Placement),
     Many(&'a Copies),
 }
 
-/// A copy that some pixel may show. They are sorted by these values, in this order.
+/// A copy that some pixel may show. Items are sorted by these values, in this order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Item {
-    /// Bits of the nearest depth: not negative, so they order as it does.
+    /// Bits of the nearest depth, which is not negative, so their order is the order of depths.
     near: u32,
     batch: u32,
     copy: u32,
     pixels: [u16; 4],
-    /// Among the batch's clusters.
+    /// Position among the batch's clusters.
     place: u32,
 }
 
-/// Rows of tiles in a band, and columns in a block: the records of a block follow each other.
+/// Rows of tiles in a band, and columns in a block. The records of a block are contiguous.
 const BLOCK: u32 = 8;
 
-/// What a view shows of batches, tile by tile.
+/// The visible copies of batches in a view, tile by tile.
 pub(crate) struct Visible<'a> {
     batches: &'a [Batch<'a>],
     strips: Vec<Strip<'a>>,
     facts: Vec<CopyFacts>,
-    /// Tiles across and down.
+    /// Number of tiles across and down.
     size: [u32; 2],
     picture: [u32; 4],
 }
 
-/// What draws tiles.
+/// The shader stage that draws tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Drawer {
     /// Fragments, drawn for quads of a few pixels.
     Fragments,
-    /// Work groups; `lists`: patches may be listed for tiles of one copy.
+    /// Work groups. `lists`: patches may be listed for tiles of one copy.
     Groups { lists: bool },
 }
 
-/// Records of all tiles and their lists, as the shaders' one buffer of words holds them
+/// Records of all tiles and their lists, in the layout of the shaders' single buffer of words
 /// (`tile_words.glsl`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct TileWords {
@@ -107,23 +109,23 @@ pub(crate) struct TileWords {
     pub layers: Vec<LayerTiles>,
 }
 
-/// The records of objects that are drawn by one pipeline and one set of textures; numbers of four
+/// The records of objects that share a pipeline and a set of textures. Ranges count records of four
 /// words each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct LayerTiles {
     /// Fragments: quads of one copy each.
     pub quads: Range<u32>,
-    /// Compute: tiles of one copy each, for which patches are listed. No two of all layers' tiles
-    /// of one copy share pixels; they are drawn before those of several.
+    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles of one
+    /// copy share pixels. The tiles are drawn before tiles of several copies.
     pub listed: Range<u32>,
-    /// Likewise, without lists.
+    /// Compute: tiles of one copy each, without lists of patches.
     pub single: Range<u32>,
     /// Compute: tiles of several copies.
     pub several: Range<u32>,
 }
 
 impl<'a> Visible<'a> {
-    /// What of these batches a view of perspective shows.
+    /// The visible copies of these batches in a perspective view.
     pub fn new(view: &View, projector: &'a Projector, batches: &'a [Batch<'a>]) -> Self {
         debug_assert!(!view.parallel);
         Self::of(&Candidates::new(projector, batches), |strip, candidates| {
@@ -131,7 +133,7 @@ impl<'a> Visible<'a> {
         })
     }
 
-    /// What `fill` lists in the strips of the picture.
+    /// Collects the copies that `fill` lists in the strips of the picture.
     fn of(
         candidates: &Candidates<'a>,
         fill: impl Fn(&mut Strip<'a>, &Candidates<'a>) + Sync,
@@ -139,7 +141,7 @@ impl<'a> Visible<'a> {
         let projector = candidates.projector;
         let tiles = |pixels: f64| ((pixels + 0.5) / f64::from(SIDE)).ceil() as u32;
         let size = [tiles(projector.high.x), tiles(projector.high.y)];
-        // Several for each thread, as some take longer.
+        // Several strips per thread, as some take longer.
         let strip = size[0].div_ceil(4 * rayon::current_num_threads() as u32);
         let strip = strip.next_multiple_of(BLOCK);
         let starts: Vec<u32> = (0..size[0]).step_by(strip as usize).collect();
@@ -159,18 +161,18 @@ impl<'a> Visible<'a> {
         }
     }
 
-    /// Whether the eye is outside of all copies of a batch.
+    /// True if the eye is outside of all copies of a batch.
     pub fn is_apart(&self, batch: usize) -> bool {
         self.facts[batch].apart
     }
 
-    /// Whether patches may be listed for a batch's tiles.
+    /// True if patches may be listed for a batch's tiles.
     pub fn takes_lists(&self, batch: usize) -> bool {
         let facts = &self.facts[batch];
         self.batches[batch].lists && facts.apart && facts.even
     }
 
-    /// The copies of each batch that may show, in order.
+    /// The copies of each batch that may show, in ascending order.
     pub fn copies(&self) -> Vec<Vec<u32>> {
         let mut all: Vec<_> = self.strips.iter().flat_map(|s| &s.copies).collect();
         all.par_sort_unstable();
@@ -182,7 +184,8 @@ impl<'a> Visible<'a> {
         copies
     }
 
-    /// Deals what is shown out to records. `layer_of`: the layer of each batch, below `layers`.
+    /// Distributes the visible copies to records. `layer_of`: the layer of each batch, below
+    /// `layers`.
     pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
         let [across, down] = self.size;
         let lists: Vec<bool> = (0..self.batches.len())
@@ -217,7 +220,7 @@ impl<'a> Visible<'a> {
     }
 }
 
-/// One buffer of all bands' records and lists.
+/// Joins the records and lists of all bands to one buffer.
 fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
     let mut records: Vec<[u32; 4]> = Vec::new();
     let mut lists = 0;
@@ -246,7 +249,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
             several: first..records.len() as u32,
         });
     }
-    // Lists stand behind all records.
+    // Lists follow all records.
     let behind = 4 * records.len() as u32;
     for layer in &all {
         for record in &mut records[layer.several.start as usize..layer.several.end as usize] {
@@ -263,7 +266,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
     TileWords { words, layers: all }
 }
 
-/// The bits of a tile's pixels that the picture has.
+/// The bits of a tile's pixels that are in the picture.
 fn in_picture(tile: [u32; 2], picture: [u32; 4]) -> u64 {
     within(tile, picture)
 }

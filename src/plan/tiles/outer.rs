@@ -1,4 +1,5 @@
-//! Where a solid can show: cylinders about its axis that hold it, and their pixels.
+//! The rows of pixels that a solid may cover: projections of cylinders about its axis that contain
+//! it.
 
 use super::bounds::ProjectedAxes;
 use super::cover::{first_pixel, last_pixel};
@@ -7,9 +8,9 @@ use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
-/// Copies of fewer rows of pixels are listed by their rectangles.
+/// Copies with fewer rows of pixels are listed by their rectangles.
 const LEAST_ROWS: u32 = 6;
-/// Corners of an octagon around the unit circle, in turn.
+/// Corners of an octagon around the unit circle, in order.
 const CORNERS: [(f64, f64); 8] = {
     const T: f64 = SQRT_2 - 1.0;
     [
@@ -24,9 +25,9 @@ const CORNERS: [(f64, f64); 8] = {
     ]
 };
 
-/// Of these rows of pixels, each, the ends of what may show the copy, in pixels; false where
-/// that is not known. `margin`: by how many object units the copy may be larger; `high`: about
-/// how many rows it has in all.
+/// Computes the ends, in pixels, of the span that may show the copy in each row of `within`.
+/// Returns false if they are unknown. `margin`: object units by which the copy may be larger;
+/// `high`: approximate number of rows of the whole copy.
 pub(super) fn rows(
     outer: &OuterCylinders,
     axes: &ProjectedAxes,
@@ -40,7 +41,7 @@ pub(super) fn rows(
     }
     rows.clear();
     rows.resize(within.len(), [f64::INFINITY, f64::NEG_INFINITY]);
-    // Two sides of the octagons run along the line of sight: in width they are as discs.
+    // Two sides of each octagon are parallel to the line of sight, so it is as wide as its disc.
     let towards = axes.eye.truncate().normalize_or(DVec2::X);
     let [a, b] = [towards, towards.perp()].map(|way| axes.along[0] * way.x + axes.along[1] * way.y);
     let ways = CORNERS.map(|(x, y)| a * x + b * y);
@@ -64,16 +65,17 @@ pub(super) fn rows(
     true
 }
 
-/// Widens rows to the convex hull of the two ends of a cylinder. Of the edges between their corners
-/// most lie within.
+/// Widens rows to the convex hull of the two ends of a cylinder. Most edges between their corners
+/// are inside the hull.
 fn outline(rings: &[[DVec2; 8]; 2], top: u32, rows: &mut [[f64; 2]]) {
-    // Of the line through an edge, whether two points lie on different sides.
+    // True if two points are on different sides of the line through an edge.
     let parts = |p: DVec2, q: DVec2, [a, b]: [DVec2; 2]| {
         let side = |point: DVec2| (q - p).perp_dot(point - p);
         side(a) * side(b) < 0.0
     };
     for (ring, other) in [(&rings[0], &rings[1]), (&rings[1], &rings[0])] {
-        // Rings are flat, seen from the side, and many lie between middles of pixels.
+        // Rings seen from the side are flat, and many are between the centres of two rows of
+        // pixels.
         let ends = |m: [f64; 2], p: &DVec2| [m[0].min(p.y), m[1].max(p.y)];
         let [low, high] = ring.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
         if first_pixel(low) > last_pixel(high) {
@@ -94,7 +96,7 @@ fn outline(rings: &[[DVec2; 8]; 2], top: u32, rows: &mut [[f64; 2]]) {
     }
 }
 
-/// Widens rows to where an edge crosses the middles of their pixels.
+/// Widens rows to the points at which an edge crosses the centres of their pixels.
 fn mark(p: DVec2, q: DVec2, top: u32, rows: &mut [[f64; 2]]) {
     let (p, q) = if p.y < q.y { (p, q) } else { (q, p) };
     let top = top as i32;
@@ -120,8 +122,8 @@ mod tests {
     use crate::scene::{Camera, Placement};
     use glam::{DQuat, DVec3};
 
-    /// Of a spindle on a plate: points on and in it are seen within the rows, and what is left out
-    /// is much.
+    /// A spindle on a plate: the rows contain points on and in it, and exclude much of the
+    /// rectangle.
     #[test]
     fn rows_hold_the_solid_and_little_else() {
         let radius = |z: f64| if z < 0.1 { 0.4 } else { 0.05 + 0.1 * z };
@@ -166,7 +168,7 @@ mod tests {
                 let beside = around * radius(z);
                 let at = copy.position + copy.rotation * (copy.scale * beside.extend(z));
                 let pixel = view.project(at).0;
-                // Ends are those of the row's middle, and edges may be steep.
+                // Ends are exact for the centre of the row, and edges may be steep.
                 let Some(row) = rows.get((pixel.y as usize).wrapping_sub(pixels[1] as usize))
                 else {
                     continue;

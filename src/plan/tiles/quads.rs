@@ -1,4 +1,4 @@
-//! Quads of pixels that fragments are drawn for.
+//! Quads of pixels for which fragments are drawn.
 
 use super::cover::{SIDE, block};
 use super::deal::{BandLists, Listed};
@@ -28,9 +28,9 @@ impl Quad {
             .map(|corner| Self { corner, side })
     }
 
-    /// Visits quads that hold these pixels and none outside of the picture. Drivers search blocks
-    /// of 4 x 4 pixels as one, so smaller quads are taken at the picture's edges alone, and larger
-    /// ones where no block would be empty.
+    /// Visits quads that hold these pixels and no pixel outside of the picture. Drivers search
+    /// blocks of 4 x 4 pixels as one. Smaller quads are therefore used only at the picture's edges,
+    /// and larger ones only where no block would be empty.
     fn cut(&self, pixels: u64, inside: u64, visit: &mut impl FnMut(&Self)) {
         if pixels & self.pixels() == 0 {
             return;
@@ -46,7 +46,8 @@ impl Quad {
         }
     }
 
-    /// As `tile_words.glsl` has its place; `corner`: of the tile that it is in, pixels.
+    /// The quad's position in the layout of `tile_words.glsl`. `corner`: pixel of its tile's
+    /// corner.
     fn place(&self, corner: [u32; 2]) -> u32 {
         let [x, y] = [0, 1].map(|k| corner[k] + self.corner[k]);
         x | y << QUAD_BITS | self.side.ilog2() << (2 * QUAD_BITS)
@@ -54,7 +55,7 @@ impl Quad {
 }
 
 impl BandLists {
-    /// The quads of a copy in a tile; `inside`: those of its pixels that the picture has.
+    /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
     pub(super) fn add_quads(&mut self, one: &Listed, corner: [u32; 2], inside: u64) {
         Quad::WHOLE.cut(one.pixels & inside, inside, &mut |quad| {
             self.quads.push([quad.place(corner), one.copy, 0, one.near]);

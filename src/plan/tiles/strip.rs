@@ -1,5 +1,6 @@
-//! What shows in a strip of the picture, some columns of squares from top to bottom: copies are met
-//! from the nearest to the farthest, and clusters that nearer copies hide are passed over.
+//! The copies that show in a strip of the picture, which is a range of columns of squares from top
+//! to bottom. Copies are visited from the nearest to the farthest. Clusters that nearer copies hide
+//! are skipped.
 
 use super::bounds::Projector;
 use super::candidates::{Candidate, Candidates};
@@ -9,23 +10,23 @@ use super::outer::rows;
 use super::{BLOCK, Batch, Item};
 use std::ops::Range;
 
-/// So many clusters are opened at once: each time copies are sorted.
+/// Number of clusters that are opened at once; copies are sorted after each such step.
 const OPENED: usize = 16;
 
 pub(super) struct Strip<'a> {
     projector: &'a Projector,
     batches: &'a [Batch<'a>],
     cover: Cover,
-    /// The ends of what shows in each row of the copy that is looked at.
+    /// The ends of each row of the current copy.
     rows: Vec<[f64; 2]>,
-    /// Of each band, the nearest copy first.
+    /// The listed copies of each band, nearest first.
     pub listed: Vec<Vec<Listed>>,
     /// Batch and number of every copy that may show.
     pub copies: Vec<(u32, u32)>,
 }
 
 impl<'a> Strip<'a> {
-    /// Of these columns of a picture of so many tiles.
+    /// An empty strip of these columns, in a picture of this size in tiles.
     pub fn new(
         projector: &'a Projector,
         batches: &'a [Batch<'a>],
@@ -42,7 +43,7 @@ impl<'a> Strip<'a> {
         }
     }
 
-    /// Lists what shows of all candidates.
+    /// Lists the visible part of all candidates.
     pub fn fill(&mut self, candidates: &Candidates) {
         let here = |c: &&Candidate| self.cover.meets(c.pixels);
         let here: Vec<&Candidate> = candidates.all.iter().filter(here).collect();
@@ -56,7 +57,7 @@ impl<'a> Strip<'a> {
                 let items = candidates.items(candidate).iter();
                 waiting.extend(items.filter(|item| self.cover.meets(item.pixels)));
             }
-            // Those of later clusters may be nearer than the others.
+            // Copies of later clusters may be nearer than the remaining ones.
             let limit = here.get(n * OPENED).map_or(u32::MAX, |next| next.near);
             ready.extend(waiting.extract_if(.., |item: &mut Item| item.near < limit));
             ready.sort_unstable();
@@ -64,7 +65,8 @@ impl<'a> Strip<'a> {
         }
     }
 
-    /// Lists what shows of a copy that is not nearer than those before, and notes what it hides.
+    /// Lists the visible part of a copy and records what it hides. No earlier copy may be farther
+    /// than it.
     pub fn add(&mut self, item: &Item) {
         let near = f32::from_bits(item.near);
         if !self.cover.is_open(item.pixels, near) {
@@ -124,7 +126,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-    /// Every copy of every batch, the nearest first, and no cluster passed over.
+    /// Every copy of every batch, nearest first, without skipping clusters.
     fn fill_plainly(strip: &mut Strip, candidates: &Candidates) {
         let mut items = Vec::new();
         for (number, batch) in (0..).zip(candidates.batches) {
@@ -143,8 +145,8 @@ mod tests {
         solid.patches(&offset, &Growth::default(), 0).unwrap()
     }
 
-    /// A field of 20 x 20 world units, of copies of about this size; `tall`: how much higher than
-    /// wide.
+    /// A field of 20 x 20 world units with copies of about this size. `tall`: ratio of height to
+    /// width.
     fn field(count: u32, seed: u32, size: f64, tall: f64) -> Copies {
         let of = |k: u32| {
             let part = |step: f64| (f64::from(k + 999 * seed) * step).fract();
@@ -160,8 +162,8 @@ mod tests {
         (0..count).map(of).collect()
     }
 
-    /// Bins are those of all copies in turn, to the last word, wherever the eye is; and of many
-    /// clusters no copy is looked at.
+    /// The tiles equal those of all copies in turn, to the last word, wherever the eye is. Many
+    /// clusters are never opened.
     #[test]
     fn clusters_that_are_passed_over_change_nothing() {
         let column = surface(&[[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]]);

@@ -1,13 +1,13 @@
-//! Lines and conics on which an offset contour may run, and where two of them meet.
+//! Lines and conics that can carry an offset contour, and the intersections of two of them.
 
 use super::{Candidate, Layer};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// A curve on which the contour may run.
+/// A curve that can carry part of the contour.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Curve {
-    /// From `a` to `b`; the parameter runs from 0 to 1.
+    /// From `a` to `b`; the parameter is from 0 to 1.
     Line { a: DVec2, b: DVec2 },
     /// `focus + size / (1 - beta sin x) (cos x, sin x)`, `x` the parameter.
     Conic {
@@ -19,7 +19,7 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// Where its parameter begins and ends.
+    /// First and last value of its parameter.
     pub(super) fn range(&self) -> [f64; 2] {
         match *self {
             Self::Line { .. } => [0.0, 1.0],
@@ -38,7 +38,7 @@ impl Curve {
         }
     }
 
-    /// Its ends, exactly on the borders of layer and half-plane where they lie there.
+    /// Its ends; exactly on the borders of layer and half-plane if they are there.
     pub(super) fn ends(&self, layer: &Layer) -> [DVec2; 2] {
         match *self {
             Self::Line { a, b } => [a, b],
@@ -48,8 +48,8 @@ impl Curve {
         }
     }
 
-    /// Parameters at which a conic meets the line `normal . q = offset`, each once, not yet brought
-    /// into its range: `A cos x + B sin x = C`.
+    /// Parameters at which a conic meets the line `normal . q = offset`, each once and not yet
+    /// reduced to its range: `A cos x + B sin x = C`.
     pub(super) fn meets_line(
         &self,
         beta: f64,
@@ -70,14 +70,14 @@ impl Curve {
     }
 }
 
-/// An angle brought between two others, if one of its turns lies there (to within rounding).
+/// An angle, shifted by full turns to be between two others if possible (within rounding).
 pub(super) fn within(x: f64, from: f64, to: f64) -> Option<f64> {
     let (low, high) = (from.min(to), from.max(to));
     let turned = x + ((low - 1e-9 - x) / TAU).ceil() * TAU;
     (turned <= high + 1e-9).then(|| turned.clamp(low, high))
 }
 
-/// Finds where two curves meet: parameter on the first, on the second, point.
+/// Finds the intersections of two curves: parameter on the first, on the second, point.
 pub(super) fn meet(
     beta: f64,
     first: &Candidate,
@@ -89,7 +89,7 @@ pub(super) fn meet(
         (Curve::Line { a, b }, Curve::Line { a: c, b: d }) => {
             let (u, v) = (b - a, d - c);
             let cross = u.perp_dot(v);
-            // Parallel ones do not meet, or all along.
+            // Parallel lines do not meet, or they coincide.
             if cross.abs() <= 1e-14 * u.length() * v.length() {
                 return;
             }
@@ -127,7 +127,8 @@ pub(super) fn meet(
                     continue;
                 };
                 let p = first.curve.point(beta, x);
-                // The offset there is one: on both the point lies on the same side of the surface.
+                // Both conics have the same offset there, so the point is on the same side of the
+                // surface for both.
                 let away = (p - g) * (size / (1.0 - beta * x.sin())).signum();
                 let y = away.y.atan2(away.x);
                 if let Some(y) = within(y, from, to) {

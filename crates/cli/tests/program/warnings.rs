@@ -33,7 +33,7 @@ fn scenes_that_look_unintended() {
 fn options_that_are_passed_over() {
     let bench = Bench::new();
     for (options, words) in [
-        ("--max-steps 9", Some("--max-steps: --solver hull")),
+        ("--max-steps 9", Some("--max-steps: --solver exact")),
         ("--solver quadric --map-rows 64", Some("--map-rows")),
         ("--solver mesh:8x8 --map-format r16", Some("--map-format")),
         (

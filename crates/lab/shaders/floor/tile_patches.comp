@@ -5,10 +5,12 @@
 
 void main()
 {
-    share_tile();
+    share_record();
+    barrier();
+    share_instance();
     barrier();
     begin_tile();
-    uvec2 pixel = tile_corner + gl_LocalInvocationID.xy;
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);
     vec3 v = ray_direction(tile_rays, pixel);
     float a = dot(v.xy, v.xy);

@@ -72,7 +72,7 @@ impl Pipelines {
             words = depth_less(&words);
         }
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V made by build.rs, those that the host promised, or a search's.
+        // SAFETY: the words are SPIR-V made by build.rs, or a search's, or what the host promised.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
         Ok(ShaderModule {
@@ -111,13 +111,16 @@ impl Pipelines {
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
-        // Proxies and quads have no vertices: their corners are made from numbers.
+        // Proxies and quads have no vertex input: shaders make their corners from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
         let is_quads = kind == Kind::Quads;
-        let topology = if is_quads && self.constants.large_points {
-            vk::PrimitiveTopology::POINT_LIST
-        } else {
-            vk::PrimitiveTopology::TRIANGLE_LIST
+        let topology = match is_quads && self.constants.large_points {
+            true => vk::PrimitiveTopology::POINT_LIST,
+            false => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
+        let cull_mode = match is_quads {
+            true => vk::CullModeFlags::NONE,
+            false => vk::CullModeFlags::BACK,
         };
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
@@ -125,11 +128,7 @@ impl Pipelines {
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(if is_quads {
-                vk::CullModeFlags::NONE
-            } else {
-                vk::CullModeFlags::BACK
-            })
+            .cull_mode(cull_mode)
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
@@ -178,12 +177,10 @@ impl Pipelines {
                 info = info.push_next(&mut rendering);
             }
         }
-        // SAFETY: `info` and all it points to live until the call returns; a render pass lives by
-        // the output's promise.
-        let made = unsafe {
-            self.raw
-                .create_graphics_pipelines(self.cache, &[info], None)
-        };
+        let raw = &self.raw;
+        // SAFETY: `info` and all it points to live until the call returns; a render pass lives as
+        // the host of the output promised.
+        let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
 }
@@ -218,7 +215,7 @@ impl ShaderModule<'_> {
 
 impl Drop for ShaderModule<'_> {
     fn drop(&mut self) {
-        // SAFETY: pipelines made of a module do not need it afterwards.
+        // SAFETY: pipelines do not need their module once they are made.
         unsafe { self.device.destroy_shader_module(self.raw, None) };
     }
 }
