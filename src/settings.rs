@@ -207,8 +207,8 @@ pub struct Settings {
     pub planes: Planes,
     /// Least pixels of an object's box for each visible frustum of its cells at which the fragment
     /// stage draws the cells: triangles cost the same however small they are. Smaller objects are
-    /// drawn by tiles. Software drivers multiply it by 2 or 11. `u32::MAX`: no cells and no lists of
-    /// patches.
+    /// drawn by tiles. Software drivers multiply it by 2 or 11 for single solids. `u32::MAX`: no
+    /// cells and no lists of patches.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,

@@ -1,4 +1,4 @@
-//! The `revmap` program: solids of revolution drawn from one 2D map.
+//! The `revmap` program: solids of revolution drawn from flat outlines.
 //!
 //! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed
 //! feature. A failure is one line on standard error.
@@ -30,7 +30,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-/// Revolution mapping: draws solids of revolution from one 2D map, without a mesh.
+/// Revolution mapping: draws solids of revolution from flat outlines, without a stored mesh.
 #[derive(Parser)]
 #[command(name = "revmap", version, max_term_width = 110, after_help = AFTER_HELP)]
 struct Program {
