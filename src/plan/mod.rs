@@ -19,7 +19,7 @@ pub use view::{DepthOrder, View, Viewport};
 use crate::shader::generated::{
     BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
 };
-use crate::shader::{Kind, Search, Variant};
+use crate::shader::{Kind, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -439,12 +439,8 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
     let surface = of.surface.filter(|_| of.object.repeat == [1; 3]);
     let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
     let culls = surface.filter(|_| with.occlusion_culling);
-    let is_single = with.occlusion_culling && of.object.repeat == [1; 3];
-    // Searches for comparison search all of the box, as published.
-    let is_own = of.variant.search != Search::External;
-    let of_outline = of
-        .outline
-        .filter(|_| is_single && is_own && surface.is_none());
+    let outlined = with.uses_outline(of) && of.object.repeat == [1; 3];
+    let of_outline = of.outline.filter(|_| outlined && surface.is_none());
     let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
     Batch {
         placements: of.copies(),

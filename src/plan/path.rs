@@ -96,15 +96,15 @@ pub(crate) struct Conditions {
 const MOST_PROXIES: usize = 64;
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
-/// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take
-/// twice as long as the tree. Lists on llvmpipe, which has 8, take two thirds.
+/// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
+/// of the tree's instructions. Lists on llvmpipe, which has 8, take 0.70 to 0.94.
 const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
 /// shades. The first is for subgroups of at least [`LEAST_SUBGROUP`], the second for smaller ones,
 /// which take three times as long over a tree. The factors come from counts of instructions:
-/// llvmpipe draws a solid by cells as fast as by tiles at 1,650 pixels per frustum, SwiftShader at
-/// 340.
+/// llvmpipe draws a solid by cells as fast as by tiles at 1,650 pixels per frustum. SwiftShader does
+/// at 340, extrapolated from solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
@@ -119,7 +119,7 @@ impl Conditions {
         let wraps = of.takes_patches && of.object.repeat == [1; 3] && !self.compute;
         let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
         // The box is as good as tiles for one copy whose outline is not used.
-        let outlined = of.variant.search != Search::External && self.occlusion_culling;
+        let outlined = self.uses_outline(of);
         let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
         let cells_of = |cut| Path::Cells {
             frusta: Vec::new(),
@@ -158,6 +158,12 @@ impl Conditions {
             }
         }
         chosen
+    }
+
+    /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
+    /// the box, as published.
+    pub fn uses_outline(&self, of: &PlanObject) -> bool {
+        self.occlusion_culling && of.variant.search != Search::External
     }
 
     /// Least pixels of the box per frustum at which cells are cheaper. The factors are those of

@@ -1,9 +1,11 @@
 //! Commands of a frame, counted between the renderer and Vulkan: they follow pipelines and sets of
 //! textures, whatever the number of objects and copies.
 
+use crate::common::host::memory::HostBuffer;
 use crate::common::host::{lent, open};
 use crate::common::{placement, scene_of, shapes};
 use crate::embedding::assert_silent;
+use crate::embedding_outputs::{barrier, once};
 use ash::vk;
 use glam::DVec3;
 use revmap::gpu::{Device, HostDevice, Offscreen};
@@ -201,5 +203,26 @@ fn commands_follow_pipelines() {
         );
     }
     drop(device);
+    assert_silent(&host);
+}
+
+/// An update that is recorded through the layer is counted, and reaches the buffer.
+#[test]
+fn an_update_is_noticed() {
+    let _one = ONE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let host = open();
+    let raw = layer(&host.instance, &host.device);
+    let words = HostBuffer::of(&host, &[0u32; 4], vk::BufferUsageFlags::TRANSFER_DST).unwrap();
+    taken();
+    once(&host, |cmd| {
+        // SAFETY: `cmd` is recording outside of a pass; the buffer outlives it.
+        unsafe { raw.cmd_update_buffer(cmd, words.raw, 0, &7u32.to_le_bytes()) };
+        barrier(&host, cmd);
+    });
+    assert_eq!(taken().updates, 1);
+    assert_eq!(words.bytes()[..4], 7u32.to_le_bytes());
+    drop(words);
     assert_silent(&host);
 }

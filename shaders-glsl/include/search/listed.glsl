@@ -3,7 +3,7 @@
 #define LISTED_GLSL
 #extension GL_EXT_control_flow_attributes : require
 #include "stage/tile.glsl"
-#include "search/quadric.glsl"
+#include "search/patch_row.glsl"
 
 shared float listed[8u * LONGEST_LIST];
 
@@ -37,38 +37,17 @@ vec4 listed_vector(uint n)
 
 bool search_listed(uvec2 pixel, out Nearest nearest)
 {
-    vec3 v = ray_direction(tile_rays, pixel);
-    Meridian m;
-    m.v = v;
-    m.o = ray_origin(tile_rays, pixel);
-    m.a = dot(v.xy, v.xy);
-    m.b = dot(m.o.xy, v.xy);
-    m.c = dot(m.o.xy, m.o.xy);
-    float least = -tile_rays.base;
-    float most = 2e38;
-    if (OUTSIDE == 0u) {
-        // No ray of the tile was in the solid before the sides: see tile_lists.comp.
-        vec2 span = between_sides(m.o, v, sides_of_box());
-        least = max(least, span.x);
-        most = span.y;
-    }
-    float best = most;
-    vec4 quadric = vec4(0.0);
+    // The lists hold no tile of which a ray was in the solid before the sides: see tile_lists.comp.
+    PatchRow row = begin_row(tile_rays, pixel, sides_of_box());
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
-        take_nearer(m, listed_vector(2u * k), listed_vector(2u * k + 1u), least, best, quadric);
+        take_patch_of_row(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
     }
-    nearest.hit.t = best;
-    nearest.hit.normal = quadric_normal(m, best, quadric);
-    nearest.hit.point = m.o + best * v;
-    nearest.hit.sense = vec3(1.0);
-    nearest.hit.steps = LIST_LENGTH;
-    nearest.hit.exhausted = false;
-    nearest.hit.at_border = false;
+    bool found = end_row(row, LIST_LENGTH, nearest.hit);
     nearest.instance = 0u;
     nearest.steps = LIST_LENGTH;
     nearest.exhausted = false;
-    nearest.depth = depth_of(tile_rays.base + best);
-    return best < most;
+    nearest.depth = depth_of(tile_rays.base + nearest.hit.t);
+    return found;
 }
 
 #endif

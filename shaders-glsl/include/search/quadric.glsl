@@ -55,8 +55,8 @@ bool starts_within(Meridian m)
     return (beyond & 1u) != 0u;
 }
 
-// FOUND or LEFT; `hit_quadric` is the patch that was hit.
-uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
+// FOUND or LEFT; `hit_quadric` is the patch that was hit. `span`: rows are walked between these s.
+uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint steps, out vec4 hit_quadric)
 {
     const int rows = int(PATCH_ROWS);
     float n = float(rows);
@@ -68,9 +68,10 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
     float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
     int level = top;
-    int row = clamp(int(floor(m.o.z * n)), 0, rows - 1);
-    float t = 0.0;
-    float most = square_at(m, 0.0);
+    float t = max(span.x, 0.0);
+    float last = min(span.y, m.s_end);
+    int row = clamp(int(floor((m.o.z + t * m.v.z) * n)), 0, rows - 1);
+    float most = square_at(m, t);
     float best = 3e38;
     hit_quadric = vec4(0.0);
     for (;;) {
@@ -82,7 +83,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
         for (;;) {
             int node = row >> (2 * level);
             border = (up ? node + 1 : node) << (2 * level);
-            leave = max(min((float(border) / n - m.o.z) * per_z, m.s_end), t);
+            leave = max(min((float(border) / n - m.o.z) * per_z, last), t);
             most_out = square_at(m, leave);
             float least = square_at(m, clamp(nearest, t, leave));
             int base = level < 2 ? (level == 0 ? 0 : 256) : (level == 2 ? 320 : 336);
@@ -98,7 +99,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
                 continue;
             }
             row = up ? border : border - 1;
-            if (leave >= m.s_end || row < 0 || row >= rows) {
+            if (leave >= last || row < 0 || row >= rows) {
                 break;
             }
             t = leave;
@@ -118,7 +119,7 @@ uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out
             hit_quadric = mix(hit_quadric, q, bvec4(nearer));
         }
         row = run == 0u ? row : (up ? border : border - 1);
-        if (best <= leave || leave >= m.s_end || row < 0 || row >= rows) {
+        if (best <= leave || leave >= last || row < 0 || row >= rows) {
             break;
         }
         t = leave;

@@ -84,18 +84,7 @@ pub(crate) fn image_barrier(
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .image(image.raw)
         .subresource_range(image.kind.range());
-    // SAFETY: `cmd` is recording, outside a render pass, and the image lives until it has run.
-    unsafe {
-        device.raw.cmd_pipeline_barrier(
-            cmd,
-            from.stages(),
-            to.stages(),
-            vk::DependencyFlags::empty(),
-            &[],
-            &[],
-            &[barrier],
-        );
-    }
+    wait(device, cmd, (from, to), &[], &[barrier]);
 }
 
 /// Records a barrier on one buffer.
@@ -113,16 +102,28 @@ pub(crate) fn buffer_barrier(
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .buffer(buffer.raw)
         .size(vk::WHOLE_SIZE);
-    // SAFETY: `cmd` is recording, outside a render pass, and the buffer lives until it has run.
+    wait(device, cmd, (from, to), &[barrier], &[]);
+}
+
+fn wait(
+    device: &Shared,
+    cmd: vk::CommandBuffer,
+    (from, to): (Usage, Usage),
+    buffers: &[vk::BufferMemoryBarrier],
+    images: &[vk::ImageMemoryBarrier],
+) {
+    let none = vk::DependencyFlags::empty();
+    // SAFETY: `cmd` is recording, outside of a render pass; buffers and images live until it has
+    // run.
     unsafe {
         device.raw.cmd_pipeline_barrier(
             cmd,
             from.stages(),
             to.stages(),
-            vk::DependencyFlags::empty(),
+            none,
             &[],
-            &[barrier],
-            &[],
+            buffers,
+            images,
         );
     }
 }
