@@ -1,4 +1,4 @@
-//! How far a map is off, where the truth is known.
+//! Errors of a map against a disc whose exact distances are known.
 
 use super::{BakeOptions, MapFormat, MapSource, ShapeMap};
 use crate::error::Result;
@@ -10,27 +10,28 @@ use glam::DVec2;
 pub struct MapErrors {
     /// Mean of stored minus true distance, texels.
     pub mean: f64,
-    /// Root of its mean square, texels.
+    /// Root mean square of that difference, texels.
     pub rms: f64,
-    /// Its largest magnitude, texels.
+    /// Largest magnitude of that difference, texels.
     pub max: f64,
-    /// Angle between the derivative of the bilinear cell, which the shaders take, and the true
-    /// gradient: root mean square over points within one texel of the surface, degrees.
+    /// Angle between the true gradient and the derivative of the bilinear cell, which the shaders
+    /// use. Root mean square over points within one texel of the surface, degrees.
     pub gradient_rms: f64,
     /// The largest such angle, degrees.
     pub gradient_max: f64,
-    /// The same for the gradient channels of the papers' 8-bit texture, filtered bilinearly.
+    /// Root mean square of that angle for the gradient channels of the papers' 8-bit texture,
+    /// filtered bilinearly, degrees.
     pub stored_gradient_rms: f64,
     /// The largest such angle, degrees.
     pub stored_gradient_max: f64,
 }
 
-/// A disc that no symmetry of the grid helps.
+/// A disc that is not aligned with any symmetry of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// Its centre `(r, z)`, object units.
+    /// Centre `(r, z)`, object units.
     pub center: DVec2,
-    /// Its radius, object units.
+    /// Radius, object units.
     pub radius: f64,
 }
 
@@ -44,11 +45,11 @@ impl Default for Disc {
 }
 
 impl Disc {
-    /// The disc as a polygon of `corners` corners in a box of radius 1; its chords lie outside and
-    /// inside by equal areas.
+    /// The disc as a polygon of `corners` corners in a box of radius 1. The polygon's area outside
+    /// the disc equals the disc's area outside the polygon.
     ///
     /// # Errors
-    /// None for discs within the half-plane.
+    /// Discs within the half-plane never fail.
     pub fn polygon(&self, corners: u32) -> Result<Profile> {
         let step = std::f64::consts::TAU / f64::from(corners);
         let radius = self.radius * (step / step.sin()).sqrt();
@@ -64,17 +65,17 @@ impl Disc {
         p.distance(self.center) - self.radius
     }
 
-    /// Bakes the disc from a source and measures it.
+    /// Bakes the disc from a source and measures the map's errors.
     ///
     /// # Errors
-    /// Those of [`ShapeMap::bake`].
+    /// The errors of [`ShapeMap::bake`].
     pub fn errors(&self, source: MapSource, rows: u32) -> Result<MapErrors> {
         let map = ShapeMap::bake(&self.polygon(1 << 16)?, &BakeOptions::new(source, rows))?;
         Ok(self.measure(&map))
     }
 
-    /// Errors of a map of this disc. Of a binary map the distances outside alone count: the papers
-    /// store no others.
+    /// Errors of a map of this disc. A binary map is measured outside only: the papers store no
+    /// distances inside.
     #[must_use]
     pub fn measure(&self, map: &ShapeMap) -> MapErrors {
         let side = f64::from(map.rows);
@@ -90,7 +91,8 @@ impl Disc {
         let (mut cell, mut channels) = (Moments::default(), Moments::default());
         const AROUND: u32 = 20_000;
         for k in 0..AROUND {
-            // A spiral: every direction, and every depth within a texel of the surface.
+            // The points form a spiral that covers every direction and every depth within a texel
+            // of the surface.
             let along = DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND));
             let depth = (f64::from(k) * 0.618_033_988_749_895).fract() * 2.0 - 1.0;
             let p = self.center + along * (self.radius + depth / side);

@@ -1,5 +1,5 @@
-//! Length along the profile, for textures that neither height nor angle spreads evenly: the
-//! projection `arc`.
+//! Length along the profile for the projection `arc`: textures that are spread evenly neither by
+//! height nor by angle.
 
 use super::nearest::for_each_texel;
 use crate::error::{Error, ErrorKind, Result};
@@ -9,13 +9,13 @@ use glam::DVec2;
 /// `eta`, the length along the solid's contour as a fraction of the whole, at every point of its
 /// surface.
 ///
-/// The contour falls into chains: from axis to axis (the outside of a vase, the inside of a closed
-/// bottle), or closed (a ring). Each has its own `eta` from 0 to 1. A chain from axis to axis
-/// starts at its lower end, so that `eta = 1` is the top; a closed one starts and ends at its least
-/// `r`, the side turned to the axis, and rises on its outer side.
+/// The contour consists of chains: from axis to axis (the outside of a vase, the inside of a closed
+/// bottle), or closed (a ring). `eta` runs from 0 to 1 along each chain. A chain from axis to axis
+/// starts at its lower end, so that `eta = 1` is the top. A closed chain starts and ends at its
+/// least `r`, the side turned to the axis, and rises on its outer side.
 ///
-/// Off the surface, `eta` is that of the nearest point of it, which is what an extended or beveled
-/// surface takes.
+/// A point off the surface has the `eta` of the nearest surface point; extended and beveled
+/// surfaces use this value.
 #[derive(Clone, Debug)]
 pub struct ArcLength {
     segments: Vec<Segment>,
@@ -25,10 +25,11 @@ pub struct ArcLength {
 
 /// `eta` on the grid of a shape map, ready for a texture: `R16_UNORM`, row 0 on top.
 ///
-/// A shader reads its four texels around `(r, z)` and mixes them bilinearly. Where two of them
-/// differ by more than one half, the seam of a closed chain lies between: add 1 to the smaller ones
-/// before, and take the fraction after. Errors are those of bilinear interpolation, at most half a
-/// texel of length, but for walls thinner than two texels, whose two sides mix.
+/// A shader reads the four texels around `(r, z)` and interpolates them bilinearly. If two of the
+/// four differ by more than one half, the seam of a closed chain is between them: add 1 to the
+/// smaller ones before the interpolation, and take the fraction after it. Errors are those of
+/// bilinear interpolation, at most half a texel of length. Walls thinner than two texels are an
+/// exception, since their two sides mix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArcTable {
     /// Texels along `r`.
@@ -119,7 +120,7 @@ impl ArcLength {
 }
 
 impl ArcTable {
-    /// `eta` at `(r, z)` as a shader reads it; beyond the table its border repeats.
+    /// `eta` at `(r, z)` as a shader reads it; the border repeats beyond the table.
     #[must_use]
     pub fn eta_at(&self, r: f64, z: f64) -> f64 {
         let side = f64::from(self.rows);

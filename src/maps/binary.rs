@@ -1,4 +1,4 @@
-//! The papers' distances: between the centres of pixels of a two-valued image.
+//! The papers' distances: between the centres of pixels of a binary image.
 
 use super::rounding::round_down;
 use super::transform::{NONE, Surroundings, squared_to_other};
@@ -6,9 +6,10 @@ use crate::profile::Raster;
 use rayon::prelude::*;
 
 /// Signed distance of each texel's centre, object units. Outside: to the nearest solid texel's
-/// centre, as in the papers. Inside, where the papers store nothing, the same slope is continued
-/// through the same zero: one texel less than to the nearest empty texel's centre, negative. Beyond
-/// the right, top and bottom borders all is empty; the axis at the left is no boundary.
+/// centre, as in the papers. The papers store nothing inside. There the same slope is continued
+/// through the same zero: one texel less than the distance to the nearest empty texel's centre,
+/// negative. Everything beyond the right, top and bottom borders is empty; the axis at the left is
+/// not a boundary.
 pub(super) fn distances(raster: &Raster) -> Vec<f32> {
     let form: Vec<bool> = raster.coverage.par_iter().map(|&c| c > 0.5).collect();
     let around = Surroundings {

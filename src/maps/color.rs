@@ -1,4 +1,4 @@
-//! Colour maps: 8-bit sRGB texels with mip levels that are averaged in linear light.
+//! Colour maps: 8-bit sRGB texels with mip levels averaged in linear light.
 
 use super::displacement::{Level, read_map};
 use super::halving;
@@ -9,11 +9,11 @@ use std::path::Path;
 
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
 ///
-/// Smaller levels hold the mean light of what they cover, weighted by alpha, so that what is
-/// transparent lends no colour to its neighbours.
+/// Smaller levels hold the mean light of the texels that they cover, weighted by alpha, so that
+/// transparent texels add no colour to their neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
-    /// From the full size down to 1 x 1.
+    /// Levels from the full size down to 1 x 1.
     pub levels: Vec<Level<[u8; 4]>>,
 }
 
@@ -31,7 +31,8 @@ impl ColorMap {
         read().map_err(|e: Error| e.in_file(path))
     }
 
-    /// From sRGB texels with straight (not premultiplied) alpha, row by row from the top.
+    /// Builds a map from sRGB texels with straight (not premultiplied) alpha, row by row from the
+    /// top.
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
@@ -62,7 +63,7 @@ impl ColorMap {
                 texels: texels.iter().map(from_light).collect(),
             })
             .collect();
-        // The full size stays as it was, transparent texels' colours too.
+        // The full size is stored unchanged, including the colours of transparent texels.
         levels[0].texels = texels;
         Ok(Self { levels })
     }

@@ -1,5 +1,5 @@
-//! Displacement maps: the slopes of a height map, computed once, scaled as the picture is drawn
-//! (Blinn 1978).
+//! Displacement maps: the slopes of a height map, computed once and scaled when the picture is
+//! drawn (Blinn 1978).
 
 use super::files::{encode_png, extension};
 use super::half::to_half;
@@ -11,7 +11,7 @@ use crate::pictures::decode;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// One level of a mip chain, row 0 on top.
+/// A level of a mip chain, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level<T> {
     /// Texels across.
@@ -22,26 +22,26 @@ pub struct Level<T> {
     pub texels: Vec<T>,
 }
 
-/// How slopes are taken from heights.
+/// The filter that computes slopes from heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SlopeFilter {
     /// Difference of the two neighbours: the sharpest, `[-1 0 1] / 2`.
     Central,
-    /// The same, smoothed across by `[3 10 3] / 16` (Scharr 2000), which makes all directions
-    /// alike.
+    /// Difference of the two neighbours, smoothed across by `[3 10 3] / 16` (Scharr 2000), which
+    /// treats all directions alike.
     #[default]
     Scharr,
 }
 
 /// Partial derivatives of a height map over texture coordinates, with mip levels.
 ///
-/// Heights are `H` in `[0, 1]`; a texel holds `(dH/du, dH/dv)` per unit of texture coordinate: `u`
+/// Heights are `H` in `[0, 1]`. A texel holds `(dH/du, dH/dv)` per unit of texture coordinate. `u`
 /// runs to the right over the whole width, `v` upwards over the whole height (`v = 1` is the top
 /// row). The map repeats, so differences wrap round its borders, and the sum over each level is 0.
 /// Smaller levels hold means: the slope of the smoothed heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplacementMap {
-    /// From the full size down to 1 x 1.
+    /// Levels from the full size down to 1 x 1.
     pub levels: Vec<Level<[f32; 2]>>,
 }
 
@@ -49,8 +49,8 @@ pub struct DisplacementMap {
 const ZERO: f32 = 32_768.0;
 
 impl DisplacementMap {
-    /// From an image file (PNG, JPEG): its luminance, as stored, is the height. A file that
-    /// [`DisplacementMap::save`] wrote is loaded as what it is.
+    /// Computes the slopes of an image file (PNG, JPEG); its luminance, as stored, is the height. A
+    /// file that [`DisplacementMap::save`] wrote is loaded with its slopes.
     ///
     /// # Errors
     /// [`ErrorKind::File`]: missing, damaged, no picture, larger than 16384 on a side.
@@ -58,10 +58,10 @@ impl DisplacementMap {
         Self::from_image_with(path, SlopeFilter::default())
     }
 
-    /// The same with another filter.
+    /// Computes the slopes of an image file with a given filter.
     ///
     /// # Errors
-    /// As [`DisplacementMap::from_image`].
+    /// The errors of [`DisplacementMap::from_image`].
     pub fn from_image_with(path: impl AsRef<Path>, filter: SlopeFilter) -> Result<Self> {
         let path = path.as_ref();
         let read = || {
@@ -77,7 +77,7 @@ impl DisplacementMap {
         read().map_err(|e: Error| e.in_file(path))
     }
 
-    /// From heights in `[0, 1]`, row by row from the top.
+    /// Computes the slopes of heights in `[0, 1]`, row by row from the top.
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: no texels, or not `width * height` of them, or a height that is not
@@ -153,9 +153,9 @@ impl DisplacementMap {
         ]
     }
 
-    /// Writes the full size as a 16-bit RGB PNG to look at and to load again: R, G = slope, 32768
-    /// is 0 and 1 and 65535 the largest; B = 65535. The largest slope stands in a text chunk.
-    /// Slopes come back within 1/65534 of the largest.
+    /// Writes the full size as a 16-bit RGB PNG, for viewing and for loading again. R and G hold
+    /// the slope: 32768 is 0, and 1 and 65535 are the largest. B is 65535. A text chunk holds the
+    /// largest slope. Reloaded slopes are within 1/65534 of the largest.
     ///
     /// # Errors
     /// [`ErrorKind::File`]: another extension than `.png`, or it cannot be written.
@@ -227,7 +227,7 @@ fn fault(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::File, message)
 }
 
-/// A texture's file, or what is wrong with it.
+/// A texture's file, or an error that names it.
 pub(super) fn read_map(path: &Path, what: &str) -> Result<Vec<u8>> {
     if path.is_dir() {
         return Err(fault(format!(
@@ -269,7 +269,8 @@ mod tests {
                     0.2 * TAU * 2.0 * (TAU * 2.0 * u).cos(),
                     0.1 * TAU * 3.0 * (TAU * 3.0 * v).cos(),
                 );
-                // Second order: (k h)^2 / 6 of the slope, and smoothing across as much again.
+                // The second-order error is (k h)^2 / 6 of the slope; smoothing across adds as much
+                // again.
                 assert!(
                     (du - eu).abs() < 0.01 && (dv - ev).abs() < 0.015,
                     "{filter:?} {k}"

@@ -1,15 +1,15 @@
-//! Distances measured to the outline itself.
+//! Distances to the outline itself.
 
 use super::nearest::for_each_texel;
 use super::rounding::round_down;
 use crate::profile::{Outline, Segment};
 
-/// Signed distance of each texel's centre to the outline's surface, object units, never above the
-/// true one.
+/// Signed distance of each texel's centre to the outline's surface, object units, never greater
+/// than the true distance.
 pub(super) fn distances(outline: &Outline, columns: usize, rows: usize) -> Vec<f32> {
     let segments: Vec<Segment> = outline.surface_segments().collect();
     let heights = (0..rows).map(|row| 1.0 - (row as f64 + 0.5) / rows as f64);
-    // Between an odd and the next even crossing of a row the solid lies.
+    // The solid is between an odd and the next even crossing of a row.
     let crossings = outline.crossings(heights);
     for_each_texel(&segments, columns, rows, |column, row, distance, _| {
         let r = (column as f64 + 0.5) / rows as f64;

@@ -1,4 +1,4 @@
-//! Shape maps as image files, to look at and to load again.
+//! Shape maps as image files, for viewing and for loading again.
 
 use super::binary;
 use super::header::{Header, KEYWORD, shape_header};
@@ -14,10 +14,11 @@ use crate::profile::Raster;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// How a texture is laid onto a solid. A map's file name carries it: `vase.spherical.png`.
+/// The projection that lays a texture onto a solid. A map's file name contains its projection:
+/// `vase.spherical.png`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Projection {
-    /// From above: `(x, y)` of the box.
+    /// `(x, y)` of the box, seen from above.
     Planar,
     /// Azimuth and height.
     #[default]
@@ -29,10 +30,10 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// All of them.
+    /// All projections.
     pub const ALL: [Self; 4] = [Self::Planar, Self::Cylindrical, Self::Spherical, Self::Arc];
 
-    /// As scene files and file names write it.
+    /// The name in scene files and file names.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,7 +44,7 @@ impl Projection {
         }
     }
 
-    /// The projection of that name, whatever its case.
+    /// The projection of that name; upper and lower case are equal.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -51,7 +52,7 @@ impl Projection {
             .find(|p| p.name().eq_ignore_ascii_case(name))
     }
 
-    /// The projection that a file's name carries before its extension.
+    /// The projection in a file's name before its extension.
     ///
     /// ```
     /// use revmap::maps::Projection;
@@ -64,7 +65,7 @@ impl Projection {
         Self::from_name(stem.extension()?.to_str()?)
     }
 
-    /// `path` with the projection before its extension, unless it carries one already: `vase.png`
+    /// `path` with the projection before its extension, unless it has one already: `vase.png`
     /// becomes `vase.spherical.png`.
     #[must_use]
     pub fn mark_file(self, path: impl AsRef<Path>) -> PathBuf {
@@ -86,14 +87,14 @@ fn fault(message: impl Into<String>) -> Error {
 }
 
 impl ShapeMap {
-    /// Writes the map, by the file's extension:
+    /// Writes the map in the format of the file's extension:
     ///
-    /// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), the scale and the rest in
-    ///   a text chunk;
-    /// * `.exr` (feature `exr`): without loss, 32-bit float channels `distance` (object units) and
+    /// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), with the scale and the
+    ///   other values in a text chunk;
+    /// * `.exr` (feature `exr`): lossless, 32-bit float channels `distance` (object units) and
     ///   `form` (1 solid, 0 empty).
     ///
-    /// The file appears whole or not at all.
+    /// The file is written completely or not at all.
     ///
     /// # Errors
     /// [`ErrorKind::File`]: another extension, or it cannot be written.
@@ -111,11 +112,11 @@ impl ShapeMap {
             .map_err(|e| e.in_file(path))
     }
 
-    /// Reads a map that [`ShapeMap::save`] wrote, or a papers' texture of other origin.
+    /// Reads a map that [`ShapeMap::save`] wrote, or a papers' texture from elsewhere.
     ///
-    /// An EXR file comes back bit for bit. Of a PNG file, distances outside are its bytes (rounded
-    /// down when they were written), and those inside, which the papers do not store, are measured
-    /// from its form as the source `binary` does. A PNG without our text chunk has no scale: all
+    /// An EXR file is read back bit for bit. A PNG file's distances outside are its bytes, which
+    /// were rounded down when written. The papers store none inside; these are measured from the
+    /// form as the source `binary` does. A PNG without this crate's text chunk has no scale. All
     /// its distances are measured from its form, and its box is as wide as the map.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! 16-bit floats (IEEE 754 binary16) as their bits.
 
-/// The nearest 16-bit float, ties to even; beyond the range an infinity.
+/// The nearest 16-bit float, ties to even; an infinity beyond the range.
 pub(crate) fn to_half(v: f32) -> u16 {
     let sign = (v.to_bits() >> 16) as u16 & 0x8000;
     let bits = v.to_bits() & 0x7fff_ffff;
@@ -8,7 +8,7 @@ pub(crate) fn to_half(v: f32) -> u16 {
         0x7f80_0001.. => 0x7e00, // no number
         0x477f_f000.. => 0x7c00, // half way from the largest to the next power, or more
         0x3880_0000.. => {
-            // From 2^-14: the exponent loses 112, the mantissa its last 13 bits.
+            // Magnitudes from 2^-14: the exponent loses 112, the mantissa its last 13 bits.
             let odd = (bits >> 13) & 1;
             ((bits - 0x3800_0000 + 0xfff + odd) >> 13) as u16
         }
@@ -54,7 +54,7 @@ mod tests {
     }
 
     proptest! {
-        /// No other 16-bit float is nearer, and of two that are equally near the even one is taken.
+        /// No other 16-bit float is nearer, and the even one is used of two that are equally near.
         #[test]
         fn the_nearest_is_taken(v in prop_oneof![-2.0f32..2.0, -1e-6f32..1e-6, -65_519.0f32..65_519.0]) {
             let half = to_half(v);

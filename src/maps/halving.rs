@@ -1,10 +1,10 @@
-//! Mip chains: each level is the next larger one averaged by area, down to one texel.
+//! Mip chains: each level is the area average of the next larger one, down to one texel.
 
 /// Levels from the largest down to 1 x 1, each of half the size of the one before, rounded down.
 ///
-/// A texel is the mean of what it covers; where a size is odd that is two and a bit texels of the
-/// larger level, weighted by how much of each (the box filter, exactly), so that nothing drifts
-/// from level to level.
+/// A texel is the mean of the texels that it covers in the larger level, weighted by covered area
+/// (the exact box filter). An odd size makes that slightly more than two texels across. Nothing
+/// drifts from level to level.
 pub(super) fn chain<const N: usize>(
     width: usize,
     height: usize,
@@ -22,7 +22,7 @@ pub(super) fn chain<const N: usize>(
     levels
 }
 
-/// Averages `lines` lines of `from` texels to `to` each. A line's texels stand `step` apart, and
+/// Averages `lines` lines of `from` texels to `to` each. A line's texels are `step` apart, and
 /// lines `stride` apart; the result keeps that order.
 fn shrink<const N: usize>(
     texels: &[[f32; N]],

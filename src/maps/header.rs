@@ -1,7 +1,7 @@
-//! What a map's file says of itself beside its pixels: one line of `key=value` words.
+//! The data of a map's file beside its pixels: one line of `key=value` words.
 //!
-//! It stands in a text chunk of PNG files and in a text attribute of EXR files, under [`KEYWORD`].
-//! Numbers are written so that they come back to the last bit.
+//! PNG files hold the line in a text chunk, EXR files in a text attribute, under [`KEYWORD`].
+//! Numbers are written so that reading them restores every bit.
 
 use super::{Bounds, MapSource, ShapeMap};
 use crate::error::{Error, ErrorKind, Result};
@@ -38,7 +38,7 @@ impl Header {
             .map(|c| Self::parse(&c.text))
     }
 
-    /// What kind of map the file holds: `shape` or `displacement`.
+    /// The kind of map in the file: `shape` or `displacement`.
     pub fn kind(&self) -> Option<&str> {
         self.words.get("kind").map(String::as_str)
     }

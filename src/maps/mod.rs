@@ -1,4 +1,4 @@
-//! Maps made from a profile: signed distances on a grid, and how they are stored.
+//! Maps made from a profile: signed distances on a grid, and their storage formats.
 
 pub mod accuracy;
 mod arc;
@@ -24,13 +24,14 @@ pub use store::EncodedMap;
 
 use crate::settings::name_of;
 
-/// Where distances come from.
+/// The method that measures distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MapSource {
-    /// The papers': exact Euclidean distance to the nearest solid pixel's centre of a binary image.
+    /// The papers' method: exact Euclidean distance to the nearest solid pixel's centre of a binary
+    /// image.
     Binary,
-    /// What an anti-aliased picture of the map's own size can tell: the outline is rasterised to 8
-    /// bits of coverage and traced again, and distances are measured to that.
+    /// Distance to the outline of an anti-aliased picture of the map's own size: the outline is
+    /// rasterised to 8 bits of coverage and traced again.
     Coverage,
     /// Exact distance to the outline's segments.
     #[default]
@@ -38,7 +39,7 @@ pub enum MapSource {
 }
 
 impl MapSource {
-    /// As options and files name them.
+    /// The names in options and files.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("binary", Self::Binary),
         ("coverage", Self::Coverage),
@@ -52,7 +53,7 @@ impl MapSource {
     }
 }
 
-/// How distances are stored on the GPU.
+/// The storage format of distances on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapFormat {
     /// The papers' texture: R, G gradient, B unsigned distance, A form; 8 bits each.
@@ -64,7 +65,7 @@ pub enum MapFormat {
 }
 
 impl MapFormat {
-    /// As options and results name them.
+    /// The names in options and results.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("rgba8", Self::Rgba8),
         ("r16", Self::R16),
@@ -78,23 +79,23 @@ impl MapFormat {
     }
 }
 
-/// How a shape map is baked.
+/// Options for baking a shape map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeOptions {
-    /// Where distances come from.
+    /// The method that measures distances.
     pub source: MapSource,
     /// Rows of the map: one object unit is this many texels.
     pub rows: u32,
-    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. More than
-    /// that is wanted where the solid reaches past its cylinder: polygons wider than their box,
+    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. A larger
+    /// reach is needed for solids that extend past their cylinder: polygons wider than their box,
     /// offsets, an axis off the middle.
     pub reach: f64,
 }
 
 /// Signed distances to the profile's boundary on a grid of square texels.
 ///
-/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, `h = 1 / rows`: row 0 is
-/// the top.
+/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, with `h = 1 / rows`: row
+/// 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeMap {
     /// Texels along `r`.
@@ -103,13 +104,13 @@ pub struct ShapeMap {
     pub rows: u32,
     /// `R` of the shape box, object units (the map may reach farther).
     pub radius: f64,
-    /// Where the distances came from.
+    /// The method that measured the distances.
     pub source: MapSource,
     /// Signed distance in object units, positive outside; row by row from the top.
     pub distance: Vec<f32>,
-    /// Whether the texel's centre is solid; row by row from the top.
+    /// True for texels whose centre is solid; row by row from the top.
     pub form: Vec<bool>,
-    /// What the solid occupies of the half-plane.
+    /// The part of the half-plane that the solid occupies.
     pub bounds: Bounds,
 }
 

@@ -1,33 +1,33 @@
-//! The nearest of many segments, exactly, for every texel of a grid.
+//! Finds the nearest of many segments, exactly, for every texel of a grid.
 //!
-//! Squares of the grid are halved and halved again, and each keeps only those segments that can be
-//! nearest to any of its points. Two tests throw the others out:
+//! Squares of the grid are halved repeatedly. Each square keeps only those segments that can be
+//! nearest to any of its points. Two tests reject the others:
 //!
-//! * With `m` the least distance from the square's middle to a segment and `q` half of its
-//!   diagonal, a segment farther than `m + 2 q` is nearest nowhere: both distances change by at
+//! * Let `m` be the least distance from the square's middle to a segment, and `q` half of its
+//!   diagonal. A segment farther than `m + 2 q` is nearest nowhere: both distances change by at
 //!   most `q` on the way to any point.
-//! * With `b` the point, on any segment, that is nearest to the middle, a segment is nearest
-//!   nowhere if at all four corners `b` is nearer than it: for each point `s` of the segment `|p -
-//!   s|^2 - |p - b|^2` is linear in `p`, and so least at a corner.
+//! * Let `b` be the point, on any segment, that is nearest to the middle. A segment is nearest
+//!   nowhere if `b` is nearer than it at all four corners. The reason: for each point `s` of the
+//!   segment, `|p - s|^2 - |p - b|^2` is linear in `p`, and so is least at a corner.
 //!
-//! Squares of 4 x 4 texels are left with a handful, which are all measured. No approximation is
-//! made anywhere.
+//! Squares of 4 x 4 texels keep a handful of segments, which are all measured. The result is exact,
+//! without approximation.
 
 use crate::profile::Segment;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Side of the squares that are handled independently, texels.
+/// Side of the squares that are processed independently, texels.
 const TILE: usize = 128;
-/// Side of the squares that are not halved any more, texels.
+/// Side of the squares that are not halved further, texels.
 const LEAF: usize = 4;
-/// Below this many segments halving costs more than it saves.
+/// Fewer segments than this cost more to halve than to measure.
 const FEW: usize = 3;
 
 /// Evaluates `value(column, row, distance, segment)` for every texel of a grid of `columns x rows`
-/// square texels of side `1 / rows` (texel (0, 0) at the top left, the axis at the left edge):
-/// `distance` from the texel's centre to the nearest segment in object units, `segment` its index.
-/// Without segments: `+inf` and 0.
+/// square texels of side `1 / rows`. Texel (0, 0) is at the top left, the axis at the left edge.
+/// `distance` is from the texel's centre to the nearest segment in object units, `segment` the
+/// index of that segment. Without segments they are `+inf` and 0.
 pub(crate) fn for_each_texel<T: Copy + Default + Send>(
     segments: &[Segment],
     columns: usize,
@@ -67,7 +67,7 @@ pub(crate) fn for_each_texel<T: Copy + Default + Send>(
     out
 }
 
-/// A segment in texels, y downwards, ready to be measured.
+/// A segment in texels, y downwards, prepared for measuring.
 #[derive(Clone, Copy)]
 struct Piece {
     start: DVec2,
@@ -87,7 +87,7 @@ impl Piece {
         }
     }
 
-    /// The point of it that is nearest to `p`.
+    /// The point of the segment that is nearest to `p`.
     fn nearest(&self, p: DVec2) -> DVec2 {
         let t = ((p - self.start).dot(self.along) * self.inverse).clamp(0.0, 1.0);
         self.start + self.along * t
@@ -107,11 +107,11 @@ struct Search<F> {
 }
 
 impl<F> Search<F> {
-    /// Appends to the stack those of its entries from `from` on that can be nearest within a square
-    /// of texels.
+    /// Appends to the stack those entries, from `from` on, that can be nearest within a square of
+    /// texels.
     fn narrow(&self, [x, y]: [usize; 2], side: usize, from: usize, stack: &mut Vec<u32>) {
         let middle = DVec2::new(x as f64, y as f64) + 0.5 * side as f64;
-        // Centres of texels alone are asked for, so the square ends half a texel inside its texels.
+        // Only texel centres are evaluated, so the square ends half a texel inside its texels.
         let half = 0.5 * (side as f64 - 1.0);
         let end = stack.len();
         let (mut least, mut which) = (f64::INFINITY, 0);
@@ -124,7 +124,7 @@ impl<F> Search<F> {
         if from == end {
             return;
         }
-        // The slack is for rounding alone; too many candidates are no harm.
+        // The slack covers rounding only; too many candidates do no harm.
         let reach = (least.sqrt() + 2.0 * half * std::f64::consts::SQRT_2) * (1.0 + 1e-12) + 1e-9;
         let near = self.pieces[which as usize].nearest(middle);
         let corners = [(-half, -half), (half, -half), (-half, half), (half, half)]
@@ -144,7 +144,7 @@ impl<F> Search<F> {
         }
     }
 
-    /// Deals the segments out to the tiles.
+    /// Distributes the segments among the tiles.
     fn deal(
         &self,
         x: usize,

@@ -1,4 +1,4 @@
-//! Rounding that never lets a stored distance exceed the true one.
+//! Rounding that never makes a stored distance exceed the true one.
 
 use super::half::{from_half, to_half};
 
@@ -13,8 +13,8 @@ pub fn round_down(v: f64) -> f32 {
     }
 }
 
-/// The bits of the largest 16-bit float that is not above `v`; what lies beyond the range becomes
-/// its largest or `-inf`.
+/// The bits of the largest 16-bit float that is not above `v`. Values beyond the range become the
+/// largest float or `-inf`.
 #[must_use]
 pub fn round_down_half(v: f32) -> u16 {
     let nearest = to_half(v);

@@ -1,4 +1,4 @@
-//! Baking a shape map, and reading it as the shaders do.
+//! Bakes a shape map, and samples it as the shaders do.
 
 use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, exact};
 use crate::error::{Error, ErrorKind, Result};
@@ -8,7 +8,7 @@ use glam::DVec2;
 use std::borrow::Cow;
 
 impl BakeOptions {
-    /// Baking with `rows` rows over the profile's own box.
+    /// Options for `rows` rows over the profile's own box.
     #[must_use]
     pub fn new(source: MapSource, rows: u32) -> Self {
         Self {
@@ -23,12 +23,12 @@ impl ShapeMap {
     /// Measures the signed distances to a profile's boundary on a grid of `options.rows` rows.
     ///
     /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The
-    /// axis is no boundary.
+    /// axis is not a boundary.
     ///
-    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid
-    ///   where more than half of it is covered: by the picture's pixels, if the profile has them,
-    ///   else by the outline.
-    /// * [`MapSource::Coverage`]: to the outline as an 8-bit picture of the map's size tells it.
+    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid if
+    ///   more than half of it is covered: by the picture's pixels if the profile has them,
+    ///   otherwise by the outline.
+    /// * [`MapSource::Coverage`]: to the outline traced from an 8-bit picture of the map's size.
     /// * [`MapSource::Exact`]: to the outline's segments.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl ShapeMap {
                 "the map cannot reach to {reach}; give a finite radius"
             )));
         }
-        // A hair less, so that a radius of columns / rows is not rounded up to one column more.
+        // Slightly less, so that a radius of columns / rows is not rounded up to one more column.
         let wanted = (reach.max(profile.radius) * f64::from(rows) - 1e-6)
             .ceil()
             .max(2.0);
@@ -100,7 +100,7 @@ impl ShapeMap {
         1.0 / f64::from(self.rows)
     }
 
-    /// How far the map covers the half-plane: `0 <= r <= reach`.
+    /// Largest `r` that the map covers: `0 <= r <= reach`.
     #[must_use]
     pub fn reach(&self) -> f64 {
         f64::from(self.columns) / f64::from(self.rows)
@@ -109,9 +109,10 @@ impl ShapeMap {
     /// The signed distance at `(r, z)`, object units: bilinear between texels, as the shaders read
     /// it.
     ///
-    /// Outside the map, with `c` the nearest point of its rectangle and `l` the distance there:
-    /// `sqrt(d(c)^2 + l^2)`, which never exceeds the distance to a solid that stays within the
-    /// rectangle; where `d(c)` is negative, `d(c) + l`. Negative `r` is the mirrored half.
+    /// Outside the map, let `c` be the nearest point of its rectangle and `l` the distance to it.
+    /// The result is `sqrt(d(c)^2 + l^2)`, which never exceeds the distance to a solid within the
+    /// rectangle. If `d(c)` is negative, the result is `d(c) + l`. Negative `r` is the mirrored
+    /// half.
     #[must_use]
     pub fn distance_at(&self, r: f64, z: f64) -> f64 {
         let p = DVec2::new(r.abs(), z);
@@ -121,9 +122,9 @@ impl ShapeMap {
         if d > 0.0 { d.hypot(beyond) } else { d + beyond }
     }
 
-    /// The derivative `(dD/dr, dD/dz)` of the bilinear cell that `(r, z)` lies in: not normalised;
-    /// of length 1 where the distances around are exact and the nearest point of the surface is the
-    /// same.
+    /// The derivative `(dD/dr, dD/dz)` of the bilinear cell that contains `(r, z)`, not normalised.
+    /// Its length is 1 if the distances around are exact and have the same nearest point of the
+    /// surface.
     #[must_use]
     pub fn gradient_at(&self, r: f64, z: f64) -> [f64; 2] {
         let (cell, x, y) = self.cell(r, z);
@@ -140,8 +141,8 @@ impl ShapeMap {
         mix(mix(a, b, x), mix(c, d, x), y)
     }
 
-    /// The four texels around a point (`[row][column]`) and its place between them; texels beyond
-    /// the border repeat.
+    /// The four texels around a point (`[row][column]`) and the point's position between them;
+    /// texels beyond the border repeat.
     fn cell(&self, r: f64, z: f64) -> ([[f64; 2]; 2], f64, f64) {
         let side = f64::from(self.rows);
         let (u, v) = (r * side - 0.5, (1.0 - z) * side - 0.5);

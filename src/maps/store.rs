@@ -12,17 +12,17 @@ use super::{MapFormat, ShapeMap};
 /// | [`MapFormat::R16`] | `R16_SFLOAT`, signed | as stored (`scale` = 1) |
 /// | [`MapFormat::R32`] | `R32_SFLOAT`, signed | as stored (`scale` = 1) |
 ///
-/// A stored distance, read back as the table says, never exceeds the map's; of rgba8 that holds for
-/// distances that are not negative, the others are stored as 0.
+/// A stored distance, read back as the fields below define, never exceeds the map's. The format
+/// rgba8 guarantees this only for distances that are not negative; it stores the others as 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodedMap {
     /// Texels along `r`.
     pub columns: u32,
     /// Texels along `z`; row 0 is the top.
     pub rows: u32,
-    /// How to read the bytes.
+    /// The format of the bytes.
     pub format: MapFormat,
-    /// Object units that a stored 1 means.
+    /// Object units that a stored 1 represents.
     pub scale: f32,
     /// The texels.
     pub bytes: Vec<u8>,
@@ -78,8 +78,8 @@ impl ShapeMap {
         }
     }
 
-    /// The largest distance in the map, object units: the papers' scale, in which their extension
-    /// and bevel are given.
+    /// The largest distance in the map, object units. The papers give extension and bevel in this
+    /// scale.
     #[must_use]
     pub fn largest_distance(&self) -> f32 {
         self.distance
@@ -91,7 +91,7 @@ impl ShapeMap {
 
     fn encode_rgba8(&self) -> (f32, Vec<u8>) {
         let largest = self.largest_distance();
-        // A map without any empty texel stores zeros, whatever the scale.
+        // A map without any empty texel stores zeros for every scale.
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let gradients = self.gradients();
         let bytes = self
@@ -134,7 +134,7 @@ impl ShapeMap {
                     j.saturating_sub(1),
                     (j + 1).min(rows - 1),
                 );
-                // Left of the first texel stands its own mirror image, one texel away.
+                // The map is mirrored left of the first texel, one texel away.
                 let (i0, across) = if i == 0 { (0, 2) } else { (i - 1, i1 + 1 - i) };
                 let gr = slope(at(i0, j), at(i1, j), across);
                 let gz = slope(at(i, j1), at(i, j0), j1 - j0);
@@ -158,7 +158,8 @@ fn pack_distance(d: f32, scale: f32) -> u8 {
     byte
 }
 
-/// What a byte of the channel B means, as a shader computes it from the normalised value.
+/// The distance that a byte of the channel B represents, as a shader computes it from the
+/// normalised value.
 pub(super) fn unpack_distance(byte: u8, scale: f32) -> f32 {
     f32::from(byte) / 255.0 * scale
 }

@@ -1,34 +1,34 @@
-//! The exact Euclidean distance transform of a two-valued grid, in linear time.
+//! The exact Euclidean distance transform of a binary grid, in linear time.
 //!
-//! Each cell gets the squared distance between its centre and the nearest centre of the other
-//! value. Along rows that is counting; down columns it is the lower envelope of parabolas
-//! (Felzenszwalb & Huttenlocher 2012; Meijster, Roerdink & Hesselink 2000), found in integers
-//! without a division. Both signs come out of one pass: within a run of equal cells of a column
-//! nothing beyond the run's two ends can be nearest, because there the other value begins at
-//! distance 0.
+//! The result for each cell is the squared distance between its centre and the nearest centre of
+//! the other value. Distances along rows are counted. Distances down columns are the lower envelope
+//! of parabolas (Felzenszwalb & Huttenlocher 2012; Meijster, Roerdink & Hesselink 2000), computed
+//! in integers without a division. One pass gives both signs. Within a run of equal cells of a
+//! column, nothing beyond the run's two ends can be nearest, because the other value begins there
+//! at distance 0.
 
 use rayon::prelude::*;
 
-/// What lies beyond the grid's borders: cells of value `false`, or nothing that counts.
+/// Content beyond the grid's borders: cells of value `false`, or nothing that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Surroundings {
-    /// Beyond the left border there is `false`.
+    /// `false` continues beyond the left border.
     pub left: bool,
-    /// Beyond the other three borders there is `false`.
+    /// `false` continues beyond the other three borders.
     pub others: bool,
 }
 
-/// The result where there is no cell of the other value at all.
+/// The result for a grid without any cell of the other value.
 pub const NONE: u32 = u32::MAX;
 
-/// Columns handled together: one cache line of distances per row.
+/// Columns processed together: one cache line of distances per row.
 const STRIP: usize = 16;
 
-/// For each cell of `form` (row by row, `columns` to the row) the squared distance, in cells, from
-/// its centre to the centre of the nearest cell of the other value; [`NONE`] where there is none.
+/// The squared distance, in cells, from the centre of each cell of `form` (row by row, `columns` to
+/// the row) to the centre of the nearest cell of the other value. [`NONE`] if no such cell exists.
 ///
-/// Exact for grids up to 32768 cells on a side. The same for any number of threads. An incomplete
-/// last row is left out.
+/// The result is exact for grids up to 32768 cells on a side. Any number of threads gives the same
+/// result. An incomplete last row is left out.
 #[must_use]
 pub fn squared_to_other(form: &[bool], columns: usize, around: Surroundings) -> Vec<u32> {
     if columns == 0 {
@@ -68,7 +68,7 @@ pub fn squared_to_other(form: &[bool], columns: usize, around: Surroundings) -> 
     along_rows
 }
 
-/// Distance along the row to the nearest cell of the other value, [`NONE`] where the row has none.
+/// Distance along the row to the nearest cell of the other value; [`NONE`] if the row has none.
 fn count_along_row(line: &[bool], around: Surroundings, out: &mut [u32]) {
     let mut start = 0;
     while start < line.len() {
@@ -138,12 +138,12 @@ impl Envelope {
         }
     }
 
-    /// Adds a parabola right of all others, and drops those that it leaves nowhere the lowest.
+    /// Adds a parabola right of all others, and drops those that are now nowhere the lowest.
     fn push(&mut self, at: i64, height: i64) {
         while let [.., a0, a1] = self.at[..] {
             let [.., h0, h1] = self.height[..] else { break };
-            // Twice where neighbours cross, as fractions: the middle one is nowhere the lowest if
-            // it meets the new one no later than it met the one before.
+            // Twice the positions at which neighbours cross, as fractions. The middle one is
+            // nowhere the lowest if it crosses the new one no later than the one before.
             let (n0, d0) = (h1 + a1 * a1 - h0 - a0 * a0, a1 - a0);
             let (n1, d1) = (height + at * at - h1 - a1 * a1, at - a1);
             if n1 * d0 > n0 * d1 {
@@ -196,7 +196,7 @@ mod tests {
             if inside {
                 Some(form[y as usize * columns + x as usize])
             } else if x < 0 {
-                // Corners beyond the left belong to the left.
+                // Corners beyond the left border have the left border's value.
                 around.left.then_some(false)
             } else {
                 around.others.then_some(false)
@@ -234,7 +234,7 @@ mod tests {
             prop_assert_eq!(squared_to_other(&form, columns, around), brute_force(&form, columns, around));
         }
 
-        /// Of a few solid pixels in a large picture the nearest is looked for among them all.
+        /// The reference result searches all of a few solid pixels in a large picture.
         #[test]
         fn the_nearest_of_a_few_spots_is_found(
             columns in 2usize..60,

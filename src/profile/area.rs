@@ -1,17 +1,17 @@
-//! Exact coverage: which part of each pixel of a grid lies inside an outline.
+//! Exact coverage: the part of each pixel of a grid that is inside an outline.
 //!
-//! By Green's theorem the covered area of a pixel is a sum over the boundary's pieces alone. Each
-//! segment, cut at the rows and columns it passes, adds to its own pixel the area between itself
-//! and the pixel's right border, and to all pixels farther right its whole height; a running sum
-//! along the row completes them. Exact up to rounding, and its cost is that of the boundary plus
-//! one pass over the pixels.
+//! Green's theorem turns the covered area of a pixel into a sum over the pieces of the boundary.
+//! Each segment is cut at the rows and columns that it passes. A piece adds to its own pixel the
+//! area between itself and the pixel's right border, and its whole height to all pixels farther
+//! right. A running sum along the row completes them. The result is exact up to rounding. The cost
+//! is that of the boundary plus one pass over the pixels.
 
 use super::{Outline, Raster};
 use rayon::prelude::*;
 
 impl Outline {
-    /// Coverage on a grid of `columns x rows` square pixels of side `1 / rows`, the axis at its
-    /// left edge, `z = 1` at its top; parts of the outline beyond the grid are cut off.
+    /// Coverage on a grid of `columns x rows` square pixels of side `1 / rows`, with the axis at
+    /// its left edge and `z = 1` at its top. Parts of the outline beyond the grid are cut off.
     #[must_use]
     pub fn rasterize(&self, columns: u32, rows: u32) -> Raster {
         let (width, height) = (columns as usize, rows as usize);
@@ -64,11 +64,11 @@ impl Outline {
     }
 }
 
-/// Adds the part of a segment that lies in the row `[top, top + 1]` to the row's differences.
+/// Adds the part of a segment inside the row `[top, top + 1]` to the row's differences.
 fn add_segment(sums: &mut [f64], [x0, y0, x1, y1]: [f64; 4], top: f64) {
-    // The solid lies left of the direction of travel in (r, z): with y downwards a segment that
-    // rises (y falls) has the solid to its left side in the picture, so what is right of it loses
-    // coverage.
+    // The solid is left of the direction of travel in (r, z). In pixels y points downwards, so a
+    // segment that rises (y falls) has the solid at its left in the picture. The pixels right of it
+    // lose coverage.
     let (sign, [xa, ya, xb, yb]) = if y1 > y0 {
         (1.0, [x0, y0, x1, y1])
     } else {
@@ -106,8 +106,8 @@ fn add_segment(sums: &mut [f64], [x0, y0, x1, y1]: [f64; 4], top: f64) {
     }
 }
 
-/// A piece of height `height` between `x0` and `x1` of one column: its own pixel gets the trapezoid
-/// right of it, the next one the rest.
+/// Adds a piece of height `height` between `x0` and `x1` of one column: its own pixel gets the
+/// trapezoid right of it, the next pixel the rest.
 fn spread(sums: &mut [f64], x0: f64, x1: f64, height: f64) {
     let column = (x0.floor() as usize).min(sums.len() - 2);
     let right_part = 1.0 - (0.5 * (x0 + x1) - column as f64);

@@ -1,11 +1,11 @@
-//! Profiles from SVG drawings: what shows dark is solid, exactly along the drawn curves.
+//! Profiles from SVG drawings: everything dark is solid, exactly along the drawn curves.
 //!
-//! Every fill and stroke becomes a region of the plane (curves flattened within 1e-5 of the
-//! drawing's height) and is laid over what was painted before; what shows darker than one half over
-//! white is the solid. Groups, `use`, transforms, opacity, clip paths, dashes, caps and joins
-//! count. A gradient stands for the mean of its stops, as long as these look all dark or all light.
-//! Text, pictures, patterns, masks, filters and blend modes have no outline here and are refused by
-//! name.
+//! Every fill and stroke becomes a region of the plane, with curves flattened within 1e-5 of the
+//! drawing's height. Regions are laid over those painted before. The solid is everything darker
+//! than one half over white. Groups, `use`, transforms, opacity, clip paths, dashes, caps and joins
+//! count. A gradient counts as the mean of its stops, provided that these are all dark or all
+//! light. Text, pictures, patterns, masks, filters and blend modes have no outline here and are
+//! refused by name.
 
 use super::faults::{empty_fault, full_fault};
 use super::outline::area;
@@ -76,8 +76,8 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     Ok(Profile::new(outline, radius))
 }
 
-/// Leaves out loops thinner than the flattening can tell: where shapes abut, rounding leaves cracks
-/// and specks between them, and each would be a surface.
+/// Drops loops thinner than the flattening tolerance. Rounding leaves cracks and specks between
+/// abutting shapes, and each would become a surface.
 fn without_slivers(mut outline: Outline) -> Outline {
     outline.loops.retain(|points| {
         let next = points.iter().cycle().skip(1);
@@ -87,23 +87,23 @@ fn without_slivers(mut outline: Outline) -> Outline {
     outline
 }
 
-/// Whether a colour shows darker than one half over white.
+/// Returns true for a colour darker than one half over white.
 fn is_dark(color: Rgba) -> bool {
     let [r, g, b, _] = over(color, [1.0; 4]);
     luminance([r, g, b]) < 0.5
 }
 
-/// Where things are drawn: the right half of the viewport, on the integer grid.
+/// The drawing area: the right half of the viewport, on the integer grid.
 struct Canvas {
     radius: f64,
     grid: Grid,
-    /// All paint is opaque: then only dark and light need be told apart.
+    /// All paint is opaque, so dark and light are the only two colours needed.
     two_tone: bool,
 }
 
 impl Canvas {
-    /// Paints a group's children onto the layer, `to_profile` taking the group's coordinates to
-    /// `(r, z)`. Returns how many fills and strokes there were.
+    /// Paints a group's children onto the layer. `to_profile` maps the group's coordinates to `(r,
+    /// z)`. Returns the number of fills and strokes.
     fn draw_children(
         &self,
         group: &usvg::Group,
@@ -177,7 +177,7 @@ impl Canvas {
         }
         if let Some(stroke) = path.stroke() {
             let color = self.color(stroke.paint(), stroke.opacity().get())?;
-            // Half of the tolerance for the stroke's outline, half for its flattening.
+            // Half of the tolerance is for the stroke's outline, half for its flattening.
             let tolerance = 0.5 * FLATNESS / magnification(to_profile);
             check_dashes(&curve, stroke)?;
             let band = kurbo::stroke(
@@ -235,7 +235,7 @@ impl Canvas {
         Ok(Region::enclosed(&contours, Rule::NonZero))
     }
 
-    /// What a path encloses of the viewport's right half.
+    /// The region of the viewport's right half that a path encloses.
     fn enclosed(&self, path: &BezPath, to_profile: Affine, flatness: f64, rule: Rule) -> Region {
         let mut contours: Vec<Contour> = Vec::new();
         let mut points: Vec<DVec2> = Vec::new();
@@ -257,7 +257,7 @@ impl Canvas {
         Region::enclosed(&contours, rule)
     }
 
-    /// What a paint looks like, premultiplied.
+    /// The colour of a paint, premultiplied.
     fn color(&self, paint: &usvg::Paint, opacity: f32) -> Result<Rgba> {
         let plain = |c: usvg::Color, a: f32| {
             [c.red, c.green, c.blue]
@@ -297,8 +297,8 @@ impl Canvas {
     }
 }
 
-/// Refuses curves so large that flattening them would take all memory; what is seen of them is next
-/// to nothing.
+/// Refuses curves so large that flattening them would use up all memory; next to nothing of them is
+/// visible.
 fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
     let b = (to_profile * curve.clone()).control_box();
     let reach = b.x0.abs().max(b.x1.abs()).max(b.y0.abs()).max(b.y1.abs());
@@ -310,7 +310,7 @@ fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
     )))
 }
 
-/// Refuses strokes of more dashes than anybody sees.
+/// Refuses strokes with more dashes than can be seen.
 fn check_dashes(curve: &BezPath, stroke: &usvg::Stroke) -> Result<()> {
     const MOST: f64 = 1e5;
     let Some(dashes) = stroke.dasharray() else {

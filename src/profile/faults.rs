@@ -1,4 +1,4 @@
-//! What pictures and drawings fail with, and what to do about it.
+//! Errors of pictures and drawings, each with its remedy.
 
 use crate::error::{Error, ErrorKind};
 

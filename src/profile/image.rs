@@ -1,4 +1,4 @@
-//! Profiles from pictures: what is dark is solid.
+//! Profiles from pictures: dark is solid.
 
 use super::faults::full_fault;
 use super::{Profile, ProfileAxis, ProfileOptions, Raster, reading, trace};
@@ -9,11 +9,11 @@ use rayon::prelude::*;
 
 /// A profile from the bytes of a PNG or JPEG.
 ///
-/// The picture is laid over white in its own (sRGB) values; a pixel's coverage is how dark it then
-/// is, and what is darker than one half is solid. Width and height are read and checked before
-/// anything is decoded.
+/// The picture is laid over white in its own (sRGB) values. A pixel's coverage is its darkness, and
+/// everything darker than one half is solid. Width and height are read and checked before anything
+/// is decoded.
 ///
-/// The papers' RGBA texture that this crate wrote is taken for what it is: its channel A is the
+/// The papers' RGBA texture, if this crate wrote it, is read as a shape map: its channel A is the
 /// form, its axis the left edge.
 pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
@@ -48,8 +48,8 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
     })
 }
 
-/// How dark each pixel is over white, in `[0, 1]`, as a raster of the whole picture; `invert`: how
-/// light over black.
+/// Darkness of each pixel over white, in `[0, 1]`, as a raster of the whole picture; with `invert`,
+/// lightness over black.
 fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
     let picture = decode(bytes, "PNG, JPEG or SVG")?;
     let (width, height) = (picture.width, picture.height);
@@ -68,7 +68,7 @@ fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
     })
 }
 
-/// Darkness over white from the pixels of any kind of picture; `invert`: lightness over black.
+/// Darkness over white from the pixels of any kind of picture; with `invert`, lightness over black.
 fn darkness(picture: &Pixels, invert: bool) -> Vec<f32> {
     match &picture.samples {
         Samples::Byte(v) => solid(v, picture.channels, 255.0, invert),
@@ -96,8 +96,8 @@ fn solid<T: Copy + Into<f32> + Sync>(
     values.par_chunks_exact(channels).map(part).collect()
 }
 
-/// The part of the picture right of the axis. With the axis in the middle of an odd width, the
-/// first column is the one that the axis splits.
+/// The part of the picture right of the axis. If the axis is the middle of an odd width, the first
+/// column is the one that the axis splits.
 fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
     if axis == ProfileAxis::Left {
         return dark;
@@ -132,7 +132,7 @@ mod tests {
         profile(bytes, &axis.into()).unwrap().raster.unwrap()
     }
 
-    /// A picture with a known darkness per pixel, in every kind of pixel that PNG knows.
+    /// The same darkness per pixel in every kind of pixel that PNG has.
     #[test]
     fn kinds_of_pixels_agree() {
         let dark = |x: u32, y: u32| if x < 2 && y > 0 { 1.0f32 } else { 0.2 };
@@ -157,7 +157,7 @@ mod tests {
                 assert!((a - b).abs() < 1e-6);
             }
         }
-        // Black, opaque as the coverage: the same picture once it lies on white.
+        // Black whose opacity is the coverage: the same picture after it is laid over white.
         let alpha = RgbaImage::from_fn(4, 4, |x, y| {
             Rgba([0, 0, 0, (255.0 * dark(x, y)).round() as u8])
         });
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn one_bit_and_palette() {
-        // Written by hand, since the image crate writes neither.
+        // Written byte by byte, since the image crate writes neither.
         let write = |depth, color, palette: Option<Vec<u8>>, data: &[u8]| {
             let mut out = Vec::new();
             let mut e = png::Encoder::new(&mut out, 8, 2);
@@ -216,7 +216,7 @@ mod tests {
         });
         let p = profile(&png(odd), &ProfileAxis::Center.into()).unwrap();
         assert!((p.radius - 5.0 / 6.0).abs() < 1e-15);
-        // One column and a half, two rows from the floor.
+        // The solid is one column and a half wide and two rows high.
         assert_eq!(p.raster, None);
         let b = p.outline.bounds().unwrap();
         let found = [b.r_min, b.r_max, b.z_min, b.z_max];
@@ -240,7 +240,7 @@ mod tests {
         assert!(text(&whole[..whole.len() / 2]).contains("damaged"));
         assert!(text(&whole[..20]).contains("damaged"));
         assert!(text(b"BM not a picture").contains("PNG, JPEG or SVG"));
-        // The header alone of 20000 x 20000: refused without decoding anything.
+        // A header of 20000 x 20000 without pixels: refused without decoding anything.
         let mut huge = whole[..33].to_vec();
         huge[16..20].copy_from_slice(&20_000u32.to_be_bytes());
         huge[20..24].copy_from_slice(&20_000u32.to_be_bytes());

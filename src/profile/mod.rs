@@ -1,9 +1,9 @@
 //! A **profile**: the solid region of the meridian half-plane that is turned about the axis.
 //!
-//! Coordinates are `(r, z)` in object units: the axis is `r = 0`, the shape box reaches from `z =
-//! 0` to `z = 1` and to the radius `R`. A profile comes from a picture, a drawing or a polygon. It
-//! becomes one [`Outline`], and all that follows (maps, arc lengths, surfaces, meshes, the
-//! reference) reads this outline.
+//! Coordinates are `(r, z)` in object units. The axis is `r = 0`; the shape box extends from `z =
+//! 0` to `z = 1` and to the radius `R`. A profile comes from a picture, a drawing or a polygon.
+//! Every profile holds one [`Outline`]. Maps, arc lengths, surfaces, meshes and the reference are
+//! all computed from this outline.
 
 mod area;
 #[cfg(feature = "drawing")]
@@ -29,29 +29,29 @@ use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 use std::path::Path;
 
-/// Which part of the picture is the half-plane.
+/// The part of the picture that is the half-plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ProfileAxis {
     /// The axis is the left edge: the picture is a half profile.
     Left,
-    /// The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+    /// The axis is the middle: the picture is a whole silhouette, and its right half is used.
     #[default]
     Center,
 }
 
 /// The solid's boundary as closed chains of straight segments.
 ///
-/// The loops do not cross; the solid lies to the **left** of every segment (outer loops run
-/// counter-clockwise in `(r, z)`, holes clockwise). All points have `r >= 0`. Segments along `r =
-/// 0` close a loop on the axis; they lie inside the turned solid and are no part of its surface
-/// (see [`Outline::surface_segments`]).
+/// The loops do not cross. The solid is on the **left** of every segment: outer loops run
+/// counter-clockwise in `(r, z)`, holes clockwise. All points have `r >= 0`. Segments along `r = 0`
+/// close a loop on the axis. They are inside the turned solid and not part of its surface (see
+/// [`Outline::surface_segments`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// Closed loops; the last point joins the first.
     pub loops: Vec<Vec<DVec2>>,
 }
 
-/// How much of each pixel is solid.
+/// Solid fraction of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
     /// Pixels along `r`; the axis is the left edge of column 0.
@@ -73,7 +73,8 @@ pub struct Profile {
     /// `None` for drawings and polygons, and for pictures whose axis is the middle of a column of
     /// pixels.
     pub raster: Option<Raster>,
-    /// What about the picture looks unintended: a sentence each, with the key that mends it.
+    /// Features of the picture that look unintended: one sentence each, with the key that changes
+    /// it.
     pub warnings: Vec<String>,
 }
 
@@ -82,26 +83,27 @@ impl Profile {
     /// gzip-compressed).
     ///
     /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the
-    /// bottom edge `z = 0`. Solid is what is darker than one half over white, unless the options
+    /// bottom edge `z = 0`. Everything darker than one half over white is solid, unless the options
     /// say otherwise. Pictures are traced as by [`Profile::traced`]. The curves of drawings are
-    /// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, half
-    /// of that with it in the middle.
+    /// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, and
+    /// half of that with the axis in the middle.
     ///
     /// # Errors
     /// [`ErrorKind::File`] for a file that is missing, a folder, damaged, or neither picture nor
-    /// drawing; [`ErrorKind::Content`] for a picture of more than 16384 or less than 2 pixels on a
-    /// side, all light or all dark, or a drawing with what has no outline (text, pictures,
-    /// patterns, masks, filters). Both with the file.
+    /// drawing. [`ErrorKind::Content`] for a picture of more than 16384 or less than 2 pixels on a
+    /// side, all light or all dark, or a drawing with parts that have no outline (text, pictures,
+    /// patterns, masks, filters). The error names the file in both cases.
     pub fn load(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Self> {
         let (path, options) = (path.as_ref(), options.into());
         let read = || Self::from_bytes(&read_file(path)?, options);
         read().map_err(|e| e.in_file(path))
     }
 
-    /// As [`Profile::load`], of a file's content: what a program carries within itself.
+    /// Reads a profile from the bytes of a file, such as one embedded in the program; otherwise
+    /// like [`Profile::load`].
     ///
     /// # Errors
-    /// As `load`, naming no file.
+    /// The errors of `load`, without a file name.
     pub fn from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Self> {
         let options = options.into();
         options.check()?;
@@ -115,9 +117,9 @@ impl Profile {
     /// A profile from a closed polygon of `[r, z]` points, object units, `radius` being the `R` of
     /// its box.
     ///
-    /// The last point joins the first; either way round will do. Where the polygon crosses or
-    /// covers itself, the solid is all that it winds round (non-zero rule). It may reach past its
-    /// box; drawing cuts it there.
+    /// The last point joins the first; both directions of travel are accepted. If the polygon
+    /// crosses or covers itself, the solid is everything that it winds round (non-zero rule). The
+    /// polygon may extend past its box; drawing cuts it there.
     ///
     /// ```
     /// let cone = revmap::profile::Profile::polygon(&[[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]], 0.5)?;
@@ -126,15 +128,15 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ErrorKind::Content`], with the key `polygon` or `radius`: fewer than 3 points, a
-    /// coordinate that is not finite or beyond 10,000, a point with `r < 0`, no area, a radius that
-    /// is not positive.
+    /// [`ErrorKind::Content`], with the key `polygon` or `radius`, for fewer than 3 points, a
+    /// coordinate that is not finite or beyond 10,000, a point with `r < 0`, no area, or a radius
+    /// that is not positive.
     pub fn polygon(points: &[[f64; 2]], radius: f64) -> Result<Self> {
         polygon::profile(points, radius)
     }
 
-    /// A profile with a known outline. The loops are taken as they are: see [`Outline`] for what
-    /// they must be.
+    /// A profile with a known outline. The loops are used unchanged; [`Outline`] lists their
+    /// requirements.
     #[must_use]
     pub fn new(outline: Outline, radius: f64) -> Self {
         Self {
@@ -147,9 +149,9 @@ impl Profile {
 
     /// A profile from the right half of a picture, `R` = columns / rows.
     ///
-    /// The outline is the curve that the pixels tell: where coverage passes one half, freed from
-    /// the noise of the pixels, corners found again. It stays within the picture. Beyond the
-    /// picture's upper, lower and right border all is empty.
+    /// The outline is the curve at which coverage passes one half. Pixel noise is removed and
+    /// corners are restored. The outline stays within the picture. Everything beyond the picture's
+    /// upper, lower and right border is empty.
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: no pixel is more than half covered, or the list of coverages has not
@@ -159,7 +161,7 @@ impl Profile {
     }
 }
 
-/// A file's bytes, or what is wrong with it.
+/// A file's bytes, or an error that names the file.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
     let fault = |message: String| Error::new(ErrorKind::File, message);
     if path.is_dir() {
@@ -175,7 +177,7 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
     })
 }
 
-/// Whether the bytes are XML, after blanks and a byte order mark, or gzip.
+/// Returns true if the bytes are XML, after blanks and a byte order mark, or gzip.
 fn is_drawing(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let first = text.iter().find(|b| !b.is_ascii_whitespace());

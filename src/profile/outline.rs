@@ -1,20 +1,20 @@
-//! What an [`Outline`] can tell: bounds, inside, exact distances and gradients.
+//! Queries of an [`Outline`]: bounds, inside, exact distances and gradients.
 
 use super::Outline;
 use crate::maps::Bounds;
 use glam::DVec2;
 
-/// A straight piece of a boundary, from `a` to `b`, solid on its left.
+/// A straight piece of a boundary from `a` to `b`, with the solid on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it starts, `(r, z)` in object units.
+    /// The start, `(r, z)` in object units.
     pub a: DVec2,
-    /// Where it ends.
+    /// The end, `(r, z)` in object units.
     pub b: DVec2,
 }
 
 impl Segment {
-    /// The point of the segment nearest to `p`, and where it lies between `a` (0) and `b` (1).
+    /// The point of the segment nearest to `p`, and its position between `a` (0) and `b` (1).
     #[must_use]
     pub fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         let along = self.b - self.a;
@@ -39,7 +39,7 @@ pub(super) fn area(points: &[DVec2]) -> f64 {
 }
 
 impl Outline {
-    /// All segments, those along the axis too.
+    /// All segments, including those along the axis.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         self.loops.iter().flat_map(|points| {
             let next = points.iter().cycle().skip(1);
@@ -52,13 +52,13 @@ impl Outline {
         self.segments().filter(|s| s.a.x > 0.0 || s.b.x > 0.0)
     }
 
-    /// Enclosed area of the half-plane, holes taken off.
+    /// Enclosed area of the half-plane, without holes.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.loops.iter().map(|points| area(points)).sum()
     }
 
-    /// The rectangle that the solid occupies; `None` of an empty outline.
+    /// The rectangle that the solid occupies; `None` for an empty outline.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         let mut points = self.loops.iter().flatten();
@@ -72,7 +72,7 @@ impl Outline {
         })
     }
 
-    /// Whether `p = (r, z)` is solid (even number of crossings to its right: not).
+    /// Returns true if `p = (r, z)` is solid: an odd number of crossings is to its right.
     #[must_use]
     pub fn contains(&self, p: DVec2) -> bool {
         self.segments()
@@ -93,7 +93,7 @@ impl Outline {
     /// Exact signed Euclidean distance of `p = (r, z)`, `r >= 0`, to the surface, object units,
     /// positive outside.
     ///
-    /// The axis is no boundary. The mirrored half needs no look: with `r >= 0` a point of the
+    /// The axis is not a boundary. The mirrored half is not searched: with `r >= 0` a point of the
     /// surface is never farther than its mirror image. `+inf` when there is no surface.
     #[must_use]
     pub fn signed_distance(&self, p: DVec2) -> f64 {
@@ -104,8 +104,8 @@ impl Outline {
     /// Unit gradient of the signed distance at `p`: away from the surface outside, towards it
     /// inside.
     ///
-    /// On the surface itself, where the difference vanishes, it is the outward normal of the
-    /// segment that `p` lies on. `(0, 0)` when there is no surface.
+    /// For `p` on the surface the difference vanishes; the gradient is then the outward normal of
+    /// that segment. `(0, 0)` when there is no surface.
     #[must_use]
     pub fn gradient(&self, p: DVec2) -> DVec2 {
         let nearest = self.surface_segments().min_by(|x, y| {
@@ -116,7 +116,7 @@ impl Outline {
             return DVec2::ZERO;
         };
         let away = p - segment.nearest(p).0;
-        // Below this the direction of the difference is rounding noise.
+        // The direction of a shorter difference is rounding noise.
         if away.length_squared() < 1e-24 {
             return -(segment.b - segment.a).perp().normalize_or_zero();
         }
@@ -124,8 +124,9 @@ impl Outline {
         if self.contains(p) { -unit } else { unit }
     }
 
-    /// For each height of `heights`, the radii at which a horizontal line crosses the boundary,
-    /// ascending: between the first and the second the line is inside, and so on.
+    /// The radii at which a horizontal line crosses the boundary, ascending, for each height of
+    /// `heights`. The line is inside between the first and the second, between the third and the
+    /// fourth, and so on.
     #[must_use]
     pub fn crossings(&self, heights: impl ExactSizeIterator<Item = f64> + Clone) -> Vec<Vec<f64>> {
         let mut rows = vec![Vec::new(); heights.len()];
@@ -147,8 +148,8 @@ impl Outline {
     }
 }
 
-/// Where a segment crosses the height `z`. Its lower end counts and its upper does not, so that a
-/// corner counts once.
+/// The radius at which a segment crosses the height `z`. The segment's lower end counts and its
+/// upper end does not, so that a corner counts once.
 fn crossing(s: &Segment, z: f64) -> Option<f64> {
     let (low, high) = if s.a.y <= s.b.y {
         (s.a, s.b)
@@ -179,7 +180,7 @@ mod tests {
         let o = cylinder();
         assert_eq!(o.segments().count(), 8);
         assert_eq!(o.surface_segments().count(), 7);
-        // On the axis the nearest surface is the cavity, not the axis segment.
+        // A point on the axis: the nearest surface is the cavity, not the axis segment.
         assert!((o.signed_distance(DVec2::new(0.0, 0.5)) + 0.2).abs() < 1e-15);
     }
 

@@ -1,16 +1,16 @@
-//! What shows of paint laid over paint: a layer of disjoint cells, each of one colour.
+//! The visible result of paint laid over paint: a layer of disjoint cells, each of one colour.
 
 use super::region::{Contour, Region, Rule};
 
 /// Premultiplied red, green, blue and alpha, in the drawing's own (sRGB) values.
 pub(super) type Rgba = [f32; 4];
 
-/// Disjoint cells of colour; elsewhere the layer is transparent.
+/// Disjoint cells of colour; the layer is transparent elsewhere.
 #[derive(Debug, Default)]
 pub(super) struct Layer {
     cells: Vec<(Rgba, Region)>,
-    /// Opaque paint of one colour that lies on top and is not yet merged: merging many shapes at
-    /// once costs far less than one after the other.
+    /// Opaque paint of one colour on top that is not yet merged. Merging many shapes at once costs
+    /// far less than one after the other.
     pending: Vec<Contour>,
     pending_color: Rgba,
 }
@@ -39,7 +39,7 @@ impl Layer {
         self.cells
     }
 
-    /// Opaque paint: what lies below is gone.
+    /// Merges the opaque paint; everything below it is removed.
     fn merge_pending(&mut self) {
         if self.pending.is_empty() {
             return;
@@ -60,7 +60,7 @@ impl Layer {
         self.cells.retain(|(_, cell)| !cell.is_empty());
     }
 
-    /// Translucent paint: it mixes with what lies below, cell by cell.
+    /// Lays translucent paint: it mixes with the paint below, cell by cell.
     fn glaze(&mut self, region: &Region, color: Rgba) {
         let mut bare = region.clone();
         let mut cells = Vec::with_capacity(self.cells.len() * 2 + 1);

@@ -5,18 +5,18 @@ use super::region::{Rule, enclosed};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 
-/// Points this close to the axis, on either side, are taken as on it: `0.5 * sin(pi)` is not quite
+/// Points this close to the axis, on either side, are moved onto it. `0.5 * sin(pi)` is not quite
 /// 0, and a sliver along the axis would count as surface.
 const AXIS_SLACK: f64 = 1e-9;
 
 /// Largest coordinate: far beyond any box, and small enough to keep nine digits.
 pub(super) const EXTENT: f64 = 1e4;
 
-/// A profile from a closed polygon of `(r, z)` points in object units; the last point joins the
-/// first, either way round.
+/// A profile from a closed polygon of `(r, z)` points in object units. The last point joins the
+/// first; both directions of travel are accepted.
 ///
-/// Where the polygon crosses or covers itself, the solid is what it winds round at all (non-zero
-/// rule). It may reach past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
+/// If the polygon crosses or covers itself, the solid is everything that it winds round (non-zero
+/// rule). The polygon may extend past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
 ///
 /// # Errors
 /// [`ErrorKind::Content`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a

@@ -1,12 +1,12 @@
-//! What a [`Raster`] can tell, and how it changes its resolution.
+//! Bounds of a [`Raster`] and changes of its resolution.
 
 use super::Raster;
 use crate::maps::Bounds;
 use rayon::prelude::*;
 
 impl Raster {
-    /// Coverage on another grid of square pixels, `rows` to the object unit, by area: each new
-    /// pixel is the mean of what it covers of the old ones. Beyond the picture all is empty.
+    /// Coverage on another grid of square pixels, `rows` to the object unit. Each new pixel is the
+    /// mean, by area, of the old pixels that it covers. Everything beyond the picture is empty.
     #[must_use]
     pub fn resample(&self, columns: u32, rows: u32) -> Self {
         let mut coverage = vec![0.0; columns as usize * rows as usize];
@@ -47,8 +47,8 @@ impl Raster {
         }
     }
 
-    /// Coverage in `levels` even steps, as a picture keeps it: 256 of 8 bits, 2 of a binary picture
-    /// (solid where over one half).
+    /// Coverage in `levels` even steps, as a picture stores it: 256 for 8 bits, 2 for a binary
+    /// picture (solid if over one half).
     #[must_use]
     pub fn with_levels(mut self, levels: u16) -> Self {
         let most = f32::from(levels.max(2) - 1);
@@ -58,8 +58,8 @@ impl Raster {
         self
     }
 
-    /// The rectangle of pixels more than half solid, one pixel wider all round (as far as there is
-    /// picture), which contains every edge that such a picture can mean; `None` of an empty raster.
+    /// The rectangle of pixels more than half solid, one pixel wider all round where the picture
+    /// allows. It contains every edge that the picture can represent. `None` for an empty raster.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         let (width, side) = (self.columns as usize, f64::from(self.rows));
@@ -91,7 +91,7 @@ struct Span {
 }
 
 impl Span {
-    /// The pixels it touches, and how much of each.
+    /// The pixels that the interval touches, with the covered part of each.
     fn pixels(self) -> impl Iterator<Item = (usize, f64)> {
         let last = self.to.ceil().max(self.from) as usize;
         (self.from as usize..last).filter_map(move |k| {
@@ -101,7 +101,7 @@ impl Span {
     }
 }
 
-/// What each of `count` new pixels covers of a line of `length` old ones.
+/// The part of a line of `length` old pixels that each of `count` new pixels covers.
 fn spans(count: usize, ratio: f64, length: usize) -> Vec<Span> {
     let end = length as f64;
     (0..count)

@@ -1,24 +1,25 @@
-//! How a picture is read: which grey is solid, how much noise is smoothed away, and what about it
-//! looks unintended.
+//! Options for reading a picture: the grey level that is solid and the amount of noise that is
+//! blurred away. Also warnings about a picture that looks unintended.
 
 use super::outline::area;
 use super::{Outline, ProfileAxis, Raster};
 use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
 
-/// How a profile is read from a file.
+/// Options for reading a profile from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileOptions {
-    /// Which part of the picture is the half-plane.
+    /// The part of the picture that is the half-plane.
     pub axis: ProfileAxis,
     /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
-    /// own (sRGB) values. Pictures alone.
+    /// own (sRGB) values. For pictures only.
     pub threshold: f64,
-    /// Whether light is solid instead, over black: what is transparent stays empty. Pictures alone.
+    /// Light is solid instead of dark, over black: transparent pixels stay empty. For pictures
+    /// only.
     pub invert: bool,
-    /// Standard deviation of the Gaussian by which noise is blurred away before the outline is
-    /// traced, pixels of the picture; 0 for none, at most [`ProfileOptions::MOST_SMOOTH`]. Pictures
-    /// alone.
+    /// Standard deviation, in pixels of the picture, of the Gaussian blur that removes noise before
+    /// the outline is traced. 0 for none, at most [`ProfileOptions::MOST_SMOOTH`]. For pictures
+    /// only.
     pub smooth: f64,
 }
 
@@ -46,7 +47,7 @@ impl ProfileOptions {
     /// The largest standard deviation of the blur, pixels.
     pub const MOST_SMOOTH: f64 = 100.0;
 
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
     /// [`ErrorKind::Content`], with the key as in a scene file.
@@ -65,7 +66,7 @@ impl ProfileOptions {
         Ok(())
     }
 
-    /// Refuses what counts for pictures alone.
+    /// Refuses options that apply only to pictures.
     #[cfg(feature = "drawing")]
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
         let plain = Self::from(self.axis);
@@ -82,7 +83,7 @@ impl ProfileOptions {
     /// The darkness of a picture's half-plane as coverage, with the threshold at one half. `split`:
     /// the axis is the middle of column 0.
     pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
-        // What is darker than this is solid.
+        // Everything darker than this is solid.
         let edge = 1.0
             - if self.invert {
                 1.0 - self.threshold
@@ -106,8 +107,8 @@ impl ProfileOptions {
     }
 }
 
-/// Blurs by a Gaussian. Left of the axis stands the mirror image; beyond the other borders the
-/// picture goes on as it ends.
+/// Blurs by a Gaussian. The blur continues the picture with its mirror image left of the axis, and
+/// with its border pixels beyond the other borders.
 fn blur(raster: &mut Raster, sigma: f64, split: bool) {
     let reach = (3.0 * sigma).ceil() as isize;
     let weights: Vec<f32> = (-reach..=reach)
@@ -150,11 +151,11 @@ fn blur(raster: &mut Raster, sigma: f64, split: bool) {
 
 /// Loops smaller than this many pixels are specks.
 const SPECK: f64 = 9.0;
-/// As many specks are noise.
+/// This many specks are noise.
 const NOISE: usize = 8;
 
-/// What about a picture and its outline looks unintended: a sentence each, with the key that mends
-/// it.
+/// Features of a picture and its outline that look unintended: one sentence each, with the key that
+/// changes it.
 pub(super) fn warnings(
     raster: &Raster,
     outline: &Outline,
@@ -181,7 +182,7 @@ pub(super) fn warnings(
     found
 }
 
-/// Whether the ground is dark and the middle is light.
+/// Returns true if the ground is dark and the middle is light.
 fn is_light_on_dark(raster: &Raster) -> bool {
     let columns = raster.columns as usize;
     let dark = |values: &mut dyn Iterator<Item = &f32>| {
@@ -222,7 +223,7 @@ mod tests {
         Profile::from_bytes(bytes, options).unwrap()
     }
 
-    /// Whether the outline is the ball's, to within `tolerance` pixels.
+    /// Asserts that the outline is the ball's, to within `tolerance` pixels.
     #[track_caller]
     fn assert_ball(profile: &Profile, tolerance: f64) {
         assert_eq!(profile.outline.loops.len(), 1);
@@ -248,7 +249,8 @@ mod tests {
         let profile = read(&light, turned);
         assert!(profile.warnings.is_empty());
         assert_ball(&profile, 0.6);
-        // As usual: nothing to say. A hollow glass that fills its picture is no light solid either.
+        // The usual case gives no warning. A hollow glass that fills its picture is not a light
+        // solid either.
         let dark = read(
             &ball(|_, _, solid| if solid { 0 } else { 255 }),
             turned.axis.into(),
@@ -266,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_threshold_parts_greys() {
-        // A ball of grey 150 on ground of grey 220: all light by default.
+        // A ball of grey 150 on ground of grey 220 is all light by default.
         let grey = ball(|_, _, solid| if solid { 150 } else { 220 });
         assert!(Profile::from_bytes(&grey, ProfileAxis::Center).is_err());
         let options = ProfileOptions {
@@ -274,7 +276,7 @@ mod tests {
             ..ProfileOptions::default()
         };
         assert_ball(&read(&grey, options), 0.6);
-        // And of the light one, light is what is above it.
+        // With `invert`, light is everything above the threshold.
         let light = ball(|_, _, solid| if solid { 220 } else { 150 });
         let inverted = ProfileOptions {
             invert: true,

@@ -1,8 +1,8 @@
 //! Regions of the plane on an integer grid, and the set operations between them.
 //!
-//! Coordinates are scaled by a power of two before they are rounded, so that 0, 1 and every short
-//! binary fraction survive exactly, and a region that is combined again and again is rounded once
-//! only.
+//! Coordinates are scaled by a power of two before they are rounded. Values such as 0, 1 and every
+//! short binary fraction survive exactly. A region that is combined repeatedly is rounded only
+//! once.
 
 use super::Outline;
 use glam::DVec2;
@@ -15,12 +15,12 @@ use std::collections::HashMap;
 /// A closed contour on the integer grid.
 pub(super) type Contour = Vec<IntPoint<i32>>;
 
-/// Which points a self-crossing contour encloses.
+/// The points that a self-crossing contour encloses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
     /// Winding number other than 0.
     NonZero,
-    /// Winding number above 0: loops that are to have the solid on their left.
+    /// Winding number above 0: for loops that have the solid on their left.
     Positive,
     /// Odd winding number.
     #[cfg(feature = "drawing")]
@@ -57,13 +57,13 @@ impl Grid {
         }
     }
 
-    /// Rounds a point to the grid; what lies too far out is pulled to the grid's end.
+    /// Rounds a point to the grid; a point too far out is moved to the grid's end.
     pub fn snap(self, p: DVec2) -> IntPoint<i32> {
         let f = |v: f64| (v * self.scale).round().clamp(-LIMIT, LIMIT) as i32;
         IntPoint::new(f(p.x), f(p.y))
     }
 
-    /// The point of the plane that a grid point stands for.
+    /// The point of the plane that a grid point represents.
     pub fn place(self, p: IntPoint<i32>) -> DVec2 {
         DVec2::new(f64::from(p.x), f64::from(p.y)) / self.scale
     }
@@ -76,7 +76,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// What closed contours enclose, self-crossing ones too.
+    /// The region that closed contours enclose, self-crossing ones too.
     pub fn enclosed(contours: &[Contour], rule: Rule) -> Self {
         Self::collect(
             &mut Overlay::from_subj(contours),
@@ -85,25 +85,25 @@ impl Region {
         )
     }
 
-    /// Points of both.
+    /// Points in both regions.
     #[cfg(feature = "drawing")]
     pub fn intersection(&self, other: &Self) -> Self {
         self.combine(other, OverlayRule::Intersect)
     }
 
-    /// Points of this one alone.
+    /// Points in this region and not in the other.
     #[cfg(feature = "drawing")]
     pub fn difference(&self, other: &Self) -> Self {
         self.combine(other, OverlayRule::Difference)
     }
 
-    /// Points of either.
+    /// Points in either region.
     #[cfg(feature = "drawing")]
     pub fn union(&self, other: &Self) -> Self {
         self.combine(other, OverlayRule::Union)
     }
 
-    /// Whether nothing is in it.
+    /// Returns true for a region without points.
     #[cfg(feature = "drawing")]
     pub fn is_empty(&self) -> bool {
         self.contours.is_empty()
@@ -125,7 +125,7 @@ impl Region {
         }
     }
 
-    /// The region's boundary in object units; `place` says where each grid point stands.
+    /// The region's boundary in object units; `place` maps grid points to the plane.
     pub fn outline(&self, place: impl Fn(IntPoint<i32>) -> DVec2) -> Outline {
         Outline {
             loops: self
@@ -137,8 +137,8 @@ impl Region {
     }
 }
 
-/// The outline of what closed loops enclose, self-crossing ones too. Corners that were given come
-/// back exactly; only crossings are rounded to the grid.
+/// The outline of the region that closed loops enclose, self-crossing ones too. Input corners are
+/// returned exactly; only crossings are rounded to the grid.
 pub(super) fn enclosed(loops: &[Vec<DVec2>], rule: Rule) -> Outline {
     let points = || loops.iter().flatten();
     let grid = Grid::for_extent(points().fold(0.0, |m: f64, p| m.max(p.abs().max_element())));

@@ -1,16 +1,16 @@
-//! A curve from points that are known to within a fraction of a texel: corners first, then straight
-//! runs, then what is round.
+//! Fits a curve to points that are accurate to a fraction of a texel: first corners, then straight
+//! runs, then round parts.
 //!
-//! * A **corner** is where the lines through the points 1.5 to 4.5 texels before and after (to 7 in
-//!   binary pictures) turn most, and by enough that the noise of the points cannot be the reason;
-//!   it stands where the lines of its two sides meet.
-//! * A stretch between corners that one line fits as well as the noise allows is **straight**, and
-//!   level or upright if its whole drift is less than that noise.
-//! * Elsewhere each point is moved to the parabola (in the arc length) through its neighbours, over
-//!   the widest window whose residuals are no more than noise: uniform within a texel in binary
+//! * A **corner** is a local maximum of the turn between two lines: through the points 1.5 to 4.5
+//!   texels before and after (to 7 in binary pictures). The turn must be larger than the points'
+//!   noise can cause. The corner is placed at the intersection of the lines of its two sides.
+//! * A stretch between corners is **straight** if one line fits it as well as the noise allows. It
+//!   is level or upright if its whole drift is less than that noise.
+//! * Every other point is moved to the parabola (in the arc length) through its neighbours. The
+//!   window is the widest whose residuals are no more than noise: uniform within a texel in binary
 //!   pictures (rms 0.29), a few hundredths in anti-aliased ones.
 //!
-//! All in texels.
+//! All lengths are in texels.
 
 mod least_squares;
 
@@ -25,27 +25,27 @@ pub(super) struct Trail {
     pub closed: bool,
 }
 
-/// What is known of the points' errors.
+/// Bounds on the points' errors.
 #[derive(Clone, Copy, Debug)]
 struct Noise {
-    /// Largest and root of mean square residual of a fit that is still as good as the points.
+    /// Largest and root mean square residual of a fit that is still as good as the points.
     most: f64,
     rms: f64,
-    /// How far along the curve the lines of a corner reach.
+    /// Distance along the curve that the lines of a corner extend.
     reach: f64,
     /// Cosine of the least turn of a corner.
     turn: f64,
-    /// Most points on each side of a window.
+    /// Largest number of points on each side of a window.
     window: usize,
     /// Straight runs that drift less than this are level or upright.
     drift: f64,
-    /// Residuals (rms) below this are noise, whatever explains them.
+    /// Residuals (rms) below this are noise, even if a parabola explains them.
     least: f64,
     /// Largest residual of a corner's straight sides.
     line: f64,
-    /// Lines that meet farther from the curve than this touch something round.
+    /// Lines that meet farther from the curve than this touch a round part.
     round: f64,
-    /// Whether the points are good enough to tell a corner between curved sides from a bend.
+    /// True if the points are good enough to distinguish a corner between curved sides from a bend.
     curved: bool,
 }
 
@@ -75,9 +75,9 @@ const GRADED: Noise = Noise {
 };
 /// A run is not straight if a parabola leaves less than this part of the line's residuals.
 const BENT: f64 = 0.75;
-/// Least `|dr|` of the unit direction of a straight run that crosses the axis.
+/// Smallest `|dr|` of the unit direction of a straight run that crosses the axis.
 const SLANT: f64 = 0.2;
-/// Points nearer to a corner than this are touched by its rounding.
+/// Points nearer to a corner than this are affected by its rounding.
 const NEAR: f64 = 1.5;
 
 /// The smoothed curve's points. A curve of a few pixels that would lose half of its area stays as
@@ -92,7 +92,7 @@ pub(super) fn smooth(mut trail: Trail, graded: bool) -> Vec<DVec2> {
     if let Some(first) = corners.first().map(|c| c.index - line.first)
         && trail.closed
     {
-        // A closed trail begins with a corner, so that no run passes its ends.
+        // A closed trail begins with a corner, so that no run extends past its ends.
         trail.points.rotate_left(first);
         line = Line::new(&trail);
         for corner in &mut corners {
@@ -126,7 +126,7 @@ fn half_cosine([(_, u), (_, v)]: [Side; 2]) -> f64 {
     (0.5 * (1.0 + u.dot(v))).max(0.0).sqrt()
 }
 
-/// A corner, or an end: place in the list, and where it stands.
+/// A corner or an end: its index in the list and its position.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     index: usize,
@@ -164,7 +164,8 @@ impl Line {
 
     fn corners(&self, noise: &Noise) -> Vec<Corner> {
         let range = self.first..self.first + self.count;
-        // Cosine of the turn at each point; of equal ones, that where the sides meet is taken.
+        // Cosine of the turn at each point. Among equal ones, the point where the sides meet is
+        // used.
         let turns: Vec<f64> = (0..self.points.len())
             .map(
                 |k| match self.sides(k, noise).filter(|_| range.contains(&k)) {
@@ -186,7 +187,7 @@ impl Line {
             let before = (0..k).rev().take_while(near);
             let after = (k + 1..self.points.len()).take_while(near);
             let sharpest = before.chain(after).all(|j| {
-                // Past its ends a closed trail goes round again.
+                // A closed trail wraps round past its ends.
                 let turn = match self.closed {
                     true => turns[self.first + (j + self.count - self.first) % self.count],
                     false => turns[j],
@@ -204,9 +205,9 @@ impl Line {
         corners
     }
 
-    /// The two sides of a corner at point `k`, as they arrive there, each by a point and a
-    /// direction: tangents of parabolas through the points before and after, where these are good
-    /// and many enough, else lines, if they do not merely touch something round.
+    /// The two sides of a corner at point `k`, each as a point and a direction. Both sides are
+    /// tangents of parabolas through the points before and after if these are good and many enough.
+    /// Otherwise they are lines, unless these merely touch a round part.
     fn sides(&self, k: usize, noise: &Noise) -> Option<[Side; 2]> {
         let part = |from: f64, to: f64| {
             let low = self.place.partition_point(|&s| s < self.place[k] + from);
@@ -225,13 +226,13 @@ impl Line {
         let [a, b] = parts.map(|p| line_through(self.points.get(p)?));
         let ((p, u, x), (q, v, y)) = (a?, b?);
         let sides = [(p, u), (q, v)];
-        // At a sharp corner the pixels' curve stays farther away.
+        // The pixels' curve stays farther away from a sharp corner.
         let wedge = half_cosine(sides).max(0.25);
         let met = meeting(sides)?;
         (x.max(y) <= noise.line && self.away(met, k) * wedge < noise.round).then_some(sides)
     }
 
-    /// Distance of a place from the trail near point `k`.
+    /// Distance of a position from the trail near point `k`.
     fn away(&self, m: DVec2, k: usize) -> f64 {
         let near = k.saturating_sub(4)..(k + 4).min(self.points.len() - 1);
         near.map(|j| {
@@ -242,7 +243,7 @@ impl Line {
         .fold(f64::INFINITY, f64::min)
     }
 
-    /// Everything between corners.
+    /// Fits everything between corners.
     fn runs(&self, corners: &[Corner], noise: &Noise) -> Vec<DVec2> {
         let last = self.first + self.count - 1;
         let end = |index| Corner { index, point: None };
@@ -267,7 +268,7 @@ impl Line {
         let straight: Vec<Option<Side>> = ends
             .windows(2)
             .map(|pair| {
-                // A straight run that ends on the axis has to cross it: one from axis to axis
+                // A straight run that ends on the axis has to cross it: a run from axis to axis
                 // encloses nothing.
                 let on_axis =
                     |c: &&Corner| !self.closed && (c.index == self.first || c.index == last);
@@ -303,7 +304,7 @@ impl Line {
                     self.points.len() - 1
                 };
                 for j in pair[0].index + 1..pair[1].index {
-                    // What a corner has rounded says nothing.
+                    // Points that a corner has rounded are ignored.
                     let room = |c: &Corner| {
                         c.point.is_none() || (self.place[j] - self.place[c.index]).abs() > NEAR
                     };
@@ -322,7 +323,7 @@ impl Line {
         out
     }
 
-    /// Where a corner stands: at the meeting of its straight sides if it has them. Where they do
+    /// The position of a corner: the intersection of its straight sides if it has them. If they do
     /// not meet near by, each straight side has an end of its own.
     fn corner(&self, corner: &Corner, sides: [Option<Side>; 2], noise: &Noise) -> Vec<DVec2> {
         let own = self.points[corner.index];
@@ -331,7 +332,7 @@ impl Line {
         if let Some(pair) = before.zip(after).map(|(a, b)| [a, b])
             && let Some(met) = meeting(pair)
         {
-            // The tip of a wedge lies far from the nearest pixel that it covers by one half.
+            // The tip of a wedge is far from the nearest pixel that it covers by one half.
             let wedge = 2.0 / half_cosine(pair).max(0.25);
             let reach = match sides.iter().flatten().count() {
                 2 => wedge,
@@ -350,7 +351,7 @@ impl Line {
         feet
     }
 
-    /// Where a trail ends on the axis. Its mirror image is the other side.
+    /// The end of a trail on the axis. The trail's mirror image is the other side.
     fn end(&self, corner: &Corner, side: Option<Side>, noise: &Noise) -> DVec2 {
         let z = match (side, corner.point) {
             (Some((p, u)), _) => (p - u * (p.x / u.x)).y,
@@ -374,8 +375,8 @@ impl Line {
         if most > noise.most {
             return None;
         }
-        // A long bow and a short one alike look straight within the noise: unless a parabola
-        // explains much more of it.
+        // Both long and short arcs look straight within the noise, unless a parabola explains much
+        // more of it.
         if points.len() > 5 {
             let sum: f64 = points.iter().map(|q| u.perp_dot(*q - p).powi(2)).sum();
             let rms = (sum / points.len() as f64).sqrt();
@@ -408,8 +409,8 @@ impl Line {
             .min(self.count / if self.closed { 6 } else { 3 });
         let mut m = 2;
         while m <= most {
-            // As many on each side as there are, that the fit leans to neither; near a corner a few
-            // more on the other.
+            // The window has equally many points on each side, so that the fit is not biased to
+            // either. Near a corner the other side has a few more.
             let (left, right) = (k - low, high.min(self.points.len() - 1) - k);
             let (left, right) = (left.min(m), right.min(m));
             if left + right < m.min(4) {

@@ -1,4 +1,4 @@
-//! Drawings as the SVG reader gives them, in the terms of this crate.
+//! Converts drawings from the SVG reader's types to those of this crate.
 
 use super::region::Rule;
 use crate::error::{Error, ErrorKind, Result};
@@ -6,7 +6,7 @@ use kurbo::{Affine, BezPath, Cap, Join, PathEl, Point, Stroke};
 use usvg::roxmltree;
 use usvg::tiny_skia_path::PathSegment;
 
-/// Reads the drawing, and refuses by name what the reader would drop without a word.
+/// Reads the drawing, and refuses by name elements that the reader would drop silently.
 pub(super) fn parse(bytes: &[u8]) -> Result<usvg::Tree> {
     let damaged = |e: &dyn std::fmt::Display| {
         let text = e.to_string().replace('\n', " ");
@@ -60,7 +60,7 @@ pub(super) fn unsupported(what: &str, remedy: &str) -> Error {
     ))
 }
 
-/// Whether anything in the tree lets what lies below shine through.
+/// Returns true if anything in the tree is translucent.
 pub(super) fn has_translucency(group: &usvg::Group) -> bool {
     let paint = |opacity: f32, paint: &usvg::Paint| {
         opacity < 1.0

@@ -1,21 +1,21 @@
-//! The curve that a picture was drawn from: where its coverage passes one half, as chains of points
-//! on the links between pixels.
+//! Traces the curve at which a picture's coverage passes one half, as chains of points on the links
+//! between pixels.
 //!
-//! Samples stand at the pixels' centres. Beyond the picture lies 0, so a solid that touches the
-//! top, bottom or right border ends exactly there. Left of the axis stands the mirror image. A
-//! **link** joins the centres of two neighbours. Each link with one end more than half covered and
-//! the other not holds one point:
+//! Samples are at the pixels' centres. Coverage is 0 beyond the picture, so a solid that touches
+//! the top, bottom or right border ends exactly there. The picture continues left of the axis with
+//! its mirror image. A **link** joins the centres of two neighbours. A link holds one point if one
+//! end is more than half covered and the other is not:
 //!
-//! * In a binary picture it is the link's middle, known to half a texel.
-//! * In an anti-aliased picture the coverages along the link's line, added up from a full pixel to
-//!   an empty one, give the edge's mean position over the pixel's width. That is its position in
-//!   the middle where the edge is straight (the height function of two-phase flow). Where the edge
-//!   runs too much along the link, the points of the links across are enough.
-//! * Where there are no full pixels, as in grey or blurred solids, it is where linear interpolation
-//!   passes one half.
+//! * A binary picture gives the link's middle, accurate to half a texel.
+//! * An anti-aliased picture gives the edge's mean position over the pixel's width: the sum of
+//!   coverages along the link's line, from a full pixel to an empty one. For a straight edge, this
+//!   is its position in the middle (the height function of two-phase flow). If the edge runs too
+//!   much along the link, the points of the links across are enough.
+//! * If there are no full pixels, as in grey or blurred solids, the point is where linear
+//!   interpolation passes one half.
 //!
-//! What [`smooth`](super::smooth) makes of the chains is an [`Outline`]. Chains that cross
-//! afterwards are cut at their crossings.
+//! [`smooth`](super::smooth) turns the chains into an [`Outline`]. Chains that cross afterwards are
+//! cut at their crossings.
 
 use super::faults::empty_fault;
 use super::region::{Rule, enclosed};
@@ -53,20 +53,20 @@ pub(super) fn profile(raster: Raster, split: bool) -> Result<Profile> {
 }
 
 impl Raster {
-    /// The outline that the pixels tell (see [`Profile::traced`]); empty when none is more than
+    /// The outline traced from the pixels (see [`Profile::traced`]); empty if none is more than
     /// half covered.
     pub(crate) fn outline(&self) -> Outline {
         Nodes::new(self, false).outline()
     }
 }
 
-/// The picture with a rim of one empty pixel above, below and at the right. Where the axis is the
-/// left edge of the picture, column 0 is the mirror image of column 1.
+/// The picture with a rim of one empty pixel above, below and at the right. If the axis is the left
+/// edge of the picture, column 0 is the mirror image of column 1.
 struct Nodes<'a> {
     raster: &'a Raster,
     columns: usize,
     rows: usize,
-    /// 1 where column 0 is a mirror image, 0 where it stands on the axis.
+    /// 1 if column 0 is a mirror image, 0 if it is on the axis.
     mirrored: usize,
 }
 
@@ -101,7 +101,7 @@ impl<'a> Nodes<'a> {
             .map(|points| points.into_iter().map(place).collect())
             .collect();
         let mut outline = enclosed(&loops, Rule::Positive);
-        // A crossing may have been rounded out of the box.
+        // Rounding may have moved a crossing out of the box.
         for p in outline.loops.iter_mut().flatten() {
             p.x = p.x.min(size.x / rows);
         }
@@ -141,14 +141,14 @@ impl<'a> Nodes<'a> {
         self.place(a).midpoint(self.place(b))
     }
 
-    /// Where the curve passes a link by linear interpolation.
+    /// The point at which the curve passes a link, by linear interpolation.
     fn point(&self, link: u32) -> DVec2 {
         let [a, b] = self.link(link);
         let (va, vb) = (self.value(a.0, a.1), self.value(b.0, b.1));
         self.place(a).lerp(self.place(b), (0.5 - va) / (vb - va))
     }
 
-    /// The same from the sum of coverages along the link's line; none where the edge runs too much
+    /// The point from the sum of coverages along the link's line; `None` if the edge runs too much
     /// along it.
     fn summed(&self, link: u32) -> Option<DVec2> {
         const FULL: f64 = 0.995;
@@ -161,7 +161,7 @@ impl<'a> Nodes<'a> {
         let value = |k: isize| {
             let (i, j) = (a.0 as isize + k * step.0, a.1 as isize + k * step.1);
             let within = j >= 0 && (j as usize) < self.rows && i < self.columns as isize;
-            // Left of the axis stands the mirror image.
+            // The picture is mirrored left of the axis.
             let i = if i < 0 { self.mirrored as isize - i } else { i };
             if within {
                 self.value(i as usize, j as usize)
@@ -193,7 +193,7 @@ impl<'a> Nodes<'a> {
         Some(self.place(a) + way * (first as f64 - 0.5 + sum))
     }
 
-    /// All curves, solid on the left as one sees them.
+    /// All curves, with the solid on the left as seen in the picture.
     fn trails(&self) -> Vec<Links> {
         let pairs: Vec<[u32; 2]> = (0..self.rows - 1)
             .into_par_iter()
@@ -201,8 +201,8 @@ impl<'a> Nodes<'a> {
             .collect();
         let mut next: HashMap<u32, u32> = pairs.iter().map(|&[from, to]| (from, to)).collect();
         let mut firsts: Vec<u32> = pairs.iter().map(|p| p[0]).collect();
-        // Those that come from the axis first: from there on every walk ends where it began, or on
-        // the axis.
+        // Curves that start on the axis come first: every later walk ends where it began, or on the
+        // axis.
         let axis = |link: u32| link % 2 == 1 && (link as usize / 2).is_multiple_of(self.columns);
         firsts.sort_by_key(|&l| !axis(l));
         let mut trails = Vec::new();
@@ -219,7 +219,7 @@ impl<'a> Nodes<'a> {
                     Some(following) => link = following,
                     None => {
                         if !axis(link) {
-                            // This one was walked before.
+                            // The curve was walked before.
                             trail.links.clear();
                         }
                         break;
@@ -245,12 +245,12 @@ impl<'a> Nodes<'a> {
         let below = node + self.columns as u32;
         // Top, right, bottom, left: sides between corners 01, 12, 23, 30.
         let links = [2 * node, 2 * (node + 1) + 1, 2 * below, 2 * node + 1];
-        // Walked round the cell (clockwise, as seen), a side that goes from empty to solid is where
-        // a curve comes in: solid is on its left.
+        // The sides are visited clockwise, as seen. A curve comes in at a side that goes from empty
+        // to solid: the solid is on its left.
         let comes_in = |&k: &usize| !solid[k] && solid[(k + 1) % 4];
         let goes_out = |&k: &usize| solid[k] && !solid[(k + 1) % 4];
-        // The way out is the next one round the solid corner, or at a saddle that is solid round
-        // the empty one before.
+        // The way out is the next one round the solid corner. At a saddle that is solid it is the
+        // one before, round the empty corner.
         let joined = values.iter().sum::<f64>() > 2.0;
         let turn = |k: usize| if joined { 4 - k } else { k };
         (0..4)
@@ -262,7 +262,7 @@ impl<'a> Nodes<'a> {
             .collect()
     }
 
-    /// Whether the picture is anti-aliased: a quarter of the curve's links have an end that is
+    /// Returns true for an anti-aliased picture: at a quarter of the curve's links one end is
     /// neither as light nor as dark as the nodes around it.
     fn graded(&self, trails: &[Links]) -> bool {
         let grey = |&(i, j): &(usize, usize)| {
@@ -291,7 +291,7 @@ impl<'a> Nodes<'a> {
             }
         };
         let found: Vec<Option<DVec2>> = links.iter().map(known).collect();
-        // Sums that few links have leave too much of a curve out.
+        // Sums that exist for few links leave out too much of a curve.
         let few = links.len() < 12 || 4 * found.iter().flatten().count() < links.len();
         let mut points: Vec<DVec2> = Vec::with_capacity(links.len());
         for (k, (&link, found)) in links.iter().zip(found).enumerate() {
@@ -310,7 +310,7 @@ impl<'a> Nodes<'a> {
     }
 }
 
-/// A curve by the links it passes.
+/// A curve as the list of links that it passes.
 #[derive(Debug)]
 struct Links {
     links: Vec<u32>,

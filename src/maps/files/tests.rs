@@ -56,7 +56,7 @@ fn the_papers_texture_comes_back_within_its_bytes() {
             assert!(is <= was && is > was - step);
         }
     }
-    // As a profile it is the form, in the box it was baked for.
+    // The file read as a profile is the form, in the box of the original map.
     let profile = Profile::load(&file, crate::profile::ProfileAxis::Center).unwrap();
     assert_eq!(profile.radius, map.radius);
     let again = ShapeMap::bake(

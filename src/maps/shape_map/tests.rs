@@ -27,7 +27,7 @@ fn texels_stand_where_the_contract_says() {
     assert!((f64::from(map.distance[8 + 6]) - expected).abs() < 1e-7);
     assert!(!map.form[8 + 6] && map.form[8 * 8]);
     assert!((map.distance_at(6.5 / 16.0, 14.5 / 16.0) - expected).abs() < 1e-7);
-    // On the axis, in the middle: the axis is no boundary.
+    // A point on the axis, in the middle: the axis is not a boundary.
     assert!((map.distance_at(0.0, 0.5) + 0.25).abs() < 0.04);
     let [gr, gz] = map.gradient_at(0.4, 0.5);
     assert!((gr - 1.0).abs() < 1e-6 && gz.abs() < 1e-6);
@@ -162,8 +162,8 @@ fn star() -> impl Strategy<Value = Profile> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    // Exact: each texel holds the outline's own distance, never more, less by no more than 32 bits
-    // cost.
+    // Exact maps: each texel holds at most the outline's own distance, and less only by the
+    // rounding to 32 bits.
     #[test]
     fn exact_maps_hold_the_outlines_distances(profile in star()) {
         let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();
@@ -175,8 +175,8 @@ proptest! {
         }
     }
 
-    // Between texels bilinear values stay within h / sqrt(2) of the truth, and beyond the map they
-    // never exceed it by more.
+    // Bilinear values between texels are within h / sqrt(2) of the truth, and never exceed it by
+    // more beyond the map.
     #[test]
     fn reconstruction_is_bounded(profile in star(), r in -1.5f64..1.5, z in -1.0f64..2.0) {
         let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::Exact, 40)).unwrap();
@@ -189,7 +189,7 @@ proptest! {
         }
     }
 
-    // Distances change no faster than the way between texels.
+    // Distances change no faster than the path between texels.
     #[test]
     fn every_source_is_lipschitz(profile in star()) {
         for source in SOURCES {

@@ -10,7 +10,7 @@ fn drawn(body: &str) -> Result<Outline> {
     profile(text.as_bytes(), ProfileAxis::Left).map(|p| p.outline)
 }
 
-/// Its area in square user units.
+/// Area of the drawn solid in square user units.
 fn area(body: &str) -> f64 {
     drawn(body).unwrap().area() * 1e4
 }
@@ -124,7 +124,7 @@ fn opacity_and_groups() {
         |x: u32, more: &str| format!("<rect x='{x}' y='10' width='40' height='40' {more}/>");
     assert!(drawn(&square(10, "opacity='0.4'")).is_err());
     near(area(&square(10, "fill-opacity='0.6'")), 1600.0);
-    // Two that are light alone are dark together.
+    // Two layers that are each light are dark together.
     let both = square(10, "fill-opacity='0.4'") + &square(20, "fill-opacity='0.4'");
     near(area(&both), 30.0 * 40.0);
     // In a group of that opacity they are not.
@@ -156,7 +156,7 @@ fn shapes_that_abut_leave_no_crack() {
     )
     .unwrap();
     assert_eq!(o.loops.len(), 1);
-    // A hole thinner than the flattening: gone. One that is not: kept.
+    // A hole thinner than the flattening: gone. A hole just thicker than the flattening: kept.
     let slit = |width: f64| {
         let slit = format!("<rect x='20' y='12' width='{width}' height='20' fill='#fff'/>");
         drawn(&format!(

@@ -1,20 +1,20 @@
-//! Lines and parabolas through points, with the least squares of residuals.
+//! Lines and parabolas through points by least squares.
 
 use glam::DVec2;
 
-/// A parabola at one of its places.
+/// A parabola at one of its points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parabola {
     pub(super) point: DVec2,
     /// The curve's direction there.
     pub(super) way: DVec2,
-    /// Of the residuals across the curve: root of mean square, and largest.
+    /// Root mean square and largest of the residuals across the curve.
     pub(super) rms: f64,
     pub(super) most: f64,
 }
 
-/// The parabola in the arc length (up to each of the points: `place`) through points `from..=to`:
-/// its point at `k`, residuals' rms and largest.
+/// The parabola through points `from..=to` in the arc length (`place`, up to each of the points).
+/// Returns its point at `k` and the residuals' rms and largest.
 pub(super) fn parabola(
     points: &[DVec2],
     place: &[f64],
@@ -62,7 +62,7 @@ pub(super) fn parabola(
     for j in from..=to {
         let x = at(j);
         let off = points[j] - points[k] - (c[0] + c[1] * x + c[2] * (x * x));
-        // Across the curve: along it a point may lie anywhere.
+        // Residuals count across the curve only; their component along the curve is ignored.
         let across = (c[1] + c[2] * (2.0 * x)).normalize_or_zero().perp_dot(off);
         sum += across * across;
         most = most.max(across.abs());
@@ -76,7 +76,7 @@ pub(super) fn parabola(
     })
 }
 
-/// Where two lines meet, if they are not all but parallel.
+/// The intersection of two lines, unless they are nearly parallel.
 pub(super) fn meeting([(p, u), (q, v)]: [(DVec2, DVec2); 2]) -> Option<DVec2> {
     let cross = u.perp_dot(v);
     (cross.abs() > 0.1).then(|| p + u * ((q - p).perp_dot(v) / cross))

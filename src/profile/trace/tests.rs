@@ -26,7 +26,7 @@ fn ramp(distance: f64) -> f64 {
     (0.5 - distance).clamp(0.0, 1.0)
 }
 
-/// Traces a picture, and checks what holds of every outline: it is within the box, has an area, and
+/// Traces a picture and checks properties of every outline: it is within the box, has an area, and
 /// surfaces can be made of it.
 #[track_caller]
 fn traced(raster: &Raster) -> Outline {
@@ -83,7 +83,7 @@ fn blurred_edges_are_traced_along_their_middle() {
 
 #[test]
 fn noise_does_not_make_edges() {
-    // As in a JPEG: a few percent up and down everywhere.
+    // JPEG-like noise: a few percent up and down everywhere.
     let (rms, max) = disc_errors(|raster| {
         for (c, k) in raster.coverage.iter_mut().zip(0u32..) {
             let noise = (k.wrapping_mul(2_654_435_761) >> 16) as f32 / 65_536.0 - 0.5;
