@@ -1,17 +1,17 @@
-//! From lines on the screen to parts of pixels: which pixels a line cuts, and how much of each lies
-//! beyond it.
+//! Turns lines on the screen into parts of pixels: the pixels that a line cuts, and the area of
+//! each beyond it.
 
 use super::lines::{FLATNESS, Point};
 use super::meridian::TOLERANCE;
 use glam::{DVec2, Vec2Swizzles};
 
-/// A pixel whose colour is made from those of pixels about it.
+/// A pixel whose colour is mixed from nearby pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Blend {
-    /// The number of the pixel, then how little of it shows what its middle does not: of a pixel's
-    /// blends the first takes most of it.
+    /// Sort key: the pixel's number, then how small its part is that shows something else than its
+    /// middle does. The first of a pixel's blends has the largest such part.
     key: u64,
-    /// Numbers of pixels, and their weights: beyond the line, at it, and one further in.
+    /// Pixel numbers and weights: beyond the line, at it, and one further in.
     pub sources: [(u32, f32); 3],
 }
 
@@ -21,20 +21,21 @@ impl Blend {
         (self.key >> 32) as u32
     }
 
-    /// Leaves of each pixel's blends the one that takes most of it, in the pixels' order.
+    /// Keeps for each pixel the blend with the largest part, in the pixels' order.
     pub fn leave_one_a_pixel(blends: &mut Vec<Self>) {
         blends.sort_unstable_by_key(|blend| blend.key);
         blends.dedup_by_key(|blend| blend.pixel());
     }
 }
 
-/// How much of a pixel lies on its middle's side of a line: a line that passes the middle at
-/// `distance` pixels, measured along one axis, and climbs by `slope` along the other one, at most 1
+/// Area of a pixel on its middle's side of a line, in `[0, 1]`. The line passes the middle at
+/// `distance` pixels, measured along one axis. It climbs by `slope` along the other one, at most 1
 /// either way.
 #[must_use]
 pub fn coverage(distance: f64, slope: f64) -> f64 {
     let (x, m) = (distance.abs(), slope.abs().min(1.0));
-    // Up to here the line leaves the pixel by the two sides that it cuts at right angles.
+    // Up to this distance the line leaves the pixel through the two sides that it cuts at right
+    // angles.
     let whole = 0.5 * (1.0 - m);
     let beyond = 0.5 * (1.0 + m) - x;
     if x <= whole {
@@ -46,33 +47,33 @@ pub fn coverage(distance: f64, slope: f64) -> f64 {
     }
 }
 
-/// Pixels by which the depth must change a pixel beside a silhouette for colours to be taken on
-/// from further in: about twice the root of the radius. What is rounder is seen in too few pixels.
+/// Pixels by which the depth must change one pixel beside a silhouette before colours from further
+/// in are used: about twice the root of the radius. Rounder surfaces are visible in too few pixels.
 const ROUND: f64 = 2.0;
-/// Pixels by which a line may pass on the wrong side of a pixel's middle: what patches may differ by
-/// from the boundary, and chords from the curve.
+/// Pixels by which a line may pass on the wrong side of a pixel's middle: the tolerance of patches
+/// from the boundary plus that of chords from the curve.
 const UNSURE: f64 = TOLERANCE + FLATNESS;
-/// Pixels either way of a copy that is looked for.
+/// Copies larger than this many pixels to either side count as visible without a search.
 const SMALL: f64 = 64.0;
 
 /// The picture that lines are drawn into.
 pub(super) struct Screen<'a, D> {
     pub width: u32,
     pub height: u32,
-    /// Depth along the view of what a pixel shows; infinite where it shows nothing.
+    /// Depth along the view of each pixel; infinite for the background.
     pub depth: &'a D,
     /// A pixel's size at depth 1.
     pub pixel_size: f64,
 }
 
 impl<D: Fn(usize) -> f64> Screen<'_, D> {
-    /// Whether some pixel may show what lies around a point of the screen within `size` of its
-    /// depth; of what is large it is not asked.
+    /// Returns true if some pixel may show anything around a point of the screen within `size` of
+    /// its depth. Large copies return true without a search.
     pub fn may_show(&self, at: DVec2, depth: f64, size: f64) -> bool {
         if depth <= 2.0 * size {
             return true;
         }
-        // Off the middle of the picture a sphere is seen longer.
+        // A sphere appears elongated away from the middle of the picture.
         let off = at - 0.5 * DVec2::new(f64::from(self.width), f64::from(self.height));
         let stretch = 1.0 + (off * self.pixel_size).length_squared();
         let half = 1.2 * stretch * size / ((depth - size) * self.pixel_size) + 1.5;
@@ -94,18 +95,17 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
         })
     }
 
-    /// Appends the blends of the pixels on both sides of a line, where they show what it belongs
-    /// to.
+    /// Appends the blends of the pixels on both sides of a line, if they show the line's solid.
     pub fn line(&self, a: &Point, b: &Point, blends: &mut Vec<Blend>) {
         let way = b.at - a.at;
         let steep = way.y.abs() > way.x.abs();
-        // Along the longer side, and across.
+        // First coordinate along the longer side, second across.
         let turned = |p: DVec2| if steep { p.yx() } else { p };
         let (a, b) = if turned(way).x < 0.0 { (b, a) } else { (a, b) };
         let (from, to) = (turned(a.at), turned(b.at));
         let sides = [[self.width, self.height], [self.height, self.width]];
         let [length, width] = sides[usize::from(steep)];
-        // Pixels whose middle lies between the ends: of lines that join each once.
+        // Pixels whose middle is between the ends: two joined lines cover each pixel once.
         let first = (from.x - 0.5).ceil().max(0.0);
         let last = (to.x - 0.5).ceil().min(f64::from(length));
         if first >= last {
@@ -128,7 +128,7 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
             let depth = 1.0 / (a.depth.recip() * (1.0 - s) + b.depth.recip() * s);
             let (bend, pixel_size) = (a.reach + (b.reach - a.reach) * s, self.pixel_size * depth);
             let reach = bend + 2.0 * pixel_size;
-            // Close to a pixel's middle line and ray may disagree on the side that it is on.
+            // Line and ray may disagree on the side of a pixel's middle that is close to the line.
             let shows = |across: u32| (self.depth)(number(across) as usize) - depth <= reach;
             let divides = |low: u32| low + 1 < width && shows(low) != shows(low + 1);
             if rest.min(1.0 - rest) < UNSURE && !divides(low) {
@@ -144,8 +144,8 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
             if apart > reach || apart.is_nan() {
                 continue;
             }
-            // The pixel that shows the solid, how far its middle is from the line, the one beyond
-            // the line, and the one further in.
+            // The pixel that shows the solid, the distance of its middle from the line, the pixel
+            // beyond the line, and the one further in.
             let (own, inside, other, further) = if depths[0] < depths[1] {
                 (pair[0], rest, pair[1], low.checked_sub(1))
             } else {
@@ -167,7 +167,7 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
                 let pixels = [other, own, further.unwrap_or(own)];
                 let part = if pixel == own { 1.0 - covered } else { covered } as f32;
                 blends.push(Blend {
-                    // Bits of floats that are not negative are in order.
+                    // The bits of non-negative floats are in the floats' order.
                     key: u64::from(pixel) << 32 | u64::from(!part.to_bits()),
                     sources: std::array::from_fn(|k| (pixels[k], weights[k] as f32)),
                 });
@@ -176,10 +176,10 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
     }
 }
 
-/// How far the colour of a strip of a solid, which reaches from its silhouette so far into it, is
-/// from that at `inside` towards that a pixel further in.
+/// Weight of a strip's colour between the colour at `inside` (0) and that one pixel further in (1).
+/// The strip extends from the silhouette `strip` pixels into the solid.
 ///
-/// Towards a silhouette the normal turns as the square root of the distance, and colours follow.
+/// Near a silhouette the normal turns as the square root of the distance, and colours follow.
 fn curved(inside: f64, strip: f64) -> f64 {
     let middle = 2.0 / 3.0 * strip.sqrt();
     (middle - inside.sqrt()) / ((inside + 1.0).sqrt() - inside.sqrt())

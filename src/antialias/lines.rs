@@ -1,10 +1,10 @@
-//! The lines of a solid that a view shows as edges: where its surface turns away from the eye, and
-//! its rims.
+//! The lines of a solid that are edges in a view: its silhouette, where the surface turns away from
+//! the eye, and its rims.
 //!
-//! On a quadric of revolution the points at which it turns away lie in one plane, the polar plane
-//! of the eye. At height `z` this gives the cosine of their azimuth, seen from the eye's, in closed
-//! form, and the heights at which it reaches 1 or -1 are the roots of a quadratic. Where two
-//! patches meet at an angle the surface turns away along an arc of their common circle.
+//! The points at which a quadric of revolution turns away are in one plane, the polar plane of the
+//! eye. This gives the cosine of their azimuth at height `z`, relative to the eye's, in closed
+//! form. The heights at which the cosine is 1 or -1 are the roots of a quadratic. If two patches
+//! meet at an angle, the surface turns away along an arc of their common circle.
 
 use crate::scene::{CameraFrame, Placement};
 use crate::surface::QuadricPatch;
@@ -18,33 +18,34 @@ pub(super) struct Point {
     pub at: DVec2,
     /// Depth along the view.
     pub depth: f64,
-    /// By how much the depth may differ a pixel beside the line.
+    /// Largest depth difference to a pixel beside the line.
     pub reach: f64,
-    /// Whether the solid lies beyond it, so that it is an edge; else the solid is before it.
+    /// True if the solid is beyond the line, which makes the line an edge; false if the solid is
+    /// before it.
     pub bulges: bool,
-    /// Whether the surface turns away there, and is no rim.
+    /// True for a line where the surface turns away, false for a rim.
     pub curved: bool,
 }
 
-/// Cosine of the least angle at which two patches meet in a rim that is smoothed though both are
-/// seen.
+/// Cosine of the least angle at which two patches meet in a rim that is smoothed although both are
+/// visible.
 const RIM: f64 = 0.94;
 /// Pixels by which a line may pass beside the curve.
 pub(super) const FLATNESS: f64 = 0.02;
-/// Pixels that a curve is long that is taken as a whole.
+/// Curves shorter than this many pixels are not subdivided at first.
 const SHORT: f64 = 3.0;
-/// Halvings of a curve at most.
+/// Largest number of halvings of a curve.
 const HALVINGS: u32 = 10;
 /// Least distance of the eye from the axis, object units.
 const OFF_AXIS: f64 = 1e-6;
 
-/// A point of a curve, and where it is seen.
+/// A point of a curve and its position on the screen.
 #[derive(Clone, Copy)]
 struct Spot {
-    /// On the surface, and the same from the eye, object units.
+    /// Position on the surface, and the same relative to the eye, object units.
     place: DVec3,
     from_eye: DVec3,
-    /// As those of [`Point`].
+    /// As in [`Point`].
     at: DVec2,
     depth: f64,
 }
@@ -52,29 +53,29 @@ struct Spot {
 /// A curve on a solid, over 0 to 1; `None` behind the eye.
 struct Curve<'a, F: Fn(f64) -> Option<Spot>> {
     sight: &'a Sight,
-    /// The patches that it belongs to.
+    /// The patches that contain the curve.
     patches: &'a [&'a QuadricPatch],
-    /// As that of [`Point`].
+    /// As in [`Point`].
     curved: bool,
     at: F,
 }
 
-/// A copy of a solid as the eye sees it, in object units about its axis.
+/// A copy of a solid in the eye's view, in object units about its axis.
 pub(super) struct Sight {
     /// The eye.
     eye: DVec3,
-    /// Its distance from the axis, and the direction in which it lies.
+    /// The eye's distance from the axis, and its direction from there.
     distance: f64,
     azimuth: DVec2,
-    /// The depth of a point is its way from the eye along this.
+    /// The depth of a point is the product of this with the vector from the eye to the point.
     forward: DVec3,
-    /// Its place on the screen, times its depth, likewise.
+    /// The products with these are the point's position on the screen times its depth.
     right: DVec3,
     down: DVec3,
     middle: DVec2,
-    /// Ways to the next pixel at depth 1.
+    /// Vectors to the next pixel at depth 1.
     step: [DVec3; 2],
-    /// Largest difference of depths that is followed.
+    /// Largest difference of depths that is accepted.
     most: f64,
 }
 
@@ -115,7 +116,7 @@ impl Sight {
         })
     }
 
-    /// Hands on the lines of one level of the solid, as pairs of points.
+    /// Emits the lines of one level of the solid, as pairs of points.
     pub fn lines(&self, patches: &[QuadricPatch], emit: &mut impl FnMut(&Point, &Point)) {
         for patch in patches {
             self.turning(patch, emit);
@@ -127,7 +128,7 @@ impl Sight {
         }
     }
 
-    /// Where a patch turns away.
+    /// Emits the curve along which a patch turns away.
     fn turning(&self, patch: &QuadricPatch, emit: &mut impl FnMut(&Point, &Point)) {
         if patch.is_plane() {
             return;
@@ -158,7 +159,7 @@ impl Sight {
                 continue;
             }
             for side in [1.0, -1.0] {
-                // Close to the roots the azimuth goes as the square root of the height.
+                // The azimuth varies as the square root of the height close to the roots.
                 let at = |s: f64| {
                     let z = from + (to - from) * 0.5 * (1.0 - (PI * s).cos());
                     let r = patch.square_at(z).max(0.0).sqrt();
@@ -180,8 +181,8 @@ impl Sight {
         }
     }
 
-    /// The circle in which two patches meet: where one is seen and the other is not, if the solid
-    /// is convex there; where both are, if they meet at an angle.
+    /// Emits the circle in which two patches meet: the part where exactly one is visible if the
+    /// solid is convex there, and the part where both are visible if they meet at an angle.
     fn rim(
         &self,
         before: &QuadricPatch,
@@ -201,7 +202,7 @@ impl Sight {
         let both = [s[0].max(t[0]), s[1].min(t[1])];
         let sharp = normals[0].dot(normals[1]) < RIM;
         let arcs = match (turn > 0.0, sharp) {
-            // Either is seen.
+            // Azimuths at which either patch is visible.
             (true, true) if both[0] < both[1] => [[s[0], s[1].max(t[1])], [0.0; 2]],
             (true, true) => [s, t],
             (true, false) if both[0] < both[1] => [[s[0], both[0]], [both[1], s[1].max(t[1])]],
@@ -246,14 +247,14 @@ impl Sight {
 }
 
 impl<F: Fn(f64) -> Option<Spot>> Curve<'_, F> {
-    /// Hands the curve on as lines that it is near to.
+    /// Emits the curve as lines within the flatness tolerance.
     fn follow(&self, emit: &mut impl FnMut(&Point, &Point)) {
         let ends = [0.0, 0.5, 1.0].map(&self.at);
         let length = match &ends {
             [Some(a), Some(m), Some(b)] => a.at.distance(m.at) + m.at.distance(b.at),
             _ => f64::INFINITY,
         };
-        // A longer one may bend twice.
+        // A longer curve may bend twice.
         let spots: &[_] = if length < SHORT {
             &[(0.0, ends[0]), (1.0, ends[2])]
         } else {
@@ -293,14 +294,14 @@ impl<F: Fn(f64) -> Option<Spot>> Curve<'_, F> {
         }
     }
 
-    /// How far beside a spot the depth is followed, and on which side the solid is.
+    /// The depth difference accepted beside a spot, and the side on which the solid is.
     fn point(&self, spot: &Spot) -> Point {
         let Spot { place, depth, .. } = *spot;
         let ray = spot.from_eye / depth;
         let (mut reach, mut bulges) = (0.0f64, !self.curved);
         for patch in self.patches {
-            // Along the ray G is `steep s + bend s^2` about the point, less what a pixel beside
-            // changes it by.
+            // Along the ray about the point, G is `steep s + bend s^2`, minus its change from one
+            // pixel to the next.
             let [a, _, k1, k2] = patch.quadric;
             let gradient = DVec3::new(
                 2.0 * a * place.x,

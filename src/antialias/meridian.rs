@@ -1,5 +1,5 @@
-//! What of an object's silhouettes does not depend on the view: its boundary as patches, as coarse
-//! as a copy's size on the screen allows.
+//! The part of an object's silhouettes that is independent of the view: its boundary as patches, as
+//! coarse as a copy's size on the screen allows.
 
 use crate::error::Result;
 use crate::scene::{GrownProfiles, Object, Placement};
@@ -7,26 +7,26 @@ use crate::surface::{Contour, ContourSource, FitOptions, QuadricPatch, fit_patch
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// Levels that are kept, each twice as coarse as the one before.
+/// Number of levels, each twice as coarse as the one before.
 const LEVELS: usize = 13;
-/// Pixels by which patches may differ from the boundary.
+/// Largest distance between patches and the boundary, pixels.
 pub(super) const TOLERANCE: f64 = 1.0 / 16.0;
 
 /// The boundary of an object, prepared.
 pub(super) struct Meridian {
-    /// The object in the box that its offset has grown.
+    /// The object in the box that is enlarged for its offset.
     pub object: Object,
-    /// Where its axis stands in the box.
+    /// The position of the axis in the box.
     pub axis: DVec2,
     contour: Contour,
     levels: [OnceLock<Vec<QuadricPatch>>; LEVELS],
 }
 
 impl Meridian {
-    /// `None` of replicas, which their cells cut.
+    /// Returns `None` for replicas, which their cells cut.
     ///
     /// # Errors
-    /// Where the contour does not close.
+    /// The contour does not close.
     pub fn new(object: &Object) -> Result<Option<Self>> {
         if object.repeat != [1; 3] {
             return Ok(None);
@@ -42,7 +42,7 @@ impl Meridian {
         }))
     }
 
-    /// The patches for a copy whose unit takes so many pixels.
+    /// The patches for a copy with `pixels` pixels per object unit.
     pub fn patches(&self, pixels: f64) -> &[QuadricPatch] {
         let exact = FitOptions::default().tolerance;
         let coarser = (TOLERANCE / (pixels * exact)).log2().floor();

@@ -1,16 +1,16 @@
 //! Anti-aliasing of silhouettes from the solids themselves, for a frame of one ray per pixel.
 //!
-//! A solid's silhouette, and the rims where its surface bends, are lines that its patches give in
-//! closed form. Each line is walked on the screen. A pixel that it cuts keeps the part of its own
-//! colour that lies on its middle's side, and takes the rest from the neighbour across. A line that
-//! something hides does nothing: the frame's distances tell.
+//! Silhouettes of a solid, and the rims where its surface bends, are lines in closed form, computed
+//! from the solid's patches. The algorithm walks along each line on the screen. Each pixel that the
+//! line cuts keeps its own colour for the part on its middle's side. The neighbour across the line
+//! gives the rest. A hidden line has no effect: the frame's distances show that it is hidden.
 //!
-//! Nothing is traced, and pixels that no line cuts are not looked at. So the cost follows the length
-//! of the silhouettes. It works on the planes of a [`Frame`], whoever drew them: either stage, any
-//! search, the reference.
+//! Nothing is traced, and pixels that no line cuts are not read. The cost is therefore proportional
+//! to the length of the silhouettes. Smoothing needs only the planes of a [`Frame`], from any
+//! renderer: either stage, any search, the reference.
 //!
-//! Colours within a surface stay as they are: textures, highlights and shadows are not smoothed, nor
-//! where two solids cut each other, nor replicas.
+//! Colours within a surface are unchanged: textures, highlights and shadows are not smoothed. Lines
+//! where two solids cut each other, and replicas, are not smoothed either.
 
 mod coverage;
 mod lines;
@@ -28,11 +28,11 @@ use meridian::Meridian;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Smooths the silhouettes of a frame of this scene. It must have distances; where they are
-/// infinite, nothing is hit.
+/// Smooths the silhouettes of a frame of this scene. The frame must have distances; an infinite
+/// distance is background.
 ///
 /// # Errors
-/// Of the scene's camera.
+/// The errors of the scene's camera.
 pub fn silhouettes(scene: &Scene, frame: &mut Frame) -> Result<()> {
     let mut solids = Solids::default();
     solids.update(scene);
@@ -41,17 +41,17 @@ pub fn silhouettes(scene: &Scene, frame: &mut Frame) -> Result<()> {
     Ok(())
 }
 
-/// The number of a pixel that smoothing changes, and its colour.
+/// The number of a pixel that smoothing changes, and the pixel's new colour.
 pub(crate) type Change = (u32, [f32; 4]);
 
-/// The solids of a scene, prepared; those that do not change are kept.
+/// The solids of a scene, prepared; unchanged solids are reused.
 #[derive(Default)]
 pub(crate) struct Solids {
     of: Vec<(Object, Option<Arc<Meridian>>)>,
 }
 
 impl Solids {
-    /// Takes over a scene. Objects whose contour does not close are left out.
+    /// Updates the solids to a scene. Objects whose contour does not close are left out.
     pub fn update(&mut self, scene: &Scene) {
         self.of.truncate(scene.objects.len());
         for (number, object) in scene.objects.iter().enumerate() {
@@ -80,8 +80,8 @@ impl Solids {
         apply(&changes, frame);
     }
 
-    /// What smoothing changes of a picture, by its depths along the view, infinite where nothing is
-    /// hit, and its colours, each of a pixel's number.
+    /// The pixels that smoothing changes in a picture. `depth` returns the depth of a pixel along
+    /// the view, infinite for the background; `color` returns the pixel's colour.
     pub fn changes<D, C>(
         &self,
         camera: &CameraFrame,
@@ -100,7 +100,7 @@ impl Solids {
             .collect()
     }
 
-    /// The parts of pixels that show what is beside them; each pixel once.
+    /// The blends of pixels that show their neighbours in part; each pixel once.
     fn blends<D>(&self, camera: &CameraFrame, size: (u32, u32), depth: &D) -> Vec<Blend>
     where
         D: Fn(usize) -> f64 + Sync,
@@ -148,7 +148,7 @@ fn middle(copy: &Placement) -> DVec3 {
     copy.position + copy.rotation * (0.5 * copy.scale * DVec3::Z)
 }
 
-/// The colours of a blend's sources, mixed, weighted by alpha.
+/// The colours of a blend's sources, mixed and weighted by alpha.
 fn mixed(blend: &Blend, color: &impl Fn(usize) -> [f32; 4]) -> [f32; 4] {
     let [beyond, own, further] = blend.sources.map(|(pixel, weight)| {
         let [r, g, b, a] = color(pixel as usize);
@@ -158,7 +158,7 @@ fn mixed(blend: &Blend, color: &impl Fn(usize) -> [f32; 4]) -> [f32; 4] {
     let [r, g, b, a]: [f32; 4] = std::array::from_fn(|c| {
         let (a, b) = (own.0[c], further.0[c]);
         let near = a * own.1 + b * further.1;
-        // What is taken on from further in stays near both.
+        // The colour from further in is limited to the range of both.
         let [least, most] = [0.5 * a.min(b), a.max(b)].map(|v| covered * v);
         beyond.0[c] * beyond.1 + near.max(least).min(most)
     });
@@ -166,7 +166,7 @@ fn mixed(blend: &Blend, color: &impl Fn(usize) -> [f32; 4]) -> [f32; 4] {
     [r * scale, g * scale, b * scale, a.min(1.0)]
 }
 
-/// Takes over what smoothing changes.
+/// Writes the changes of smoothing into the frame.
 pub(crate) fn apply(changes: &[Change], frame: &mut Frame) {
     for (pixel, color) in changes {
         frame.color[*pixel as usize] = *color;

@@ -1,4 +1,5 @@
-//! Files that appear whole or not at all: written beside their target, then renamed onto it.
+//! Files that are written completely or not at all: the data goes into a file beside the target,
+//! which is then renamed to the target's name.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fs::{self, File, OpenOptions};
@@ -8,14 +9,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Writes a file by `fill`, which gets a buffered writer that can seek.
 ///
-/// The bytes go into a new file in the target's folder, reach the disk, and only then take the
-/// target's name: a reader never sees half a file, and a failure leaves what was there before. A
+/// The bytes go into a new file in the target's folder, are flushed to the disk, and only then get
+/// the target's name. A reader never sees half a file, and a failure leaves the old content. A
 /// symbolic link is followed. A target that is neither a file nor missing (a device, a pipe) is
-/// written directly, since nothing can take its place.
+/// written directly, since it cannot be replaced.
 ///
 /// # Errors
-/// What `fill` reports; [`ErrorKind::File`] where the file cannot be made or written (folder
-/// missing, no permission, full disk). Both name the file.
+/// The errors of `fill`; [`ErrorKind::File`] if the file cannot be made or written (folder missing,
+/// no permission, full disk). Both errors name the file.
 pub fn write_atomically(
     target: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
@@ -23,7 +24,7 @@ pub fn write_atomically(
     let failed = |what: &str, e: &io::Error| {
         Error::new(ErrorKind::File, format!("{what}: {}", reason(e))).in_file(target)
     };
-    // A link's own place keeps the link; what it points to is replaced.
+    // A symbolic link is kept; the file that it points to is replaced.
     let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
     match fs::metadata(&real) {
         Ok(meta) if meta.is_dir() => {
@@ -53,7 +54,7 @@ pub fn write_atomically(
             let file = writer
                 .into_inner()
                 .map_err(|e| failed("cannot be written", e.error()))?;
-            // A full disk may show only here.
+            // A full disk may be reported only here.
             file.sync_all().map_err(|e| failed("cannot be written", &e))
         })
         .and_then(|()| fs::rename(&part, &real).map_err(|e| failed("cannot be replaced", &e)));
@@ -67,7 +68,7 @@ pub fn write_atomically(
 /// Writes these bytes by [`write_atomically`].
 ///
 /// # Errors
-/// As there.
+/// The errors of [`write_atomically`].
 pub fn write_bytes(target: &Path, bytes: &[u8]) -> Result<()> {
     write_atomically(target, |writer| {
         writer.write_all(bytes).map_err(|e| {
@@ -79,7 +80,7 @@ pub fn write_bytes(target: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
-/// A new file in the folder of `target`, whose name no other writer takes.
+/// A new file in the folder of `target`, with a name that no other writer uses.
 fn create_part(target: &Path) -> io::Result<(File, PathBuf)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let name = target.file_name().unwrap_or_default().to_string_lossy();
@@ -100,7 +101,7 @@ fn create_part(target: &Path) -> io::Result<(File, PathBuf)> {
     }
 }
 
-/// The system's reason, and what to do about it where that is plain.
+/// The system's reason, with a remedy if that is plain.
 fn reason(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "its folder does not exist; make it first".into(),

@@ -1,4 +1,4 @@
-//! What was drawn, pixel by pixel: the planes of a frame, written as PNG and EXR.
+//! A drawn picture, pixel by pixel: the planes of a frame, written as PNG and EXR.
 
 pub mod atomic_file;
 #[cfg(feature = "exr")]
@@ -12,13 +12,14 @@ pub use png::{Picture, linear_from_srgb, srgb_from_linear, write_png};
 use crate::error::{Error, ErrorKind, Result};
 use bytemuck::{Zeroable, allocation::try_zeroed_vec};
 
-/// Most pixels that a frame may have: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
+/// Largest number of pixels in a frame: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
 /// is 9 GB.
 pub const MAX_PIXELS: u64 = 1 << 27;
 
-/// All planes of a drawn picture; each holds `width * height` values, row 0 on top.
+/// All planes of a drawn picture; each has `width * height` values, row 0 on top.
 ///
-/// Where nothing is hit: `color` is the background, `distance` is `+inf`, all else is 0.
+/// In pixels without a hit `color` is the background, `distance` is `+inf`, and the other values
+/// are 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Pixels across.
@@ -27,7 +28,7 @@ pub struct Frame {
     pub height: u32,
     /// Linear RGBA; the colour is not multiplied by alpha.
     pub color: Vec<[f32; 4]>,
-    /// Distance from the eye along the ray, world units; `+inf` where nothing is hit.
+    /// Distance from the eye along the ray, world units; `+inf` without a hit.
     pub distance: Vec<f32>,
     /// Unit world normal of the surface, without bump.
     pub normal: Vec<[f32; 3]>,
@@ -39,17 +40,17 @@ pub struct Frame {
     pub uv: Vec<[f32; 2]>,
     /// Look-ups that the search made.
     pub steps: Vec<f32>,
-    /// Number of pixels in which a search that has a bound on its steps used them up: what is seen
-    /// there is a guess. Files do not hold it; 0 where it was not counted
+    /// Number of pixels in which a search with bounded steps used them up; their values are
+    /// guesses. Files do not store this number. 0 if it was not counted
     /// ([`Planes::Color`](crate::settings::Planes::Color), the reference).
     pub exhausted: usize,
 }
 
-/// Where two frames first differ, in reading order of the pixels and, within a pixel, in the order
-/// of the channels.
+/// The first difference of two frames, in reading order of the pixels and, within a pixel, in the
+/// order of the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
-    /// The frames are not of one size: `(width, height)` of each.
+    /// The frames have different sizes: `(width, height)` of each.
     Size([u32; 2], [u32; 2]),
     /// A value differs in at least one bit.
     Value {
@@ -94,7 +95,7 @@ impl Frame {
     /// A frame in which nothing is hit.
     ///
     /// # Errors
-    /// As [`pixel_count`]; [`ErrorKind::OutOfHostMemory`].
+    /// The errors of [`pixel_count`]; [`ErrorKind::OutOfHostMemory`].
     pub fn new(width: u32, height: u32, background: [f32; 4]) -> Result<Self> {
         let pixels = pixel_count(width, height)?;
         Ok(Self {
@@ -117,7 +118,7 @@ impl Frame {
         self.distance.len()
     }
 
-    /// Whether pixel number `index` shows a solid.
+    /// Returns true if pixel number `index` shows a solid.
     #[must_use]
     pub fn hits(&self, index: usize) -> bool {
         self.distance.get(index).is_some_and(|z| z.is_finite())
@@ -189,8 +190,7 @@ impl Frame {
         self.steps[index] = steps;
     }
 
-    /// Where `self` and `other` first differ in a bit, or `None` when they are equal in all
-    /// channels.
+    /// The first bit difference of `self` and `other`, or `None` if they are equal in all channels.
     ///
     /// Bits are compared, so `0.0` and `-0.0` differ and a NaN equals itself.
     #[must_use]
@@ -214,10 +214,10 @@ impl Frame {
     }
 }
 
-/// Number of pixels of a frame of this size, if one may be that large.
+/// Number of pixels of a frame of this size, if that is within the limit.
 ///
 /// # Errors
-/// [`ErrorKind::Usage`] when a side is 0, [`ErrorKind::TooLarge`] beyond [`MAX_PIXELS`].
+/// [`ErrorKind::Usage`] if a side is 0, [`ErrorKind::TooLarge`] beyond [`MAX_PIXELS`].
 pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels == 0 {
@@ -244,7 +244,7 @@ fn plane<T: Copy>(pixels: usize, value: T) -> Result<Vec<T>> {
     Ok(values)
 }
 
-/// A plane of zeros, whose pages take no memory before they are written.
+/// A plane of zeros, whose pages use no memory before they are written.
 fn zeros<T: Zeroable>(pixels: usize) -> Result<Vec<T>> {
     try_zeroed_vec(pixels).map_err(|()| no_memory(pixels))
 }

@@ -1,4 +1,4 @@
-//! Frames as OpenEXR: every plane, in 32-bit floats, lossless.
+//! Reads and writes frames as OpenEXR: every plane, in 32-bit floats, lossless.
 
 use super::atomic_file::write_atomically;
 use super::{CHANNELS, Frame, pixel_count};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed.
 ///
 /// # Errors
-/// [`ErrorKind::File`], naming the file, when it cannot be written.
+/// [`ErrorKind::File`], with the file's name, if it cannot be written.
 pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
     for index in 0..frame.pixels() {
@@ -54,8 +54,8 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
 /// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
 ///
 /// # Errors
-/// [`ErrorKind::File`], with the file, when it cannot be read or lacks a channel, which is the key;
-/// those of [`Frame::new`].
+/// [`ErrorKind::File`], with the file's name, if it cannot be read or lacks a channel, which is the
+/// key; the errors of [`Frame::new`].
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
     let path = path.as_ref();
     read_checked(path).map_err(|e| e.in_file(path))
@@ -68,7 +68,7 @@ fn read_checked(path: &Path) -> Result<Frame> {
             format!("cannot be read as EXR: {}", one_line(&e)),
         )
     };
-    // The header first: its size decides what the reader would allocate.
+    // The header is read first: its size determines the reader's allocations.
     let meta = MetaData::read_from_file(path, false).map_err(unreadable)?;
     let length = std::fs::metadata(path).map_or(0, |file| file.len());
     check_exr(&meta, length)

@@ -1,4 +1,4 @@
-//! Frames as PNG: 8-bit sRGB RGBA, for eyes.
+//! Writes frames as PNG: 8-bit sRGB RGBA, for viewing.
 
 use super::Frame;
 use super::atomic_file::write_atomically;
@@ -10,12 +10,12 @@ use std::path::Path;
 /// linear.
 ///
 /// # Errors
-/// [`ErrorKind::File`], naming the file, when it cannot be written.
+/// [`ErrorKind::File`], with the file's name, if it cannot be written.
 pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     Picture::of(frame).write_png(path)
 }
 
-/// A picture for eyes: sRGB with alpha, 8 bits each, row 0 on top.
+/// A picture for viewing: sRGB with alpha, 8 bits each, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Pixels across.
@@ -43,7 +43,7 @@ impl Picture {
     /// Writes a PNG.
     ///
     /// # Errors
-    /// [`ErrorKind::File`], naming the file, when it cannot be written.
+    /// [`ErrorKind::File`], with the file's name, if it cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
         write_atomically(path.as_ref(), |writer| self.encode_png(writer))
     }
@@ -51,7 +51,7 @@ impl Picture {
     /// Writes the bytes of a PNG.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] when they cannot be written, or there are not `width * height` pixels.
+    /// [`ErrorKind::File`] if they cannot be written, or if there are not `width * height` pixels.
     pub fn encode_png(&self, writer: impl Write) -> Result<()> {
         let write = || -> std::result::Result<(), png::EncodingError> {
             let mut encoder = png::Encoder::new(writer, self.width, self.height);
@@ -91,8 +91,8 @@ pub fn linear_from_srgb(code: f64) -> f64 {
     }
 }
 
-/// Exact rounding to the nearest code without a power per value: the linear values at which one
-/// code turns into the next.
+/// Linear values at which one code turns into the next. They give exact rounding to the nearest
+/// code without a power per value.
 struct Codes([f64; 255]);
 
 impl Codes {
@@ -103,7 +103,7 @@ impl Codes {
     }
 
     fn code(&self, linear: f32) -> u8 {
-        // A NaN is below no bound: it becomes 0, not white.
+        // A NaN is below no bound, so it becomes 0, not white.
         self.0.partition_point(|&bound| f64::from(linear) >= bound) as u8
     }
 }

@@ -1,5 +1,4 @@
-//! A camera as rays: the one place where pixels become directions, shared by the GPU's block and
-//! the reference.
+//! Converts pixels to ray directions; the GPU's block and the reference share this code.
 
 use super::Camera;
 use crate::error::{Error, ErrorKind, Result};
@@ -7,37 +6,37 @@ use glam::DVec3;
 
 /// The rays of a camera for pictures of one size.
 ///
-/// With `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`, the ray
-/// through the centre of pixel `(i, j)` is `eye + t (f + x right + y up')`, with
-/// `x = (2 (i + 1/2) / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`. The direction
-/// is not normalised: `t` is the depth along `f`. Since pixels are square, `right` and `up` are kept multiplied by the
-/// width of a pixel at depth 1, `2 tan(fov/2) / h`, and a pixel is a number of such steps from the
-/// middle.
+/// Let `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`. The ray
+/// through the centre of pixel `(i, j)` is `eye + t (f + x right + y up')`, with `x = (2 (i + 1/2)
+/// / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`. The direction is not
+/// normalised: `t` is the depth along `f`. Pixels are square, so `right` and `up` are stored
+/// multiplied by the width of a pixel at depth 1, `2 tan(fov/2) / h`. A pixel's position is the
+/// number of such steps from the middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFrame {
     /// The eye, world units.
     pub eye: DVec3,
     /// Unit vector towards the target.
     pub forward: DVec3,
-    /// One pixel to the right, at depth 1.
+    /// Step of one pixel to the right, at depth 1.
     pub right: DVec3,
-    /// One pixel up, at depth 1.
+    /// Step of one pixel up, at depth 1.
     pub up: DVec3,
-    /// Where the view direction meets the picture, in pixels from its upper left corner: `(w / 2, h
-    /// / 2)` less the [shift](Camera::shift).
+    /// The point of the picture in the view direction, in pixels from its upper left corner: `(w /
+    /// 2, h / 2)` less the [shift](Camera::shift).
     pub middle: [f64; 2],
 }
 
 impl CameraFrame {
     /// The rays of `camera` for pictures of `width x height` pixels.
     ///
-    /// When `up` points along the view, world y takes its place (then world x): one may look
+    /// If `up` points along the view, world y replaces it (or else world x), so a camera may look
     /// straight down.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`], naming the key, when eye and target are one point, the field of view
-    /// is not between 0 and 180 degrees, `up` is zero, or a number is not finite;
-    /// [`ErrorKind::Usage`] when a side of the picture is 0.
+    /// [`ErrorKind::Content`], with the key, if eye and target are one point, the field of view is
+    /// not between 0 and 180 degrees, `up` is zero, or a number is not finite. [`ErrorKind::Usage`]
+    /// if a side of the picture is 0.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
         let wrong = |key: &str, what: &str| {
             Err(Error::new(ErrorKind::Content, what).at_key(format!("camera.{key}")))

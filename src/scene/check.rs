@@ -1,23 +1,24 @@
-//! Whether a scene's values make sense. Every message names the key as a scene file would.
+//! Checks a scene's values. Every message gives the key as in a scene file.
 
 use super::{Camera, Light, Lighting, Object, Offset, Placement, Scene};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// Lengths beyond this leave 32-bit floats no digits to work with.
+/// Lengths beyond this leave too few digits to 32-bit floats.
 const FAR: f64 = 1e9;
-/// Factors of scale and texture repetition lie between `1 / LARGE` and `LARGE`.
+/// Factors of scale and texture repetition are between `1 / LARGE` and `LARGE`.
 const LARGE: f64 = 1e6;
-/// How far a rotation's length may be from 1.
+/// Largest difference between a rotation's length and 1.
 const UNIT: f64 = 1e-6;
-/// Rows of a shape map: one row has no slope, and textures have no more than these.
+/// Range of rows of a shape map: one row has no slope, and textures have no more than the upper
+/// limit.
 const ROWS: RangeInclusive<u32> = 2..=16384;
 /// Cells of a box along one axis.
 const MAX_REPEAT: u32 = 1024;
 
 impl Scene {
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: the first value out of its range, with its key (`object.0.scale`)
@@ -34,7 +35,7 @@ impl Scene {
 }
 
 impl Lighting {
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
     /// As [`Scene::check`].
@@ -44,17 +45,17 @@ impl Lighting {
 }
 
 impl Object {
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
-    /// As [`Scene::check`], with keys such as `scale`.
+    /// The errors of [`Scene::check`], with keys such as `scale`.
     pub fn check(&self) -> Result<()> {
         object(self)
     }
 }
 
 impl Offset {
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
     /// As [`Object::check`].
@@ -64,7 +65,7 @@ impl Offset {
 }
 
 impl Placement {
-    /// Looks at every value.
+    /// Checks every value.
     ///
     /// # Errors
     /// As [`Object::check`].
@@ -98,8 +99,8 @@ fn camera(camera: &Camera) -> Result<()> {
     length("camera.target", camera.target)?;
     length("camera.up", camera.up)?;
     let view = camera.target - camera.eye;
-    // Relative to where they stand: far from the origin, neighbours that differ in the last digits
-    // have no direction.
+    // The limit is relative to their distance from the origin: far away, two points that differ in
+    // the last digits have no direction.
     let size = camera.eye.length().max(camera.target.length());
     if view.length() <= 1e-12 * size || view == DVec3::ZERO {
         return Err(fail(
@@ -300,7 +301,7 @@ mod tests {
         scene
     }
 
-    /// Spoils one value and wants its key named.
+    /// Spoils one value and expects an error with its key.
     #[track_caller]
     fn refused(key: &str, spoil: impl Fn(&mut Scene)) {
         let mut scene = scene();

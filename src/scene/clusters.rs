@@ -1,4 +1,4 @@
-//! Copies that stand near each other, so that many can be passed over at once.
+//! Groups copies that are near each other, so that many can be skipped at once.
 
 use super::Placement;
 use glam::DVec3;
@@ -7,28 +7,28 @@ use std::ops::Range;
 
 /// Copies of one object, cluster by cluster.
 pub(crate) struct Clusters {
-    /// Copies by their place in the object's list; each cluster has a range of these.
+    /// Copies by their index in the object's list; each cluster is a range of these.
     order: Vec<u32>,
-    /// In this order, as what is near is asked for at once.
+    /// Placements in the order of `order`, since neighbours are read together.
     placements: Vec<Placement>,
     all: Vec<Cluster>,
 }
 
-/// What some copies have in common.
+/// Common bounds of some copies.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     pub range: Range<u32>,
-    /// A box that holds their positions.
+    /// A box that contains their positions.
     pub low: DVec3,
     pub high: DVec3,
-    /// Least and largest factors of scale.
+    /// Smallest and largest factors of scale.
     pub least_scale: DVec3,
     pub most_scale: DVec3,
 }
 
-/// Copies of a cluster.
+/// Number of copies in a cluster.
 const SIZE: usize = 64;
-/// Bits of a place along each axis.
+/// Bits of a position along each axis.
 const BITS: u32 = 21;
 
 impl Clusters {
@@ -69,17 +69,17 @@ impl Clusters {
         &self.all
     }
 
-    /// The copy in a place, by its place in the object's list, and where it stands.
+    /// The copy at index `place` of the clusters' order: its index in the object's list, and its
+    /// placement.
     pub fn at(&self, place: u32) -> (u32, &Placement) {
         (self.order[place as usize], &self.placements[place as usize])
     }
 
-    /// The least that `value` says of any copy, where `bound` is not more than what it says of a
-    /// cluster's copies.
+    /// The least `value` of any copy. `bound` must not exceed the `value` of any copy in a cluster.
     pub fn least(&self, bound: impl Fn(&Cluster) -> f64, value: impl Fn(&Placement) -> f64) -> f64 {
         let mut bounds: Vec<(f64, &Cluster)> = self.all.iter().map(|c| (bound(c), c)).collect();
         let mut least = f64::INFINITY;
-        // Most often those with the least bound settle it.
+        // The clusters with the least bounds usually decide.
         bounds.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for (bound, cluster) in bounds {
             if bound >= least {
@@ -96,12 +96,12 @@ impl Clusters {
 }
 
 impl Cluster {
-    /// Where all points of its copies are that lie at most so far beside the axis of their box and
-    /// so far from its lower face, in object units.
+    /// Bounds for all points of the cluster's copies within `beside` of the axis of their box and
+    /// within `along` of its lower face, both in object units.
     pub fn around(&self, eye: DVec3, [beside, along]: [f64; 2]) -> Around {
         let [x, y, z] = self.most_scale.to_array();
         let middle = 0.5 * (self.low + self.high);
-        // Rotations may be of another length than 1 by some millionths.
+        // The length of rotations may differ from 1 by some millionths.
         let reach = (x.max(y) * beside).hypot(z * along) * (1.0 + 1e-5);
         Around {
             middle: middle - eye,
@@ -111,9 +111,9 @@ impl Cluster {
     }
 }
 
-/// A box, and what is at most so far from it.
+/// The points within `reach` of a box.
 pub(crate) struct Around {
-    /// Seen from the eye.
+    /// The box's middle relative to the eye.
     pub middle: DVec3,
     /// Half of the box's sides.
     half: DVec3,
@@ -121,7 +121,7 @@ pub(crate) struct Around {
 }
 
 impl Around {
-    /// Ends of the products of its points with a vector.
+    /// Smallest and largest product of its points with a vector.
     pub fn along(&self, way: DVec3) -> [f64; 2] {
         let middle = self.middle.dot(way);
         let wide = self.half.dot(way.abs()) + self.reach * way.length();
@@ -134,10 +134,11 @@ fn ends(all: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     all.fold(none, |(low, high), p| (low.min(p), high.max(p)))
 }
 
-/// Where a cell lies on a curve through all of them, along which neighbours are near (Morton 1966).
+/// The position of a cell on a curve through all of them, along which neighbours are near (Morton
+/// 1966).
 fn along_curve(cell: DVec3) -> u64 {
     let most = (1u64 << BITS) - 1;
-    // Two zeros before each bit.
+    // Inserts two zeros before each bit.
     let spread = |v: f64| {
         let mut x = (v as u64).min(most);
         for (shift, mask) in [

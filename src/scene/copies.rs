@@ -1,4 +1,4 @@
-//! Where the copies of an object stand, and what is found out about them once for all views.
+//! The placements of an object's copies, and data derived from them once for all views.
 
 use super::Placement;
 use super::clusters::Clusters;
@@ -6,9 +6,10 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
-/// Placements of copies: a [`Vec`] to whoever reads or changes it. Clones share the placements
+/// Placements of copies; they are read and changed like a [`Vec`]. Clones share the placements
 /// until one of them is changed, so that scenes of many copies are cheap to clone and to compare.
-/// Once drawn they are kept a second time in the order of their neighbourhood: 84 bytes a copy.
+/// After the first drawing a second list keeps them in the order of their neighbourhood: 84 bytes a
+/// copy.
 ///
 /// ```
 /// use revmap::scene::{Copies, Placement};
@@ -22,27 +23,28 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Default)]
 pub struct Copies(Arc<Known>);
 
-/// Placements and what follows from them.
+/// Placements and derived data.
 #[derive(Default)]
 struct Known {
     placements: Vec<Placement>,
-    /// Set once all were looked at and found right.
+    /// Set once all were checked and found valid.
     checked: OnceLock<()>,
     clusters: OnceLock<Clusters>,
 }
 
 impl Copies {
-    /// Their clusters, made when they are first asked for after a change.
+    /// The clusters of the copies, made on the first call after a change.
     pub(crate) fn clusters(&self) -> &Clusters {
         let known = &self.0.clusters;
         if known.get().is_none() {
-            // Not while others wait: a thread of rayon that waits may take up what asks again.
+            // The clusters are made outside `get_or_init`: a rayon thread that waits there may run
+            // a task that makes the same call.
             let _ = known.set(Clusters::new(self));
         }
         known.get_or_init(|| Clusters::new(self))
     }
 
-    /// Looks at all placements, unless they were found right before.
+    /// Checks all placements, unless they were found valid before.
     pub(crate) fn check<E>(
         &self,
         all: impl FnOnce(&[Placement]) -> Result<(), E>,
@@ -56,7 +58,7 @@ impl Copies {
 }
 
 impl Clone for Known {
-    /// For whoever is about to change it.
+    /// Copies the placements only: the clone is about to change.
     fn clone(&self) -> Self {
         self.placements.clone().into()
     }
@@ -124,7 +126,7 @@ impl fmt::Debug for Copies {
 mod tests {
     use super::*;
 
-    /// Nothing that was found out of other placements is kept, and clones stay as they were.
+    /// Data derived from other placements is dropped, and clones are unchanged.
     #[test]
     fn a_change_is_seen_by_all_that_follows_from_it() {
         let mut copies: Copies = vec![Placement::default(); 100].into();

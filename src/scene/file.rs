@@ -42,7 +42,7 @@
 //! | `object.N.scale` | `S` | `[1, 1, 1]` |
 //! | `object.N.instances` | a CSV file of rows `x,y,z,qx,qy,qz,qw,sx,sy,sz`, one for each copy | |
 //!
-//! A scene without a `[[light]]` has one of the defaults above; `light = []` switches it off.
+//! A scene without a `[[light]]` has the default light above; `light = []` switches it off.
 
 use super::instances;
 use super::keys::Keys;
@@ -97,11 +97,11 @@ const OBJECT: &[&str] = &[
     "scale",
     "instances",
 ];
-/// `R` of a polygon's box unless it says otherwise.
+/// `R` of a polygon's box unless the file gives another.
 const RADIUS: f64 = 0.5;
 
-/// Reads the scene `file` and all that it names. Each of `sets` is `key=value`, put in place of
-/// what the file says: `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
+/// Reads the scene `file` and all files that it names. Each of `sets` is `key=value` and replaces
+/// the file's value: `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
 ///
 /// # Errors
 /// [`ErrorKind::Content`] and [`ErrorKind::File`], with file and key; [`ErrorKind::Usage`] for a
@@ -113,13 +113,13 @@ pub fn load(file: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
 /// Reads a scene from `text`; paths in it are relative to `folder`. `sets` as in [`load`].
 ///
 /// # Errors
-/// As [`load`]; faults of the text itself name no file.
+/// The errors of [`load`]; faults of the text itself name no file.
 pub fn parse(text: &str, folder: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
     SceneFile::parse(text, folder)?.scene(sets)
 }
 
-/// A scene file that was read, for scenes that differ in some keys: what it names is read once, and
-/// shared by all of them.
+/// A scene file for scenes that differ in some keys: files that it names are read once and shared
+/// by all scenes.
 pub struct SceneFile {
     root: Table,
     file: Option<PathBuf>,
@@ -127,11 +127,11 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads the text of `file`, a scene in TOML; or a profile (SVG or a picture), which gets a
-    /// scene of its own: seen from in front and a little above, as a whole.
+    /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture) gets a scene of its
+    /// own: all of it, seen from in front and a little above.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] for what cannot be read; those of a profile.
+    /// [`ErrorKind::File`] for a file that cannot be read; the errors of a profile.
     pub fn open(file: impl AsRef<Path>) -> Result<Self> {
         let file = file.as_ref();
         let folder = file.parent().unwrap_or(Path::new(""));
@@ -155,7 +155,7 @@ impl SceneFile {
     /// Reads `text`; paths in it are relative to `folder`.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] for what is not TOML.
+    /// [`ErrorKind::File`] for text that is not TOML.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
         Ok(Self {
             root: text.parse().map_err(|e| syntax(text, &e))?,
@@ -168,7 +168,7 @@ impl SceneFile {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
         let profile = reader.load_profile(file, ProfileOptions::default())?;
-        // As far off as a sphere about the box fills the picture's height.
+        // The distance at which a sphere about the box fills the picture's height.
         let reach = profile.radius.hypot(0.5) * 1.05;
         let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
         let eye = DVec3::new(0.0, 0.0, 0.5) + distance * DVec3::new(0.9, 0.3, 0.32).normalize();
@@ -200,10 +200,10 @@ impl SceneFile {
             .map(PathBuf::as_path)
     }
 
-    /// The scene, with each of `sets` (`key=value`, as in [`load`]) in place of what the file says.
+    /// The scene, with each of `sets` (`key=value`, as in [`load`]) replacing the file's value.
     ///
     /// # Errors
-    /// As [`load`].
+    /// The errors of [`load`].
     pub fn scene(&mut self, sets: &[String]) -> Result<Scene> {
         let mut root = self.root.clone();
         let mut read = || {
@@ -220,8 +220,9 @@ impl SceneFile {
         })
     }
 
-    /// The file's text with each of `sets` (`key=value`, as in [`load`]) in place of what it says.
-    /// Its paths are relative to the same folder; comments and order of keys are lost.
+    /// The file's text with each of `sets` (`key=value`, as in [`load`]) replacing the file's
+    /// value. Paths in the text are relative to the same folder; comments and the order of keys are
+    /// lost.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for a malformed assignment.
@@ -246,11 +247,11 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
         .at_key(format!("line {line}, column {column}"))
 }
 
-/// What has been read so far: files named more than once are read once, and shared.
+/// Files read so far: those named more than once are read once and shared.
 struct Reader {
     folder: PathBuf,
     profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
-    /// With their points and radius.
+    /// Polygon profiles with their points and radius.
     polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
     height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
@@ -316,7 +317,7 @@ impl Reader {
         Ok(object)
     }
 
-    /// An object with its profile, all else at its default.
+    /// An object with its profile, and defaults otherwise.
     fn profile(&mut self, keys: &Keys) -> Result<Object> {
         let file = keys.file("profile", &self.folder)?;
         let polygon = keys.pairs("polygon")?;
@@ -400,13 +401,13 @@ impl Reader {
     }
 }
 
-/// A fault with the key that it names, or `key`, put below the object's.
+/// A fault with its own key, or else `key`, put below the object's.
 fn below(keys: &Keys, key: &str, mut error: Error) -> Error {
     let own = error.key.take();
     error.at_key(keys.place(own.as_deref().unwrap_or(key)))
 }
 
-/// What `file` holds, read when it is first named.
+/// The content of `file`, read when it is first named.
 fn shared<T>(
     known: &mut HashMap<PathBuf, Arc<T>>,
     file: &Path,

@@ -9,7 +9,7 @@ use glam::DQuat;
 const CAMERA_LINES: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
 const CONE: &str = "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n";
 
-/// A scene of one cone with further lines for it.
+/// A scene of one cone, with further lines.
 fn cone(lines: &str) -> Result<Scene> {
     parse(&format!("{CAMERA_LINES}{CONE}{lines}"), "", &[])
 }

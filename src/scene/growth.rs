@@ -1,10 +1,9 @@
-//! Shape boxes that grow with the offset, so that they cut nothing of the solid ([`Clip::None`]).
+//! Shape boxes that grow with the offset, so that they cut nothing off the solid ([`Clip::None`]).
 //!
-//! A grown box is no special case to what draws it. The outline is put into a larger box, the whole
-//! is scaled so that this box is one unit high again, and offset, axis and placement are
-//! transformed to match. With `k = 1 / (1 + low + high)` and `z' = k (z + low)`, the depth is
-//! `u = 1 - z = u' / k - high`, so the offset keeps its form:
-//! `k w = k (e - b high) + b min(u', k (c + high))`.
+//! A grown box is drawn like any other. The outline is put into a larger box, and the whole is
+//! scaled so that this box is one unit high again. Offset, axis and placement are transformed to
+//! match. Let `k = 1 / (1 + low + high)` and `z' = k (z + low)`. The depth is `u = 1 - z = u' / k -
+//! high`, so the offset keeps its form: `k w = k (e - b high) + b min(u', k (c + high))`.
 
 use super::{Object, Offset, Placement};
 use crate::profile::{Outline, Profile, Raster};
@@ -12,25 +11,25 @@ use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
-/// What the shape box cuts.
+/// The part of a solid that the shape box cuts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Clip {
-    /// Nothing that an offset adds: the box grows with it. Replicas are cut by their cells all the
-    /// same.
+    /// The box cuts nothing that an offset adds: it grows with the offset. Cells still cut
+    /// replicas.
     #[default]
     None,
-    /// All that reaches past `[-R, R]^2 x [0, 1]`, as in the papers.
+    /// The box cuts everything outside `[-R, R]^2 x [0, 1]`, as in the papers.
     Box,
 }
 
 impl Clip {
-    /// Every value with the name that scene files give it.
+    /// Every value with its name in scene files.
     pub const NAMES: [(&'static str, Self); 2] = [("none", Self::None), ("box", Self::Box)];
 }
 
-/// By how much a shape box is larger than the profile's, object units.
+/// Enlargement of a shape box over the profile's, object units.
 ///
-/// Sizes go by sixteenths, so that an offset that moves changes the box seldom.
+/// Sizes are multiples of one sixteenth, so that a changing offset rarely changes the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Growth {
     /// Below `z = 0`.
@@ -43,13 +42,13 @@ pub struct Growth {
 
 /// Sizes of boxes are multiples of this, object units.
 const STEP: f64 = 1.0 / 16.0;
-/// A box grows by no more than this; what offsets add beyond it is cut.
+/// Largest growth of a box; the part that offsets add beyond it is cut.
 const MOST: f64 = 64.0;
-/// What an offset must at least have left to a grown box's faces, object units.
+/// Least distance that an offset leaves to a grown box's faces, object units.
 const MARGIN: f64 = 1e-3;
 
 impl Growth {
-    /// What `object` needs; nothing where its box cuts, and where its offset stays within the box.
+    /// The growth that `object` needs; none if its box cuts, or if its offset stays within the box.
     #[must_use]
     pub fn of(object: &Object) -> Self {
         let bounds = object.profile.outline.bounds();
@@ -62,8 +61,8 @@ impl Growth {
             bevel,
             chamfer,
         } = object.offset;
-        // A bevel is no less than 0, so the offset is largest at the bottom, and from z = 1 on at
-        // most e.
+        // A bevel is at least 0, so the offset is largest at the bottom, and at most e from z = 1
+        // on.
         let largest = extend + bevel * chamfer;
         let pixel = object.profile.raster.as_ref().map(|r| f64::from(r.rows));
         let needed = |offset: f64, room: f64| {
@@ -72,7 +71,7 @@ impl Growth {
                 return 0.0;
             }
             let steps = (((least + MARGIN) / STEP).ceil() * STEP).min(MOST);
-            // Whole pixels of a picture.
+            // Rounds up to whole pixels of a picture.
             pixel.map_or(steps, |rows| (steps * rows).ceil() / rows)
         };
         Self {
@@ -85,7 +84,7 @@ impl Growth {
         }
     }
 
-    /// Whether the box is the profile's own.
+    /// Returns true if the box is the profile's own.
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()
@@ -138,7 +137,7 @@ impl Growth {
         }
     }
 
-    /// Where the grown box stands so that the solid stands at `placement`.
+    /// The placement of the grown box that leaves the solid at `placement`.
     #[must_use]
     pub fn placement(&self, placement: &Placement) -> Placement {
         let down = DVec3::new(0.0, 0.0, -self.low * placement.scale.z);
@@ -153,21 +152,22 @@ impl Growth {
 /// An object in a grown box.
 #[derive(Clone, Debug)]
 pub struct GrownObject {
-    /// The same solid, in units of the grown box.
+    /// The solid in units of the grown box.
     pub object: Object,
-    /// By how much the box is larger.
+    /// Enlargement of the box.
     pub growth: Growth,
 }
 
-/// Grown profiles, one for each profile and growth that some object shows.
+/// Cache of grown profiles, one for each profile and growth in use.
 #[derive(Debug, Default)]
 pub struct GrownProfiles {
-    /// By the profile's address, which the weak reference beside it keeps from being used again.
+    /// The key has the profile's address; the weak reference in the value prevents reuse of the
+    /// address.
     known: HashMap<(usize, [u64; 3]), [Weak<Profile>; 2]>,
 }
 
 impl GrownProfiles {
-    /// `object` in a box that cuts nothing of it; `None` where its own does.
+    /// `object` in a box that cuts nothing off it; `None` if it keeps its own box.
     pub fn grown(&mut self, object: &Object) -> Option<GrownObject> {
         let growth = Growth::of(object);
         if growth.is_none() {

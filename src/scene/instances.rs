@@ -5,15 +5,15 @@ use crate::error::{Error, ErrorKind, Result};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 
-/// Numbers in a row.
+/// Count of numbers in a row.
 const COLUMNS: usize = 10;
-/// More copies than this are taken for a mistake: their transforms alone would be hundreds of
+/// More copies than this are treated as a mistake: their transforms would use hundreds of
 /// megabytes.
 const MAX_COPIES: usize = 1 << 20;
 
 /// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x`
-/// are passed over. Rotations are brought to unit length. A byte order mark, as spreadsheets write
-/// it, is passed over.
+/// are skipped. Rotations are normalised to unit length. A byte order mark, as spreadsheets write
+/// it, is skipped.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let text = std::fs::read_to_string(file).map_err(|e| {
         Error::new(
@@ -80,7 +80,7 @@ fn row(line: &str) -> Result<Placement> {
     })
 }
 
-/// A quaternion brought to unit length.
+/// A quaternion normalised to unit length.
 pub(super) fn unit(xyzw: [f64; 4]) -> Result<DQuat> {
     let rotation = DQuat::from_array(xyzw);
     let length = rotation.length();

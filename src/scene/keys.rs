@@ -1,5 +1,5 @@
-//! One table of a scene file: known keys only, each read as the type it must have, every message
-//! with the key's full path.
+//! A table of a scene file: only known keys, each read as its required type. Every message has the
+//! key's full path.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
@@ -13,10 +13,10 @@ pub(super) struct Keys<'a> {
 }
 
 impl<'a> Keys<'a> {
-    /// Looks at `table`, which stands at `path` (`""`: the whole file).
+    /// Checks the keys of `table`, whose path is `path` (`""`: the whole file).
     ///
     /// # Errors
-    /// The first key that is not in `known`, with the nearest one that is.
+    /// The first key that is not in `known`, with the nearest known key.
     pub(super) fn new(
         table: &'a Table,
         path: impl Into<String>,
@@ -104,7 +104,7 @@ impl<'a> Keys<'a> {
             .transpose()
     }
 
-    /// One of a few names.
+    /// The value of a name in `names`.
     pub(super) fn one_of<T: Copy>(&self, key: &str, names: &[(&str, T)]) -> Result<Option<T>> {
         let Some(text) = self.text(key)? else {
             return Ok(None);
@@ -152,7 +152,8 @@ impl<'a> Keys<'a> {
         self.array(key, "numbers", as_number)
     }
 
-    /// Numbers for the GPU. What overflows becomes infinite, which the scene's check refuses.
+    /// Numbers for the GPU. Numbers that overflow become infinite, and the scene's check refuses
+    /// them.
     pub(super) fn floats<const N: usize>(&self, key: &str) -> Result<Option<[f32; N]>> {
         self.array(key, "numbers", |v| as_number(v).map(|x| x as f32))
     }
@@ -239,7 +240,7 @@ fn as_count(value: &Value) -> Option<u32> {
     value.as_integer().and_then(|i| u32::try_from(i).ok())
 }
 
-/// A value as a message shows it: its type, and itself where it is short.
+/// A value as messages show it: its type, and the value itself if it is short.
 fn describe(value: &Value) -> String {
     match value {
         Value::String(s) if s.chars().count() <= 40 => format!("the text {s:?}"),
@@ -253,7 +254,7 @@ fn describe(value: &Value) -> String {
     }
 }
 
-/// What to say about a key that is not known.
+/// The message for an unknown key.
 pub(super) fn unknown(stranger: &str, known: &[&str]) -> String {
     match nearest(stranger, known) {
         Some(friend) => format!("unknown key; did you mean `{friend}`?"),
@@ -261,7 +262,7 @@ pub(super) fn unknown(stranger: &str, known: &[&str]) -> String {
     }
 }
 
-/// The name closest to `word`, if one is close enough to be meant.
+/// The name closest to `word`, if it is close enough to be a spelling of it.
 fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
     let word = word.to_lowercase().replace('-', "_");
     let allowed = (word.chars().count() / 3).clamp(1, 3);

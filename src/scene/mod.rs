@@ -1,5 +1,5 @@
-//! What is to be seen: camera, lights, objects. Plain values, checked once by [`Scene::check`];
-//! files are read by `file::load` (feature `scene-file`).
+//! The content of a picture: camera, lights, objects. Scenes are plain values, checked once by
+//! [`Scene::check`]; `file::load` reads them from files (feature `scene-file`).
 //!
 //! A scene needs no file. An engine fills the same values:
 //!
@@ -53,22 +53,22 @@ use glam::DVec3;
 /// A whole scene.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Linear RGBA behind everything.
+    /// Background colour, linear RGBA.
     pub background: [f32; 4],
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
     /// The eye.
     pub camera: Camera,
-    /// Lights from afar.
+    /// Directional lights.
     pub lights: Vec<Light>,
-    /// Whether objects darken each other and themselves.
+    /// Shadows of objects on each other and on themselves.
     pub shadow: Shadow,
     /// The solids.
     pub objects: Vec<Object>,
 }
 
 impl Scene {
-    /// An empty scene: transparent black behind, a little ambient light, one white light, no
+    /// An empty scene: transparent black background, a little ambient light, one white light, no
     /// shadows.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
@@ -82,7 +82,7 @@ impl Scene {
         }
     }
 
-    /// What lights it.
+    /// The scene's lights and shadows.
     #[must_use]
     pub fn lighting(&self) -> Lighting {
         Lighting {
@@ -92,29 +92,29 @@ impl Scene {
         }
     }
 
-    /// The ambient light of a scene that names none: enough to tell a shape turned from the light.
+    /// The default ambient light of a scene: enough to show shapes that face away from the light.
     pub const AMBIENT: [f32; 3] = [0.1; 3];
 }
 
-/// A pinhole camera. Pixel `(i, j)` of a `w x h` picture is looked at through its centre; row 0 is
-/// on top.
+/// A pinhole camera. The ray of pixel `(i, j)` of a `w x h` picture passes its centre; row 0 is on
+/// top.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, world units.
+    /// Position of the eye, world units.
     pub eye: DVec3,
-    /// What it looks at.
+    /// The point that the camera looks at, world units.
     pub target: DVec3,
-    /// Which way is up.
+    /// The upward direction.
     pub up: DVec3,
     /// Vertical field of view, degrees, between 0 and 180.
     pub fov_y: f64,
-    /// Where in its pixel each ray passes, pixels right of and below the centre. Pictures of
-    /// several shifts, averaged, are free of jagged edges.
+    /// The point of the pixel that each ray passes, in pixels right of and below the centre. The
+    /// average of pictures with several shifts is free of jagged edges.
     pub shift: [f64; 2],
 }
 
 impl Camera {
-    /// The vertical field of view that a camera has unless it is told, degrees.
+    /// The default vertical field of view, degrees.
     pub const FOV_Y: f64 = 40.0;
 
     /// A camera at `eye` that looks at `target`, `+z` up, with a vertical field of view of
@@ -134,14 +134,14 @@ impl Camera {
 /// A directional light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The way the light travels; any length but zero.
+    /// The direction in which the light travels; any length but zero.
     pub direction: DVec3,
     /// Linear RGB.
     pub color: [f32; 3],
 }
 
 impl Default for Light {
-    /// White, from above, in front and to one side.
+    /// White light from above, in front and to one side.
     fn default() -> Self {
         Self {
             direction: DVec3::new(-0.4, -0.6, -0.7),
@@ -150,14 +150,14 @@ impl Default for Light {
     }
 }
 
-/// What lights a scene.
+/// The lights and shadows of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
-    /// Lights from afar.
+    /// Directional lights.
     pub lights: Vec<Light>,
-    /// Whether objects darken each other and themselves.
+    /// Shadows of objects on each other and on themselves.
     pub shadow: Shadow,
 }
 
@@ -175,17 +175,18 @@ impl Default for Lighting {
 /// Shadows, by tracing from the surface towards each light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Shadow {
-    /// None; nothing is traced.
+    /// No shadows; nothing is traced.
     #[default]
     Off,
-    /// Lit or not.
+    /// Hard shadows: each point is lit or not.
     Hard,
-    /// With a penumbra estimated from how close the ray towards the light passes other surfaces.
+    /// Soft shadows: the penumbra is estimated from how close the ray towards the light passes
+    /// other surfaces.
     Soft,
 }
 
 impl Shadow {
-    /// Every form with the name that scene files give it.
+    /// Every form with its name in scene files.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("off", Self::Off),
         ("hard", Self::Hard),

@@ -1,5 +1,4 @@
-//! One solid of revolution: what is turned, what covers it, how far its surface stands off, where
-//! it stands.
+//! A solid of revolution: profile, texturing, offset of the surface, and placement.
 
 use super::{Clip, Cluster, Copies};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
@@ -8,45 +7,45 @@ use glam::{DQuat, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// One solid of revolution, once or as many copies.
+/// A solid of revolution, drawn once or as many copies.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// What messages and pictures call it: the file name of its profile, or `polygon`.
+    /// Name in messages and pictures: the file name of the profile, or `polygon`.
     pub name: String,
-    /// The profile's file, where it came from one.
+    /// The profile's file, if it was read from one.
     pub file: Option<PathBuf>,
-    /// What is turned. Objects that share a profile share its maps.
+    /// The profile that is turned about the axis. Objects that share a profile share its maps.
     pub profile: Arc<Profile>,
     /// Rows of its shape map.
     pub map_rows: u32,
-    /// Linear RGB; not used where [`Texturing::color_map`] is set.
+    /// Linear RGB; unused if [`Texturing::color_map`] is set.
     pub color: [f32; 3],
     /// Strength and exponent of the Blinn-Phong highlight.
     pub specular: Specular,
-    /// What covers the surface.
+    /// Textures of the surface.
     pub texturing: Texturing,
     /// Extension, bevel and chamfer.
     pub offset: Offset,
-    /// Whether the shape box cuts what an offset adds.
+    /// The clip mode for the part that an offset adds beyond the shape box.
     pub clip: Clip,
-    /// `(Ox, Oy)`: where the axis stands in box texture coordinates.
+    /// `(Ox, Oy)`: position of the axis in box texture coordinates.
     pub axis: [f64; 2],
-    /// How many replicas the box holds along x, y, z: each is the whole solid, shrunk to its cell.
-    /// At least 1 each.
+    /// Number of replicas in the box along x, y, z: each is the whole solid, shrunk to its cell. At
+    /// least 1 each.
     pub repeat: [u32; 3],
-    /// Whether every second replica along x, y, z is reflected.
+    /// True along x, y, z to reflect every second replica.
     pub mirror: [bool; 3],
-    /// Where it stands.
+    /// Position, rotation and scale of the object.
     pub placement: Placement,
-    /// Where its copies stand; empty: once, at `placement`. With copies, each row's placement is
-    /// used instead.
+    /// Placements of copies; empty for a single solid at `placement`. If there are copies, their
+    /// placements replace `placement`.
     pub instances: Copies,
 }
 
 impl Object {
-    /// Rows of a shape map unless an object says otherwise.
+    /// Default number of rows of a shape map.
     pub const MAP_ROWS: u32 = 512;
-    /// The colour of an object that names none, linear RGB.
+    /// The default colour of an object, linear RGB.
     pub const COLOR: [f32; 3] = [0.8; 3];
 
     /// `profile` turned about its axis, with every other value at its default: light grey, plain,
@@ -71,8 +70,8 @@ impl Object {
         }
     }
 
-    /// Whether it looks the same in its own space: all values but placement and instances are
-    /// equal, what is shared is one.
+    /// Returns true if both look the same in their own space: all values except placement and
+    /// instances are equal, and shared data is identical.
     pub(crate) fn same_look(&self, other: &Self) -> bool {
         fn one<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
             match (a, b) {
@@ -94,15 +93,15 @@ impl Object {
             && one(&a.displacement_map, &b.displacement_map)
     }
 
-    /// Whether all values are equal, what is shared being one.
+    /// Returns true if all values are equal and shared data is identical.
     pub(crate) fn equals(&self, other: &Self) -> bool {
         self.placement == other.placement
             && self.same_look(other)
             && self.instances == other.instances
     }
 
-    /// The least that `value` says of any of its copies, where `bound` is not more than what it
-    /// says of a cluster's copies.
+    /// The least `value` of any of its copies. `bound` must not exceed the `value` of any copy in a
+    /// cluster.
     pub(crate) fn least_of_copies(
         &self,
         bound: impl Fn(&Cluster) -> f64,
@@ -114,13 +113,13 @@ impl Object {
         self.instances.clusters().least(bound, value)
     }
 
-    /// Where its axis stands, object units from the middle of the box.
+    /// Position of the axis, object units from the middle of the box.
     #[must_use]
     pub fn axis_offset(&self) -> [f64; 2] {
         self.axis.map(|o| (2.0 * o - 1.0) * self.profile.radius)
     }
 
-    /// Where every copy stands: the instances, or the one placement.
+    /// The placements of all copies: the instances, or the one placement.
     #[must_use]
     pub fn placements(&self) -> &[Placement] {
         if self.instances.is_empty() {
@@ -131,10 +130,10 @@ impl Object {
     }
 }
 
-/// Where an object's box stands in the world.
+/// The placement of an object's box in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Of the middle of the box's lower face.
+    /// Position of the middle of the box's lower face, world units.
     pub position: DVec3,
     /// Unit quaternion.
     pub rotation: DQuat,
@@ -143,7 +142,7 @@ pub struct Placement {
 }
 
 impl Default for Placement {
-    /// At the origin, upright, one world unit high.
+    /// Upright at the origin, one world unit high.
     fn default() -> Self {
         Self {
             position: DVec3::ZERO,
@@ -153,20 +152,20 @@ impl Default for Placement {
     }
 }
 
-/// The offset `w(z)` by which the surface `F = d - w = 0` stands off the profile, with the depth `u
-/// = 1 - z`: `w = extend + bevel * min(u, chamfer)`.
+/// The offset `w(z)` between the profile and the surface `F = d - w = 0`: `w = extend + bevel *
+/// min(u, chamfer)`, with the depth `u = 1 - z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     /// `e`, object units; negative insets.
     pub extend: f64,
     /// `b`, slope.
     pub bevel: f64,
-    /// `c`, depth in `[0, 1]` to which the bevel reaches.
+    /// `c`, depth in `[0, 1]` down to which the bevel increases.
     pub chamfer: f64,
 }
 
 impl Default for Offset {
-    /// The profile itself: `w = 0`. A bevel that is then set reaches all the way down.
+    /// The profile itself: `w = 0`. A bevel set on this default extends to the bottom.
     fn default() -> Self {
         Self {
             extend: 0.0,
@@ -181,7 +180,7 @@ impl Default for Offset {
 pub struct Specular {
     /// Weight of the highlight, linear.
     pub strength: f32,
-    /// Its exponent.
+    /// Exponent of the highlight.
     pub shininess: f32,
 }
 
@@ -194,25 +193,25 @@ impl Default for Specular {
     }
 }
 
-/// What covers a surface, and how it is wrapped around.
+/// The textures of a surface, and their projection onto it.
 #[derive(Clone, Debug)]
 pub struct Texturing {
     /// Colours in place of [`Object::color`].
     pub color_map: Option<Arc<ColorMap>>,
     /// Slopes of a height map, for bump mapping.
     pub displacement_map: Option<Arc<DisplacementMap>>,
-    /// `a`: the depth by which they are scaled.
+    /// `a`: the depth that scales the slopes.
     pub bump: f64,
-    /// Which formula tilts the normal.
+    /// The formula that tilts the normal.
     pub bump_form: BumpForm,
-    /// How texture coordinates follow from the surface's points.
+    /// The projection that gives the texture coordinates of surface points.
     pub projection: Projection,
-    /// How often the texture repeats along `xi` and `eta`.
+    /// Repetitions of the texture along `xi` and `eta`.
     pub repeat: [f64; 2],
 }
 
 impl Default for Texturing {
-    /// Bare, with cylindrical coordinates.
+    /// No textures, with cylindrical coordinates.
     fn default() -> Self {
         Self {
             color_map: None,
@@ -225,20 +224,20 @@ impl Default for Texturing {
     }
 }
 
-/// How a height map tilts the normal.
+/// The formula by which a height map tilts the normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BumpForm {
-    /// By the gradient along the surface, in which a groove is as deep near the axis as far from it
+    /// Gradient along the surface: a groove is equally deep near the axis and far from it
     /// (Mikkelsen 2010).
     #[default]
     SurfaceGradient,
-    /// As printed in the papers on revolution mapping, without the factor `1 / (2 pi r)` of the
-    /// azimuth.
+    /// The formula as printed in the papers on revolution mapping, without the factor `1 / (2 pi
+    /// r)` of the azimuth.
     Papers,
 }
 
 impl BumpForm {
-    /// Every form with the name that scene files give it.
+    /// Every form with its name in scene files.
     pub const NAMES: [(&'static str, Self); 2] = [
         ("surface-gradient", Self::SurfaceGradient),
         ("papers", Self::Papers),

@@ -3,8 +3,9 @@
 use crate::error::{Error, ErrorKind, Result};
 use toml::{Table, Value};
 
-/// Puts `assignment`, `path.to.key=value`, into `root`: `object.0.bevel=0.4`, `camera.eye.2=1.5`. The
-/// value is read as TOML, else taken as text; tables on the way are made, list entries must exist.
+/// Writes `assignment`, `path.to.key=value`, into `root`: `object.0.bevel=0.4`, `camera.eye.2=1.5`.
+/// The value is read as TOML, or else as text. Missing tables on the path are made; list entries
+/// must exist.
 pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
     let (path, value) = assignment.split_once('=').ok_or_else(|| {
         Error::new(
@@ -70,7 +71,7 @@ pub(super) fn apply(root: &mut Table, assignment: &str) -> Result<()> {
     Ok(())
 }
 
-/// TOML where it is TOML, else the text itself.
+/// The parsed value if it is TOML, otherwise the text itself.
 fn parse(text: &str) -> Value {
     format!("value = {text}")
         .parse::<Table>()

@@ -1,4 +1,4 @@
-//! Values of a scene file that stand for themselves: cameras, lights, offsets, placements.
+//! Self-contained values of a scene file: cameras, lights, offsets, placements.
 
 use super::instances::unit;
 use super::keys::Keys;

@@ -1,4 +1,4 @@
-//! What about a scene is allowed but looks unintended.
+//! Warnings about a scene that is allowed but looks unintended.
 
 use super::{CameraFrame, Scene, Shadow};
 use glam::DVec3;
@@ -11,9 +11,10 @@ const BRIGHT: f32 = 16.0;
 const CROWD: usize = 1000;
 
 impl Scene {
-    /// What looks unintended in a picture of `width x height` pixels, a sentence each, with its
-    /// key: a field of view that looks like radians, colours above 1, what the profiles' pictures
-    /// [warn of](crate::profile::Profile::warnings), shadows of a crowd, nothing in view.
+    /// Warnings for a picture of `width x height` pixels, one sentence each, with the key. The
+    /// causes are a field of view that looks like radians, colours above 1,
+    /// [warnings](crate::profile::Profile::warnings) of the profiles' pictures, shadows of a crowd,
+    /// and an empty view.
     #[must_use]
     pub fn warnings(&self, width: u32, height: u32) -> Vec<String> {
         let mut found = Vec::new();
@@ -58,7 +59,7 @@ impl Scene {
         found
     }
 
-    /// Whether a ball about any copy's box reaches into the picture.
+    /// Returns true if a ball about any copy's box is at least partly in the picture.
     fn is_in_view(&self, width: u32, height: u32) -> bool {
         let Ok(camera) = CameraFrame::new(&self.camera, width, height) else {
             return true;
@@ -147,7 +148,7 @@ mod tests {
         ] {
             warns("nothing is in view", |s| s.camera.target = target);
         }
-        // Within the solid's box, whichever way one looks.
+        // The eye is within the solid's box, so every view direction counts.
         let mut within = scene();
         within.camera.eye = DVec3::new(0.1, 0.0, 0.5);
         within.camera.target = DVec3::new(1.0, 0.2, 0.5);
