@@ -1,8 +1,8 @@
 //! Turns `shaders-glsl/` into what Rust embeds: the SPIR-V words of every module that `src/shader/list.rs` lists, and the numbers that
 //! `include/core/variant.glsl` names.
 //!
-//! With the feature `shaderc` the GLSL is compiled here; without it the SPIR-V kept in `shaders-spirv/` is taken.
-//! `REVMAP_KEEP_SPIRV=1 cargo build` renews what is kept.
+//! The feature `shaderc` compiles the GLSL here; without it the build uses the SPIR-V stored in
+//! `shaders-spirv/`. `REVMAP_KEEP_SPIRV=1 cargo build` renews the stored SPIR-V.
 
 use shaderc_link::modules::{self, Fallible, Modules};
 use std::fmt::Write as _;
@@ -45,7 +45,7 @@ fn generate() -> Fallible<()> {
         named: false,
     };
     let mut all: Vec<_> = list::modules().into_iter().map(module).collect();
-    // Of which tests read the layouts of blocks.
+    // Tests read the layouts of blocks from this module.
     all.push(modules::Module {
         name: "layouts".to_owned(),
         entry: "tree.frag",

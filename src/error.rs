@@ -1,40 +1,41 @@
-//! What can go wrong: every failure has a kind, which says what a program can do about it, and
-//! names the file and the key that it came from.
+//! Errors: every failure has a kind, which says what a program can do about it, and the file and
+//! key that caused it.
 //!
 //! Every function that calls Vulkan can fail with [`ErrorKind::DeviceLost`],
 //! [`ErrorKind::OutOfDeviceMemory`], [`ErrorKind::OutOfHostMemory`] and, for a driver's fault,
-//! [`ErrorKind::Other`]. Docs of such functions say "of Vulkan".
+//! [`ErrorKind::Other`]. Their docs say "of Vulkan".
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The result of everything in this crate that can fail.
+/// The result of every function in this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What a program can do about a failure.
+/// The response that a program has to a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ErrorKind {
-    /// Mend the call: its arguments, or the order of calls, make no sense.
+    /// Fix the call: its arguments, or the order of calls, are invalid.
     Usage,
-    /// Mend the values of a scene, a profile or a map; [`Error::key`] names the value.
+    /// Fix the values of a scene, a profile or a map; [`Error::key`] names the value.
     Content,
-    /// Look at the file, which cannot be read or written; [`Error::file`] names it.
+    /// Check the file, which cannot be read or written; [`Error::file`] names it.
     File,
-    /// Take another device: there is none, or it lacks a feature, a format or an extension.
+    /// Use another device: there is none, or it lacks a feature, a format or an extension.
     Unsupported,
-    /// Ask for less: pixels, texels, copies or tables are more than the device or this crate takes.
+    /// Request less: pixels, texels, copies or tables exceed the limits of the device or of this
+    /// crate.
     TooLarge,
-    /// Ask for less, or free memory of the host.
+    /// Request less, or free host memory.
     OutOfHostMemory,
-    /// Ask for less, or free memory of the device. Its budget, where one was set, may be larger.
+    /// Request less, or free device memory. A memory budget, if one was set, may be raised.
     OutOfDeviceMemory,
-    /// Drop all that was made on the device, and open it again.
+    /// Drop everything that was made on the device, and open it again.
     DeviceLost,
     /// Report it: a driver or this crate is at fault.
     Other,
 }
 
-/// A failure in one sentence: where, what, and what to do about it.
+/// A failure in one sentence: place, cause and remedy.
 ///
 /// ```
 /// use revmap::error::{Error, ErrorKind};
@@ -45,19 +46,19 @@ pub enum ErrorKind {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
-    /// What can be done about it.
+    /// The response that a program has.
     pub kind: ErrorKind,
     /// The file concerned.
     pub file: Option<PathBuf>,
     /// The value concerned: a key of the scene file, or a setting.
     pub key: Option<String>,
-    /// What is wrong, and the remedy.
+    /// The cause and the remedy.
     pub message: String,
 }
 
 impl Error {
-    /// A failure of a kind; `message` says what is wrong and what would be right. Line breaks, as
-    /// other libraries write them, become spaces.
+    /// A failure of a kind; `message` gives the cause and the remedy. Line breaks from other
+    /// libraries' messages become spaces.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let mut message: String = message.into();
         if message.contains('\n') {
@@ -72,14 +73,14 @@ impl Error {
         }
     }
 
-    /// Adds the file, unless a deeper place named one already.
+    /// Adds the file, unless the error already has one.
     #[must_use]
     pub fn in_file(mut self, file: impl AsRef<Path>) -> Self {
         self.file.get_or_insert_with(|| file.as_ref().to_path_buf());
         self
     }
 
-    /// Adds the key, unless a deeper place named one already.
+    /// Adds the key, unless the error already has one.
     #[must_use]
     pub fn at_key(mut self, key: impl Into<String>) -> Self {
         self.key.get_or_insert_with(|| key.into());

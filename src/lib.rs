@@ -1,7 +1,7 @@
 //! Solids of revolution on Vulkan, drawn from a flat outline without a stored mesh.
 //!
-//! A **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`. Each pixel
-//! follows its ray `o + t v` in that half-plane, where the ray is the branch of a hyperbola
+//! A **profile**, a region of the half-plane `(r, z)`, is turned about the axis `r = 0`. Each
+//! pixel's ray `o + t v` is followed in that half-plane, where the ray is the branch of a hyperbola
 //!
 //! ```text
 //! r(t) = sqrt(a t^2 + 2 b t + c),   z(t) = o_z + t v_z,     a = v_x^2 + v_y^2,  b = o_x v_x + o_y v_y,  c = o_x^2 + o_y^2,
@@ -13,9 +13,9 @@
 //! F(r, z) = d(r, z) - w(z) = 0,     w = e + b min(1 - z, c).
 //! ```
 //!
-//! `d` is the signed distance to the profile's boundary; `e`, `b` and `c` are the extension, bevel
+//! `d` is the signed distance to the profile's boundary. `e`, `b` and `c` are the extension, bevel
 //! and chamfer, which may change from frame to frame. The default search solves the boundary as
-//! quadrics of revolution and reads no map; [`Solver::Live`](settings::Solver::Live) steps along a
+//! quadrics of revolution and reads no map. [`Solver::Live`](settings::Solver::Live) steps along a
 //! map of `d`.
 //!
 //! The method, its extensions and its choice of projections are those of
@@ -33,21 +33,22 @@
 //!   *Revolution-bump mapping with texture function adjustment according to the geometry of the
 //!   revolved object*. Journal of Graphic Engineering and Design, 2025.
 //!
-//! The last two are "the papers" of this documentation. Their search is `circle` of the crate
-//! `revmap-searches`. With 20 steps over the distances of a binary image in 8 bits it is the **RBM
-//! baseline** (revolution-bump mapping) of reports.
+//! The last two are "the papers" of this documentation. The papers' search is `circle` of the crate
+//! `revmap-searches`. The **RBM baseline** (revolution-bump mapping) of reports is this search with
+//! 20 steps over the distances of a binary image in 8 bits.
 //!
 //! # What holds
 //!
-//! * Both stages call one tracer. On a device without fused rounding (llvmpipe) their frames are
-//!   equal to the last bit, except for those of the default, which each stage finds in its own way.
-//! * The default search, [`Solver::Exact`](settings::Solver::Exact), meets the exact boundary. It
-//!   differs from the reference in double precision (the crate `revmap-reference`) by hundredths of
-//!   a texel of a map of 512 rows.
-//! * A solid that reaches past its box is cut by the box, and the cut is closed. A camera may stand
-//!   anywhere.
-//! * A failure is an [`Error`] that names its kind, file, key and remedy. Nothing panics, and no
-//!   file is left half written.
+//! * Both draw stages call one tracer. Their frames are equal to the last bit on a device without
+//!   fused rounding (llvmpipe). The frames of the default search are an exception, since each stage
+//!   finds its patches differently.
+//! * The default search, [`Solver::Exact`](settings::Solver::Exact), intersects the exact boundary.
+//!   Its hits differ from the reference in double precision (the crate `revmap-reference`) by
+//!   hundredths of a texel of a map of 512 rows.
+//! * The box cuts a solid that extends past it, and the cut is closed. Any camera position is
+//!   allowed.
+//! * A failure is an [`Error`] that names its kind, file, key and remedy. The library does not
+//!   panic, and leaves no file half written.
 //!
 //! # A picture
 //!
@@ -68,9 +69,9 @@
 //!
 //! # In an engine
 //!
-//! A [`gpu::Renderer`] holds objects and records them into any command buffer: within a host's
-//! render pass or dynamic rendering, with the host's matrices and depth buffer, with several frames
-//! in flight.
+//! A [`gpu::Renderer`] holds objects and records them into any command buffer. It works within a
+//! host's render pass or dynamic rendering, with the host's matrices and depth buffer, with several
+//! frames in flight.
 //!
 //! ```no_run
 //! # use revmap::{gpu::*, scene::*, settings::*};
@@ -103,11 +104,11 @@
 //! # }
 //! ```
 //!
-//! `examples/engine` is such a host, whole.
+//! `examples/engine` is a complete host of this kind.
 //!
 //! # A tour
 //!
-//! Data flows one way, and each module knows only those before it:
+//! Data flows one way, and each module uses only those before it:
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|

@@ -1,17 +1,18 @@
-//! Searches that other crates bring: what the renderer asks of one, and how its GLSL is compiled.
+//! Searches from other crates: the interface between a search and the renderer, and the compilation
+//! of its GLSL.
 //!
-//! The library holds the searches that draw best; those that exist to be compared with are in the
-//! crate `revmap-searches`, through this interface. A [`Search`] is plain data and two functions: one
-//! makes its table, if it reads one, the other gives its SPIR-V. It takes part wherever a
-//! [`Solver`](crate::settings::Solver) is named, as [`Solver::Other`](crate::settings::Solver::Other).
-//! One that is made at run time can be leaked.
+//! The library contains the fastest and most accurate searches. Others, for comparison, are in the
+//! crate `revmap-searches` and use this interface. A [`Search`] is plain data and two functions:
+//! one makes its table, if it reads one, the other returns its SPIR-V. Pass it as
+//! [`Solver::Other`](crate::settings::Solver::Other) wherever a [`Solver`](crate::settings::Solver)
+//! is expected. A search made at run time can be leaked.
 //!
 //! # Its GLSL
 //!
-//! A search is one function, which the library's tracer calls for each ray. Its contract is written
-//! down in `shaders-glsl/include/search/external.glsl`. A [`SearchModule`] names the entry file and
-//! the macros; includes are read from `shaders-glsl/include`, and `search/hook.glsl` is the file of
-//! the search.
+//! A search is one GLSL function, which the library's tracer calls for each ray.
+//! `shaders-glsl/include/search/external.glsl` documents the contract of this function. A
+//! [`SearchModule`] names the entry file and the macros; includes are read from
+//! `shaders-glsl/include`, and `search/hook.glsl` is the file of the search.
 //!
 //! ```
 //! use revmap::search::{Pass, Features, Output, SearchModule};
@@ -33,21 +34,21 @@ use crate::surface::Contour;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// A search of another crate. Two of one name are the same search.
+/// A search of another crate. Two searches of one name are equal.
 pub struct Search {
-    /// Its name in options and results.
+    /// Name in options and results.
     pub name: &'static str,
-    /// What it does, in a few words.
+    /// Short description.
     pub about: &'static str,
-    /// Where it was published.
+    /// The publication.
     pub source: &'static str,
     /// The licence of its code.
     pub licence: &'static str,
-    /// What it searches.
+    /// The data that it searches.
     pub reads: Reads,
-    /// The bound on its steps; `None` where it ends by itself.
+    /// The bound on its steps; `None` if it always ends without one.
     pub steps: Option<Steps>,
-    /// The value of the constant `SEARCH_FORM`, which tells searches apart that share their modules.
+    /// The value of the constant `SEARCH_FORM`, which distinguishes searches with common modules.
     pub form: u32,
     /// Its SPIR-V.
     pub words: Words,
@@ -57,12 +58,12 @@ pub struct Search {
 pub struct Words(&'static (dyn Fn(&SearchModule) -> Result<Vec<u32>> + Send + Sync));
 
 impl Words {
-    /// What `words` gives: a module, or another that [serves](SearchModule::serves) as well.
+    /// `words` returns a module, or another that [serves](SearchModule::serves) as well.
     ///
     /// # Safety
-    /// It must be valid SPIR-V, compiled from [`SearchModule::entry`] of this version of the library
-    /// with [`SearchModule::macros`], and its hook must touch no memory but by the library's functions
-    /// and come to an end: drivers check none of that.
+    /// The result must be valid SPIR-V, compiled from [`SearchModule::entry`] of this version of
+    /// the library with [`SearchModule::macros`]. Its hook must access memory only through the
+    /// library's functions, and must terminate. Drivers check none of this.
     #[allow(unsafe_code)] // a promise; nothing unsafe is done here
     pub const unsafe fn new(
         words: &'static (dyn Fn(&SearchModule) -> Result<Vec<u32>> + Send + Sync),
@@ -75,41 +76,42 @@ impl Words {
     }
 }
 
-/// What a search reads.
+/// The data that a search reads.
 pub enum Reads {
     /// The shape map.
     Map {
-        /// Whether solids without a bevel have modules of their own. Else all are compiled with
-        /// [`SearchModule::beveled`].
+        /// True if solids without a bevel have modules of their own. Otherwise all are compiled
+        /// with [`SearchModule::beveled`].
         tells_bevels: bool,
-        /// Whether it can read the papers' texture
+        /// True if it can read the papers' texture
         /// ([`MapFormat::Rgba8`](crate::maps::MapFormat::Rgba8)).
         rgba8: bool,
     },
-    /// A table that this makes of the solid under its offset, in so many rows. It fails with
-    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content) where the search cannot draw the solid.
+    /// A table that the function makes from the solid with its offset, with the given number of
+    /// rows. The function fails with [`ErrorKind::Content`](crate::error::ErrorKind::Content) if
+    /// the search cannot draw the solid.
     Table(&'static (dyn Fn(&Contour, u32) -> Result<SearchTable> + Send + Sync)),
 }
 
 /// A bound on steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps {
-    /// What is taken where none is given.
+    /// The default bound.
     pub default: u32,
-    /// The same for a solid with a bevel.
+    /// The default bound for a solid with a bevel.
     pub beveled: u32,
-    /// The largest that may be given.
+    /// The largest allowed bound.
     pub most: u32,
-    /// Whether a ray may use up its steps before its search has come to an end. Equal steps reach the
-    /// end whatever their number.
+    /// True if a ray may use up its steps before its search has come to an end. Equal steps reach
+    /// the end with any number of steps.
     pub may_run_out: bool,
 }
 
 impl Steps {
-    /// The largest bound that any search takes.
+    /// The largest bound of all searches.
     pub const MOST: u32 = 65536;
 
-    /// What is taken where none is given.
+    /// The default bound for solids with or without a bevel.
     #[must_use]
     pub const fn of(self, beveled: bool) -> u32 {
         if beveled { self.beveled } else { self.default }
@@ -119,9 +121,9 @@ impl Steps {
 /// A search's own table on the device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SearchTable {
-    /// What `patch_vector(0)` and so on give in GLSL.
+    /// The results of `patch_vector(0)` and so on in GLSL.
     pub vectors: Vec<[u32; 4]>,
-    /// What GLSL reads as `solid.patches.yzw`.
+    /// The value of `solid.patches.yzw` in GLSL.
     pub facts: [u32; 3],
 }
 

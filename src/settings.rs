@@ -1,4 +1,5 @@
-//! *How* a scene is drawn; *what* is drawn is the [`Scene`](crate::scene::Scene).
+//! Settings define *how* a scene is drawn; the [`Scene`](crate::scene::Scene) defines *what* is
+//! drawn.
 
 mod tolerance;
 
@@ -10,7 +11,7 @@ use crate::search::{Reads, Search, Steps};
 use std::fmt;
 use std::str::FromStr;
 
-/// Where rays are traced.
+/// The stage in which rays are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawStage {
     /// Shape boxes are rasterised; the fragment shader traces.
@@ -20,7 +21,7 @@ pub enum DrawStage {
 }
 
 impl DrawStage {
-    /// As options and results name them.
+    /// The names in options and results.
     pub const NAMES: [(&'static str, Self); 2] =
         [("fragment", Self::Fragment), ("compute", Self::Compute)];
 
@@ -31,38 +32,39 @@ impl DrawStage {
     }
 }
 
-/// The name of a value among these; the last, where it has several.
+/// The name of a value among these; the last, if it has several.
 #[must_use]
 pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
     let found = names.iter().rev().find(|(_, known)| known == value);
     found.map_or("unknown", |(name, _)| name)
 }
 
-/// How the first hit along a ray is found.
+/// The search for the first hit along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {
-    /// For parameters that change from frame to frame: steps that are safe to a texel under every
-    /// offset, a last secant, no fixed count of steps; on the map alone.
+    /// For parameters that change from frame to frame. It reads only the map, with steps that are
+    /// safe to a texel under every offset, a final secant, and no fixed number of steps.
     Live,
     /// The boundary as patches of quadrics under a tree of rows, solved exactly; rebuilt when
     /// parameters change.
     Quadric,
-    /// The same patches, found by what the stage does best: the rasteriser finds them by proxies in
-    /// the fragment stage, lists of tiles in compute. Objects without either are searched as by
-    /// [`Quadric`](Self::Quadric). Scripts may call it `hull`.
+    /// The patches of [`Quadric`](Self::Quadric), found by the fastest method of each stage: the
+    /// rasteriser finds them by proxies in the fragment stage, and tile lists in compute. Objects
+    /// without either are searched as by [`Quadric`](Self::Quadric). Scripts may use the name
+    /// `hull`.
     Exact,
-    /// One of another crate.
+    /// A search of another crate.
     Other(&'static Search),
 }
 
 impl Solver {
-    /// The library's own, in the order in which reports list them.
+    /// The library's searches, in the order of reports.
     pub const ALL: [Self; 3] = [Self::Live, Self::Quadric, Self::Exact];
 
-    /// What is taken where none is named.
+    /// The default search.
     pub const DEFAULT: Self = Self::Exact;
 
-    /// Its name in options and results.
+    /// Name in options and results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -76,7 +78,7 @@ impl Solver {
     /// The search of this name among `known`; `hull` is another name of `exact`.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] where none has it.
+    /// [`ErrorKind::Usage`] if none has this name.
     pub fn named(name: &str, known: &[Self]) -> Result<Self> {
         let wanted = if name == "hull" { "exact" } else { name };
         let found = known.iter().find(|s| s.name() == wanted);
@@ -88,13 +90,13 @@ impl Solver {
         })
     }
 
-    /// Whether its tables are rows of its own, which not every solid has.
+    /// Returns true if its tables are rows of its own, which some solids lack.
     #[must_use]
     pub const fn reads_own_table(self) -> bool {
         matches!(self, Self::Other(search) if matches!(search.reads, Reads::Table(_)))
     }
 
-    /// The search of another crate that it is.
+    /// The search of another crate, for [`Other`](Self::Other).
     pub(crate) const fn external(self) -> Option<&'static Search> {
         match self {
             Self::Other(search) => Some(search),
@@ -102,7 +104,8 @@ impl Solver {
         }
     }
 
-    /// Whether it reads the shape map. The others search tables made from the boundary itself.
+    /// Returns true if it reads the shape map. The other searches read tables made from the
+    /// boundary itself.
     #[must_use]
     pub const fn reads_map(self) -> bool {
         match self {
@@ -112,18 +115,18 @@ impl Solver {
         }
     }
 
-    /// Whether it searches patches, of which there are levels for every [`Tolerance`]. The others
-    /// ignore it.
+    /// Returns true if it searches patches, which have levels for every [`Tolerance`]. The other
+    /// searches ignore the tolerance.
     #[must_use]
     pub const fn follows_tolerance(self) -> bool {
         matches!(self, Self::Quadric | Self::Exact)
     }
 
-    /// The bound on its steps; `None` where it ends by itself, as patches do.
+    /// The bound on its steps; `None` if it always ends without one, as patches do.
     #[must_use]
     pub const fn steps(self) -> Option<Steps> {
         match self {
-            // More than any ray of a sound map takes.
+            // This is more than any ray of a valid map needs.
             Self::Live => Some(Steps {
                 default: 512,
                 beveled: 512,
@@ -135,13 +138,13 @@ impl Solver {
         }
     }
 
-    /// Whether a ray may use up the bound on steps before its search has come to an end.
+    /// Returns true if a ray may use up the bound on steps before its search has come to an end.
     #[must_use]
     pub fn may_run_out(self) -> bool {
         self.steps().is_some_and(|steps| steps.may_run_out)
     }
 
-    /// The bound on steps where none is given; 1 where there is none.
+    /// The default bound on steps; 1 if there is none.
     #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         self.steps().map_or(1, |steps| steps.of(beveled))
@@ -154,7 +157,8 @@ impl fmt::Display for Solver {
     }
 }
 
-/// The inverse of [`Display`](fmt::Display) for the library's own; [`Solver::named`] knows others.
+/// The inverse of [`Display`](fmt::Display) for the library's searches; [`Solver::named`] also
+/// finds others.
 ///
 /// ```
 /// use revmap::settings::Solver;
@@ -169,76 +173,76 @@ impl FromStr for Solver {
     }
 }
 
-/// Which planes of a frame are wanted; what is not wanted is neither computed nor stored.
+/// The requested planes of a frame; others are neither computed nor stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Planes {
-    /// Colour alone, 8-bit sRGB.
+    /// Colour only, 8-bit sRGB.
     Color,
-    /// Depth alone, for shadow maps; `parallel`: along parallel rays, as a directional light sees.
-    /// In a host's pass only.
+    /// Depth only, for shadow maps. In a host's pass only.
     Depth {
-        /// Whether views are parallel.
+        /// Depth along parallel rays, as for a directional light.
         parallel: bool,
     },
     /// Everything a [`Frame`](crate::frame::Frame) holds, in 32-bit floats.
     All,
 }
 
-/// How to draw.
+/// Settings of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Where rays are traced.
+    /// The stage in which rays are traced.
     pub stage: DrawStage,
     /// The search.
     pub solver: Solver,
-    /// Bound on the search's steps; `None` takes the solver's own.
+    /// Bound on the search's steps; `None` uses the solver's default.
     pub max_steps: Option<u32>,
-    /// Rows of every shape map; `None` takes each object's own.
+    /// Rows of every shape map; `None` uses each object's own value.
     pub map_rows: Option<u32>,
-    /// Source of distances; `None`: exact.
+    /// Source of distances; `None` is exact.
     pub map_source: Option<MapSource>,
     /// Storage of distances.
     pub map_format: MapFormat,
-    /// What to draw.
+    /// The planes to draw.
     pub planes: Planes,
-    /// Least pixels of an object's box for each visible frustum of its cells at which the fragment
-    /// stage draws the cells: triangles cost the same however small they are. Smaller objects are
-    /// drawn by tiles. Software drivers multiply it by 2 or 11 for single solids. `u32::MAX`: no
-    /// cells and no lists of patches.
+    /// Minimum number of pixels of an object's box, for each visible frustum of its cells, at which
+    /// the fragment stage draws the cells. Triangles cost the same at any size. Smaller objects are
+    /// drawn by tiles. Software drivers multiply this number by 2 or 11 for single solids.
+    /// `u32::MAX` disables cells and lists of patches.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,
-    /// Whether copies are left out that others are proven to hide. No pixel differs by more than a
-    /// rounding; false is there to show it.
+    /// True to skip copies that are proven to be hidden by others. Pixels differ by rounding at
+    /// most; `false` exists to verify this.
     pub occlusion_culling: bool,
-    /// Whether silhouettes are smoothed in frames that are read back ([`crate::antialias`]). Else
-    /// every colour is that of the ray through the pixel's middle. Embedded renderers do without.
+    /// True to smooth silhouettes in frames that are read back ([`crate::antialias`]). Otherwise
+    /// every colour is that of the ray through the pixel's middle. Embedded renderers do not
+    /// smooth.
     pub antialias: bool,
 }
 
-/// How rays find the surface: the part of [`Settings`] that an embedded renderer takes. Size, stage
-/// and planes are its output's.
+/// Settings of the search: the part of [`Settings`] that an embedded renderer uses. Size, stage and
+/// planes are those of its output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchSettings {
     /// The search.
     pub solver: Solver,
-    /// Bound on the search's steps; `None` takes the solver's own.
+    /// Bound on the search's steps; `None` uses the solver's default.
     pub max_steps: Option<u32>,
-    /// Rows of every shape map; `None` takes each object's own.
+    /// Rows of every shape map; `None` uses each object's own value.
     pub map_rows: Option<u32>,
-    /// Source of distances; `None`: the most accurate for the profile.
+    /// Source of distances; `None` is the most accurate for the profile.
     pub map_source: Option<MapSource>,
     /// Storage of distances.
     pub map_format: MapFormat,
-    /// As [`Settings::proxy_min_pixels`].
+    /// Same as [`Settings::proxy_min_pixels`].
     pub proxy_min_pixels: u32,
-    /// As [`Settings::tolerance`].
+    /// Same as [`Settings::tolerance`].
     pub tolerance: Tolerance,
-    /// As [`Settings::occlusion_culling`].
+    /// Same as [`Settings::occlusion_culling`].
     pub occlusion_culling: bool,
 }
 
@@ -257,7 +261,7 @@ impl From<&Settings> for SearchSettings {
     }
 }
 
-/// The search as given; size, stage and planes as in the default.
+/// The given search; size, stage and planes as in the default.
 impl From<&SearchSettings> for Settings {
     fn from(search: &SearchSettings) -> Self {
         Self {
@@ -275,7 +279,7 @@ impl From<&SearchSettings> for Settings {
 }
 
 impl SearchSettings {
-    /// Fails where the search cannot do what is asked of it.
+    /// Fails if the search does not support these settings.
     pub(crate) fn check(&self) -> Result<()> {
         let refused =
             |message: String, key: &str| Err(Error::new(ErrorKind::Usage, message).at_key(key));
@@ -303,7 +307,7 @@ impl SearchSettings {
         }
     }
 
-    /// The default with no tolerance, as measurements want it.
+    /// The default with zero tolerance, for measurements.
     #[must_use]
     pub fn exact() -> Self {
         Self::from(&Settings::exact())
@@ -311,7 +315,7 @@ impl SearchSettings {
 }
 
 impl Settings {
-    /// The default with no tolerance, as measurements want it.
+    /// The default with zero tolerance, for measurements.
     #[must_use]
     pub fn exact() -> Self {
         Self {

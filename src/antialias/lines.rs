@@ -101,7 +101,7 @@ impl Sight {
         }
     }
 
-    /// A surface's point at radius and height, cosine and sine of the azimuth.
+    /// A surface point at radius and height `p`, with the given cosine and sine of the azimuth.
     fn spot(&self, p: DVec2, [cos, sin]: [f64; 2]) -> Option<Spot> {
         let DVec2 { x: cx, y: cy } = self.azimuth;
         let beside = p.x * DVec2::new(cx * cos - cy * sin, cy * cos + cx * sin);

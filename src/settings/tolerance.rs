@@ -2,16 +2,16 @@ use crate::error::{Error, ErrorKind, Result};
 use std::fmt;
 use std::str::FromStr;
 
-/// Allowed error of silhouettes and depths, in pixels of the view that is drawn.
+/// Allowed error of silhouettes and depths, in pixels of the drawn view.
 ///
-/// Surfaces are fitted at several **levels**, each with a proven bound on how far it lies from the
-/// exact surface. An object takes the coarsest level whose bound, seen at the object's nearest
-/// point, is at most a sixteenth of the tolerance. So a silhouette moves by at most a sixteenth of
-/// it. The depth along the ray errs more where the ray grazes the surface: with the factor of 16,
-/// 99.9 % of the pixels stay within the tolerance (measured).
+/// Surfaces are fitted at several **levels**, each with a proven bound on its distance from the
+/// exact surface. An object uses the coarsest level whose bound, seen at the object's nearest
+/// point, is at most a sixteenth of the tolerance. A silhouette therefore moves by at most a
+/// sixteenth of the tolerance. The depth error along the ray is larger at grazing rays. The factor
+/// of 16 keeps 99.9 % of the pixels within the tolerance (measured).
 ///
 /// Searches on patches ([`Solver::Exact`](super::Solver::Exact),
-/// [`Solver::Quadric`](super::Solver::Quadric)) follow it; all others ignore it.
+/// [`Solver::Quadric`](super::Solver::Quadric)) use the tolerance; all others ignore it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Tolerance(f64);
 
@@ -23,13 +23,13 @@ impl Tolerance {
     /// The largest, pixels.
     pub const MOST: f64 = 64.0;
 
-    /// A tolerance of so many pixels, 0 to [`Tolerance::MOST`]; 0 is [`Tolerance::EXACT`].
+    /// A tolerance in pixels, 0 to [`Tolerance::MOST`]; 0 is [`Tolerance::EXACT`].
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for any other number.
     pub fn new(pixels: f64) -> Result<Self> {
         if (0.0..=Self::MOST).contains(&pixels) {
-            // Of both zeros one.
+            // Adding 0.0 turns -0.0 into 0.0.
             return Ok(Self(pixels + 0.0));
         }
         let message = format!(
@@ -39,7 +39,7 @@ impl Tolerance {
         Err(Error::new(ErrorKind::Usage, message).at_key("tolerance"))
     }
 
-    /// In pixels.
+    /// The tolerance in pixels.
     #[must_use]
     pub const fn pixels(self) -> f64 {
         self.0

@@ -1,25 +1,25 @@
-//! The first zero of a function of known Lipschitz constant, never stepping over one.
+//! Finds the first zero of a function with a known Lipschitz constant, without stepping over one.
 //!
-//! If `|f(s) - f(t)| <= L |s - t|`, a sample `f(t)` proves that no zero lies nearer to `t` than
-//! `|f(t)| / L`; two samples of one sign at distance `h` prove the whole of the interval between
-//! them free when `|f(t)| + |f(t + h)| >= L h`. Steps taken are of these two kinds, down to values
-//! of [`NEAR`]. Nearer than that, steps double from a tenth of it until the sign changes, and the
-//! bracket is narrowed by the Illinois form of the false position, kept honest by halvings.
+//! Let `|f(s) - f(t)| <= L |s - t|`. A sample `f(t)` proves that no zero is nearer to `t` than
+//! `|f(t)| / L`. Two samples of one sign at distance `h` prove that the interval between them has
+//! no zero if `|f(t)| + |f(t + h)| >= L h`. All steps are of these two kinds, down to values of
+//! [`NEAR`]. Below that value, steps double from a tenth of it until the sign changes. The bracket
+//! is then narrowed by the Illinois form of the false position, with halvings as a safeguard.
 
-/// Below this value of the function steps are no longer proven: features thinner than this may be
-/// stepped over.
+/// Steps are no longer proven below this value of the function: features thinner than this may be
+/// missed.
 pub(super) const NEAR: f64 = 1e-9;
-/// A value that turns back below this, without a change of sign, marks the ray as grazing.
+/// A minimum below this value without a change of sign marks the ray as grazing.
 pub(super) const GRAZE: f64 = 1e-7;
-/// Steps after which a ray that glides along a surface is hurried on, and marked as grazing.
+/// Steps after which a ray along a surface takes larger steps and is marked as grazing.
 const PATIENCE: u32 = 100_000;
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
     /// The first zero.
     pub zero: Option<f64>,
-    /// Whether a change of the last digits could make another zero the first one.
+    /// True if a change of the last digits could make another zero the first one.
     pub grazes: bool,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn first_zero(
         let mut stretched = false;
         let mut step = if g > NEAR {
             creep = 0.1 * NEAR / lipschitz;
-            // Away from a surface the next sample's own ball usually covers the rest.
+            // The next sample's own interval usually covers the rest away from a surface.
             stretched = !falling;
             if stretched { 1.9 * free } else { free }
         } else {
@@ -77,7 +77,7 @@ pub(super) fn first_zero(
         grazes |= falling && value > g && g < GRAZE;
         falling = value < g;
         if next <= t {
-            // Steps below the resolution of t: as good as touching.
+            // Steps below the resolution of t count as contact.
             grazes = true;
             next = t + (b - a) * 1e-12;
         }
@@ -101,7 +101,7 @@ fn narrow(
         if width <= tolerance(high.0) {
             break;
         }
-        // Every third round halves, whatever the values say.
+        // Every third round halves, for any values.
         let share = if round % 3 == 2 {
             0.5
         } else {
@@ -143,7 +143,7 @@ mod tests {
         let found = find(|t| (20.0 * t).sin() + 0.99, 20.0);
         assert!((found.zero.unwrap_or(9.0) - expected).abs() < 1e-14);
         assert!(!found.grazes);
-        // Seen from the negative side.
+        // The function with the opposite sign.
         let found = find(|t| -(20.0 * t).sin() - 0.99, 20.0);
         assert!((found.zero.unwrap_or(9.0) - expected).abs() < 1e-14);
     }

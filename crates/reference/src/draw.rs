@@ -1,5 +1,5 @@
-//! A whole picture by the reference, rows in parallel; the same bits whatever the number of
-//! threads.
+//! Draws a whole picture by the reference, rows in parallel; any number of threads gives the same
+//! bits.
 
 use super::shade::shade;
 use super::texture::Lengths;
@@ -11,12 +11,13 @@ use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::Settings;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Draws a scene in double precision on the CPU. Of the settings only the size counts.
+/// Draws a scene in double precision on the CPU. Only the size of the settings is used.
 ///
-/// `progress` is told, from any thread, how many rows are done and how many there are.
+/// `progress` is called, from any thread, with the number of finished rows and the number of all
+/// rows.
 ///
 /// # Errors
-/// Those of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and
+/// The errors of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and
 /// [`ArcLength::new`](revmap::maps::ArcLength::new).
 pub fn draw(
     scene: &Scene,
@@ -59,13 +60,13 @@ impl<'a> Colors<'a> {
     /// Prepares a scene.
     ///
     /// # Errors
-    /// Those of [`ArcLength::new`](revmap::maps::ArcLength::new).
+    /// The errors of [`ArcLength::new`](revmap::maps::ArcLength::new).
     pub fn new(scene: &'a Scene) -> Result<Self> {
         let lengths = Lengths::new(scene)?;
         Ok(Self { scene, lengths })
     }
 
-    /// The linear colour of the first hit along a ray; `None` where nothing is hit. The ways to the
+    /// The linear colour of the first hit along a ray; `None` without a hit. Rays towards the
     /// lights begin at least `lift` off the surface, world units.
     #[must_use]
     pub fn along(&self, reference: &Reference, ray: Ray, lift: f64) -> Option<[f32; 4]> {
@@ -74,8 +75,8 @@ impl<'a> Colors<'a> {
     }
 }
 
-/// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` where no box was
-/// entered.
+/// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` if the ray enters
+/// no box.
 fn pixel(
     scene: &Scene,
     reference: &Reference,

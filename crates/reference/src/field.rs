@@ -1,14 +1,14 @@
 //! Exact signed distance to an outline, in double precision.
 //!
 //! Unsigned distance: the nearest segment, found by a tree of rectangles. Sign: parity of the
-//! segments crossed on the way to `r = +inf`, counted within one of many horizontal slabs; so
-//! neither the loops' direction nor their order matters.
+//! segments crossed on the way to `r = +inf`, counted within one of many horizontal slabs. The
+//! loops' direction and order therefore do not matter.
 
 use glam::DVec2;
 use revmap::profile::Outline;
 
-/// Points closer to the axis than this lie on it: a segment between two such closes a loop and is
-/// no part of the surface.
+/// Points closer to the axis than this are on it. A segment between two such points closes a loop
+/// and is not part of the surface.
 pub(super) const ON_AXIS: f64 = 1e-9;
 
 /// A segment of the surface.
@@ -18,7 +18,8 @@ struct Segment {
     b: DVec2,
     /// Unit normal, towards the empty side.
     normal: DVec2,
-    /// `(b - a) / |b - a|^2`: its product with `q - a` is the foot's place on the segment, 0 to 1.
+    /// `(b - a) / |b - a|^2`: its product with `q - a` is the position of the foot of the
+    /// perpendicular on the segment, 0 to 1.
     along: DVec2,
 }
 
@@ -26,13 +27,13 @@ struct Segment {
 struct Node {
     min: DVec2,
     max: DVec2,
-    /// Leaf: the first segment. Else: the right child (the left one follows its parent).
+    /// In a leaf: the first segment. Otherwise: the right child (the left one follows its parent).
     next: u32,
-    /// Number of segments; 0: not a leaf.
+    /// Number of segments; 0 for a node that is not a leaf.
     count: u32,
 }
 
-/// What is nearest to a point of the half-plane.
+/// The segment nearest to a point of the half-plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// Index of a nearest segment.
@@ -54,13 +55,13 @@ pub(super) struct Field {
 struct Slabs {
     low: f64,
     per_unit: f64,
-    /// `starts[k]..starts[k + 1]` are the places in `members` of slab `k`.
+    /// `starts[k]..starts[k + 1]` are the indices in `members` of slab `k`.
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
 impl Field {
-    /// Prepares an outline; `None` when no part of it is off the axis or a point is not finite.
+    /// Prepares an outline; `None` if no part of it is off the axis or a point is not finite.
     pub fn new(outline: &Outline) -> Option<Self> {
         let mut segments = Vec::new();
         for points in &outline.loops {
@@ -97,8 +98,8 @@ impl Field {
         Some(field)
     }
 
-    /// The caller's loops should run with the solid on the left; parity does not care, and neither
-    /// shall the normals.
+    /// The caller's loops should run with the solid on the left. Parity works for both directions,
+    /// and so must the normals.
     fn turn_normals_outwards(&mut self) {
         for k in 0..self.segments.len() {
             let s = self.segments[k];
@@ -111,7 +112,7 @@ impl Field {
         }
     }
 
-    /// Whether `q` is in the solid.
+    /// Returns true if `q` is in the solid.
     pub fn inside(&self, q: DVec2) -> bool {
         let mut parity = false;
         for &k in self.slabs.at(q.y) {
@@ -124,8 +125,8 @@ impl Field {
         parity
     }
 
-    /// Signed distance at `q`. A `hint` (a segment that was nearest to a point close by) makes it
-    /// faster, never different.
+    /// Signed distance at `q`. A `hint` (a segment that was nearest to a point close by) changes
+    /// only the speed, never the result.
     pub fn distance(&self, q: DVec2, hint: &mut u32) -> f64 {
         let nearest = self.nearest(q, *hint);
         *hint = nearest.segment;
@@ -136,7 +137,7 @@ impl Field {
         }
     }
 
-    /// Unit gradient of the signed distance at `q`, given what is nearest.
+    /// Unit gradient of the signed distance at `q`, given the nearest segment.
     pub fn gradient(&self, q: DVec2, nearest: Nearest) -> DVec2 {
         let s = self.segments[nearest.segment as usize];
         let place = (q - s.a).dot(s.along);
@@ -144,7 +145,7 @@ impl Field {
             return s.normal;
         }
         let away = q - if place < 0.0 { s.a } else { s.b };
-        // At a corner itself every direction between the two normals will do.
+        // Every direction between the two normals is valid at a corner itself.
         if nearest.distance < 1e-12 {
             return s.normal;
         }
@@ -155,7 +156,7 @@ impl Field {
         }
     }
 
-    /// What is nearest to `q`.
+    /// The segment nearest to `q`.
     pub fn nearest(&self, q: DVec2, hint: u32) -> Nearest {
         let mut best = (self.segments[hint as usize].square_to(q), hint);
         let mut stack = [(0u32, 0f64); 64];
@@ -179,7 +180,7 @@ impl Field {
             }
             let mut children =
                 [index + 1, node.next].map(|c| (c, self.nodes[c as usize].square_to(q)));
-            // The nearer child is looked at first: it goes on top.
+            // The nearer child is visited first: it goes on top.
             if children[0].1 < children[1].1 {
                 children.swap(0, 1);
             }
@@ -207,7 +208,7 @@ impl Segment {
         } else if place >= 1.0 {
             q.distance_squared(self.b)
         } else {
-            // Along the normal: exact to the last bits even where the distance is tiny.
+            // Distance along the normal: exact to the last bits even for tiny distances.
             let d = from_a.dot(self.normal);
             d * d
         }
@@ -225,8 +226,8 @@ impl Node {
 
 const LEAF: usize = 4;
 
-/// Appends the tree over `segments`, which are put in its order; `first` is the place of the slice
-/// in the whole.
+/// Appends the tree over `segments`, which are sorted into its order; `first` is the index of the
+/// slice in the whole.
 fn build(segments: &mut [Segment], first: u32, nodes: &mut Vec<Node>) {
     let min = segments
         .iter()
@@ -297,8 +298,8 @@ impl Slabs {
         }
     }
 
-    /// Segments that may reach the height `z`. The same rounding places segments and points, so
-    /// none is missed.
+    /// Segments that may include the height `z`. Segments and points are placed with the same
+    /// rounding, so none is missed.
     fn at(&self, z: f64) -> &[u32] {
         let place = (z - self.low) * self.per_unit;
         let count = self.starts.len() - 1;
@@ -323,7 +324,7 @@ mod tests {
         for points in &outline.loops {
             for (k, &a) in points.iter().enumerate() {
                 let b = points[(k + 1) % points.len()];
-                // Winding by angles: nothing of the tree's or the slabs' logic.
+                // Winding number by angles, independent of the tree and the slabs.
                 turns += (a - q).perp_dot(b - q).atan2((a - q).dot(b - q));
                 if a.x.max(b.x) > 0.0 {
                     let s = ((q - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
@@ -356,7 +357,7 @@ mod tests {
             let f = |q: DVec2| brute(&outline, q);
             let h = 1e-6;
             let numeric = DVec2::new(f(q + DVec2::X * h) - f(q - DVec2::X * h), f(q + DVec2::Y * h) - f(q - DVec2::Y * h)) / (2.0 * h);
-            // On ridges of the distance the difference quotient is no unit vector.
+            // The difference quotient is not a unit vector on ridges of the distance.
             prop_assume!((numeric.length() - 1.0).abs() < 1e-6);
             let g = field.gradient(q, field.nearest(q, 0));
             prop_assert!((g - numeric).length() < 1e-4, "{g} {numeric}");

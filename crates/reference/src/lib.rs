@@ -2,7 +2,7 @@
 //! nothing with the shaders.
 //!
 //! The surface is `F(r, z) = d(r, z) - w(z) = 0` within the shape box, closed by the box. `d` is
-//! the exact distance to the profile's outline; along a ray `F` changes at most by a known factor,
+//! the exact distance to the profile's outline. `F` changes along a ray at most by a known factor,
 //! so steps can be proven not to pass a surface.
 //!
 //! | | [`Reference`] | [`Analytic`] |
@@ -12,8 +12,8 @@
 //! | time of a ray | microseconds, hardly growing with the outline | grows with the square of the outline |
 //! | is for | pictures and measurements | checking the first |
 //!
-//! On random solids, offsets and rays the two differ by less than 1e-9 in position, but for rays
-//! that either calls grazing.
+//! The two methods differ by less than 1e-9 in position on random solids, offsets and rays, except
+//! for rays that either marks as grazing.
 //!
 //! ```
 //! use glam::{DVec2, DVec3};
@@ -59,17 +59,17 @@ use revmap::scene::{Placement, Scene};
 use solid::{LocalHit, Solid};
 use std::sync::Arc;
 
-/// A ray in the world; the direction may have any length, and `t` counts in it.
+/// A ray in the world. The direction may have any length, and `t` is in units of that length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The start, world units.
     pub origin: DVec3,
-    /// Where it goes.
+    /// The direction.
     pub direction: DVec3,
 }
 
-/// Whether these are a ray: finite numbers, and a direction whose length a double can hold. All
-/// else hits nothing.
+/// Returns true for a valid ray: finite numbers, and a direction whose squared length is a normal
+/// double. Any other ray hits nothing.
 fn is_ray(origin: DVec3, direction: DVec3) -> bool {
     origin.is_finite() && direction.length_squared().is_normal()
 }
@@ -85,28 +85,28 @@ pub struct Hit {
     pub instance: usize,
     /// Unit outward normal, world space.
     pub normal: DVec3,
-    /// Which part of the boundary.
+    /// The part of the boundary.
     pub surface: Surface,
     /// The point in its replica's cell: x, y from the axis of revolution, z from the floor, object
     /// units of the profile.
     pub place: DVec3,
-    /// Units of that cell for one object unit, along each axis; negative: the replica is reflected.
+    /// Units of that cell per object unit, along each axis; negative for a reflected replica.
     pub cell: DVec3,
 }
 
-/// What became of a ray.
+/// The result of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trace {
     /// The first hit at `t >= 0`.
     pub hit: Option<Hit>,
-    /// Whether the ray touches a surface or an edge so closely that a change in the last digits
-    /// could give another answer.
+    /// True if the ray touches a surface or an edge so closely that a change in the last digits
+    /// could give another result.
     pub grazes: bool,
     /// Evaluations of the distance.
     pub evaluations: u32,
 }
 
-/// A scene made ready for rays.
+/// A scene prepared for rays.
 #[derive(Debug)]
 pub struct Reference {
     parts: Parts,
@@ -116,8 +116,8 @@ impl Reference {
     /// Prepares all objects of a scene.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] when a profile has no surface, or a placement is no placement (a
-    /// scale that is not positive, a rotation that is zero, a number that is not finite).
+    /// [`ErrorKind::Content`] if a profile has no surface, or a placement is invalid (a scale that
+    /// is not positive, a rotation that is zero, a number that is not finite).
     pub fn new(scene: &Scene) -> Result<Self> {
         let mut fields: Vec<(*const Profile, Arc<Field>)> = Vec::new();
         let mut parts = Vec::new();
@@ -151,8 +151,8 @@ impl Reference {
         })
     }
 
-    /// The first hit along a ray. A ray that is none (no direction, a number that is not finite)
-    /// hits nothing.
+    /// The first hit along a ray. An invalid ray (no direction, a number that is not finite) hits
+    /// nothing.
     #[must_use]
     pub fn trace(&self, ray: Ray) -> Trace {
         let mut all = Trace::default();
@@ -175,8 +175,8 @@ impl Reference {
                 return f64::INFINITY;
             };
             let (object, instance) = (part.object, part.instance);
-            // Where two are met at once the first in the scene is taken, in whichever order the
-            // tree shows them.
+            // If two are hit at once, the first in the scene is used, independent of the order in
+            // the tree.
             let first = all.hit.is_none_or(|best| {
                 t < best.t || (t == best.t && (object, instance) < (best.object, best.instance))
             });
@@ -200,21 +200,21 @@ impl Reference {
         all
     }
 
-    /// How deep a ray reaches into the solids (negative), or by how much it misses all of them
-    /// (positive), in object units and to within `tolerance`: the least value along the ray of
-    /// `max(F, g)`, `g` the distance to the box's faces, negative inside.
+    /// The depth to which a ray enters the solids (negative), or the distance by which it misses
+    /// all of them (positive), in object units and to within `tolerance`. This is the least value
+    /// along the ray of `max(F, g)`, with `g` the distance to the box's faces, negative inside.
     ///
-    /// It tells a pixel that is wrong for a reason from one that a rounding decides: at a
-    /// silhouette both signs are right as long as this is small. A ray that is none comes near
-    /// nothing: `+inf`.
+    /// The clearance distinguishes a wrong pixel from one that rounding decides: both signs are
+    /// right at a silhouette as long as the clearance is small. An invalid ray has the clearance
+    /// `+inf`.
     #[must_use]
     pub fn clearance(&self, ray: Ray, tolerance: f64) -> f64 {
         self.clearance_within(ray, [0.0, f64::INFINITY], tolerance)
     }
 
-    /// The same for a part of the ray, between two values of `t`: at one point where they are
-    /// equal, which tells how far from the surface a drawn hit lies; up to a drawn hit, whether the
-    /// drawing has passed something on its way.
+    /// The clearance of a part of the ray, between two values of `t`. With equal values it is the
+    /// distance of a drawn hit from the surface. With a part up to a drawn hit, it shows a solid
+    /// that the drawing has passed.
     #[must_use]
     pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
         if !is_ray(ray.origin, ray.direction) {
@@ -231,9 +231,9 @@ impl Reference {
         })
     }
 
-    /// Whether a part of a ray, between two values of `t`, goes deeper into a solid than `depth`,
-    /// object units, to within `tolerance`. Much faster than [`Reference::clearance_within`], which
-    /// finds how deep.
+    /// Returns true if a part of a ray, between two values of `t`, is deeper in a solid than
+    /// `depth`, object units, to within `tolerance`. This is much faster than
+    /// [`Reference::clearance_within`], which computes the depth.
     #[must_use]
     pub fn goes_deeper(&self, ray: Ray, part: [f64; 2], depth: f64, tolerance: f64) -> bool {
         if !is_ray(ray.origin, ray.direction) {
@@ -250,15 +250,15 @@ impl Reference {
     }
 }
 
-/// The first hit along one ray. For many rays make a [`Reference`] once.
+/// The first hit along one ray. Make a [`Reference`] once for many rays.
 ///
 /// # Errors
-/// Those of [`Reference::new`].
+/// The errors of [`Reference::new`].
 pub fn trace(scene: &Scene, ray: Ray) -> Result<Trace> {
     Ok(Reference::new(scene)?.trace(ray))
 }
 
-/// A part of a ray that lies ahead of its start.
+/// The part of an interval of `t` that is ahead of the ray's start.
 fn within(part: [f64; 2]) -> [f64; 2] {
     [part[0].max(0.0), part[1].max(part[0].max(0.0))]
 }

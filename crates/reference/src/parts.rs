@@ -1,11 +1,11 @@
-//! The copies of a scene in a tree of boxes, so that thousands of them cost a ray little.
+//! The copies of a scene in a tree of boxes, so that thousands of them add little cost to a ray.
 
 use super::solid::Solid;
 use glam::{DMat3, DVec3};
 use revmap::scene::Placement;
 use std::sync::Arc;
 
-/// One copy of one object.
+/// A copy of an object.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub object: usize,
@@ -24,13 +24,13 @@ pub(super) struct Parts {
 struct Node {
     min: DVec3,
     max: DVec3,
-    /// Leaf: the part. Else: the right child (the left one follows its parent).
+    /// In a leaf: the part. Otherwise: the right child (the left one follows its parent).
     next: usize,
     leaf: bool,
 }
 
 impl Part {
-    /// A ray in the object's own space; `t` keeps its meaning.
+    /// A ray in the object's own space; `t` has the same meaning.
     pub fn local(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
         let Placement {
             position,
@@ -41,7 +41,7 @@ impl Part {
         (back * (origin - position) / scale, back * direction / scale)
     }
 
-    /// The shape box's bounds in the world, a little wider than they are.
+    /// The shape box's bounds in the world, slightly enlarged.
     fn bounds(&self) -> (DVec3, DVec3) {
         let Placement {
             position,
@@ -70,8 +70,8 @@ impl Parts {
         Self { list, nodes }
     }
 
-    /// Shows `visit` every part whose box the ray may enter before `nearest`; it returns the new
-    /// nearest `t`.
+    /// Calls `visit` for every part whose box the ray may enter before `nearest`; `visit` returns
+    /// the new nearest `t`.
     pub fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(&Part) -> f64) {
         if self.nodes.is_empty() {
             return;
@@ -94,7 +94,7 @@ impl Parts {
                     .unwrap_or(f64::INFINITY)
             };
             let (left, right) = (index + 1, node.next);
-            // The nearer child on top.
+            // The nearer child is on top.
             stack.extend(if near(left) <= near(right) {
                 [right, left]
             } else {
@@ -110,13 +110,13 @@ impl Parts {
 }
 
 impl Node {
-    /// Where a ray enters the box; 0 from within.
+    /// The `t` at which a ray enters the box; 0 from within.
     fn enter(&self, origin: DVec3, inverse: DVec3) -> Option<f64> {
         let (a, b) = ((self.min - origin) * inverse, (self.max - origin) * inverse);
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for axis in 0..3 {
-            // 0 times infinity, a ray within the wall's own plane, sets no bound: `max` and `min`
-            // pass over a NaN.
+            // A ray within the plane of a wall gives 0 times infinity. This sets no bound: `max`
+            // and `min` ignore a NaN.
             enter = enter.max(a[axis].min(b[axis]));
             leave = leave.min(a[axis].max(b[axis]));
         }
@@ -143,7 +143,7 @@ fn build(order: &mut [usize], bounds: &[(DVec3, DVec3)], nodes: &mut Vec<Node>) 
     }
     let axis = (max - min).max_position();
     let half = order.len() / 2;
-    // The index settles ties: one scene, one tree.
+    // The index breaks ties, so that one scene gives one tree.
     order.sort_by(|&p, &q| {
         let middle = |k: usize| bounds[k].0[axis] + bounds[k].1[axis];
         middle(p).total_cmp(&middle(q)).then(p.cmp(&q))

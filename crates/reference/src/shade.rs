@@ -6,7 +6,7 @@ use super::{Hit, Ray, Reference};
 use glam::DVec3;
 use revmap::scene::{Scene, Shadow};
 
-/// What a hit looks like.
+/// The colour and the shading normal of a hit.
 pub(super) struct Shaded {
     pub color: [f32; 4],
     pub shading_normal: DVec3,
@@ -14,18 +14,18 @@ pub(super) struct Shaded {
     pub uv: [f64; 2],
 }
 
-/// How far off a surface the way to a light begins, of the hit's distance from the eye: within it
-/// the surface would shade itself.
+/// Distance off the surface at which a ray towards a light begins, as a fraction of the hit's
+/// distance from the eye. Nearer to it, the surface would shade itself.
 const LIFT: f64 = 1e-6;
 
-/// Shades a hit that is seen along `ray`; `None` where it is of no object of the scene. The way to
-/// a light begins at least `least_lift` off the surface, world units.
+/// Shades a hit that is seen along `ray`; `None` if its object is not in the scene. A ray towards a
+/// light begins at least `least_lift` off the surface, world units.
 ///
-/// `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength * (n.l > 0 ?
-/// max(0, n.h)^shininess : 0))`, `l` towards the light, `h` half way between `l` and the viewer;
-/// `n`, tilted by the bumps, is turned to the viewer's side where the surface looks away. A light
-/// that something stands before gives nothing; soft shadows are drawn as hard ones, for they are an
-/// estimate with no truth to it.
+/// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
+/// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
+/// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
+/// away. A hidden light adds nothing. Soft shadows are drawn as hard ones, since they are an
+/// estimate without a ground truth.
 pub(super) fn shade(
     scene: &Scene,
     reference: &Reference,
@@ -85,7 +85,7 @@ pub(super) fn shade(
     })
 }
 
-/// The outward normal tilted by the height's slope, in the world; `None` where the object has no
+/// The outward normal tilted by the height's slope, in the world; `None` if the object has no
 /// bumps.
 fn bumped(scene: &Scene, lengths: &Lengths, hit: &Hit) -> Option<DVec3> {
     let object = scene.objects.get(hit.object)?;
@@ -94,7 +94,8 @@ fn bumped(scene: &Scene, lengths: &Lengths, hit: &Hit) -> Option<DVec3> {
         return None;
     }
     let placement = object.placements().get(hit.instance)?;
-    // Normals go by the inverse transpose; here back, from the world to the cell.
+    // Normals transform by the inverse transpose; here in the inverse direction, from the world to
+    // the cell.
     let n = placement.rotation.conjugate() * hit.normal * placement.scale / hit.cell;
     let n = n.normalize_or_zero();
     let slope = texture::slope(object, lengths.of(hit.object), hit.place, n)?;
@@ -145,22 +146,22 @@ mod tests {
     #[test]
     fn colours_are_the_formulas() {
         // Albedo 0.8 0.6 0.4, ambient 0.1, strength 0.3, shininess 40. Light, normal and viewer in
-        // one line: all of it.
+        // one line give the full value.
         let full = [0.8 * 1.1 + 0.3, 0.6 * 1.1 + 0.3, 0.4 * 1.1 + 0.3];
         assert_color(
             &look([0.0, 0.0, 1.0], [0.0, 0.0, -5.0], [0.0, 0.0, -2.0]),
             full,
         );
-        // From behind the surface the normal is turned, and the light of that side counts.
+        // Seen from behind the surface, the normal is turned, and the light on that side counts.
         let back = look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
         assert_color(&back, full);
         assert_eq!(back.shading_normal, DVec3::NEG_Z);
-        // Lit from behind: ambient alone.
+        // A surface lit from behind has only ambient light.
         assert_color(
             &look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]),
             [0.08, 0.06, 0.04],
         );
-        // Light from 45 degrees, viewer above: half the angle for the highlight.
+        // Light from 45 degrees and the viewer above give half the angle for the highlight.
         let shine = 0.3 * (std::f64::consts::FRAC_PI_8.cos()).powi(40);
         let slant = look([0.0, 0.0, 1.0], [-1.0, 0.0, -1.0], [0.0, 0.0, -1.0]);
         assert_color(
@@ -172,7 +173,7 @@ mod tests {
     #[test]
     fn texture_coordinates_run_about_the_axis() {
         let [u, v] = look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]).uv;
-        // At azimuth -90 degrees a quarter of the way round has gone.
+        // Azimuth -90 degrees is a quarter of the way round.
         assert!((u - 0.25).abs() < 1e-15 && v == 0.3);
     }
 }

@@ -1,4 +1,4 @@
-//! One solid in its own box: extension, bevel, chamfer, the axis anywhere, replicas, closed by the
+//! A solid in its own box: extension, bevel, chamfer, the axis anywhere, replicas, closed by the
 //! box.
 
 use super::bracket::{Search, first_zero};
@@ -8,30 +8,31 @@ use glam::{DVec2, DVec3};
 use revmap::scene::{Growth, Object, Offset};
 use std::sync::Arc;
 
-/// Which part of a solid's boundary was met.
+/// The part of a solid's boundary that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// The turned surface, `F = 0`.
     Turned,
-    /// The cut at a face of the shape box, or at the border of a replica's cell, square to this
-    /// axis (0 x, 1 y, 2 z).
+    /// The cut at a face of the shape box, or at the border of a replica's cell, perpendicular to
+    /// this axis (0 x, 1 y, 2 z).
     Cut(usize),
 }
 
-/// A meeting of ray and solid in the object's own space.
+/// A hit of ray and solid in the object's own space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalHit {
     pub t: f64,
-    /// Outward, not of unit length.
+    /// Outward normal, not of unit length.
     pub normal: DVec3,
     pub surface: Surface,
-    /// In the replica's cell, about its axis: x, y from the axis, z from the cell's floor.
+    /// The point in the replica's cell, about its axis: x, y from the axis, z from the cell's
+    /// floor.
     pub place: DVec3,
-    /// Cell units for one object unit; negative: mirrored.
+    /// Cell units per object unit; negative for a mirrored replica.
     pub cell: DVec3,
 }
 
-/// A ray's whole story with one solid.
+/// The result of a ray with one solid.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LocalTrace {
     pub hit: Option<LocalHit>,
@@ -39,25 +40,25 @@ pub(super) struct LocalTrace {
     pub evaluations: u32,
 }
 
-/// A solid of revolution, ready for rays.
+/// A solid of revolution, prepared for rays.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     pub field: Arc<Field>,
     pub radius: f64,
-    /// By how much the box is larger than the profile's.
+    /// Enlargement of the box over the profile's.
     pub growth: Growth,
     pub offset: Offset,
-    /// Where the axis stands in a cell, object units.
+    /// The position of the axis in a cell, object units.
     pub axis: DVec2,
     pub repeat: [u32; 3],
     pub mirror: [bool; 3],
 }
 
-/// Crossings this near to a face of the box (in units of the cell) are the face itself.
+/// Crossings this near to a face of the box (in units of the cell) count as the face itself.
 const SKIN: f64 = 1e-10;
-/// Rays that leave a box after a shorter way than this, or miss it by less, graze it.
+/// A ray grazes a box if its path inside is shorter than this, or if it misses the box by less.
 const EDGE: f64 = 1e-7;
-/// Sine of the angle between ray and surface below which a hit is called grazing.
+/// Sine of the angle between ray and surface below which a hit is grazing.
 const FLAT: f64 = 1e-4;
 
 impl Solid {
@@ -82,13 +83,14 @@ impl Solid {
         ]
     }
 
-    /// The first meeting at `t >= 0` of the ray `origin + t direction`, object space.
+    /// The first hit at `t >= 0` of the ray `origin + t direction`, object space.
     ///
-    /// The boundary of the solid is where the ray's state (in or out) changes: within a cell by a
-    /// zero of `F`, at a cell's border by the states of the two sides. Outside the box is out.
+    /// The boundary of the solid is where the ray's state (in or out) changes: within a cell at a
+    /// zero of `F`, at a cell's border by the states of the two sides. All points outside the box
+    /// are out.
     pub fn trace(&self, origin: DVec3, direction: DVec3) -> LocalTrace {
         let mut trace = LocalTrace::default();
-        // In the space of a very large or very small solid a ray's numbers may overflow.
+        // A ray's numbers may overflow in the space of a very large or very small solid.
         if !is_ray(origin, direction) {
             return trace;
         }
@@ -144,13 +146,14 @@ impl Solid {
         trace
     }
 
-    /// The least value of `max(F, g)` for `t` from 0 to `last`, `g` the distance to the faces of
-    /// box and cell, to within `tolerance`.
+    /// The least value of `max(F, g)` for `t` from 0 to `last`, to within `tolerance`. `g` is the
+    /// distance to the faces of box and cell.
     pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
         self.lowest(origin, direction, last, tolerance, None)
     }
 
-    /// Whether [`clearance`](Self::clearance) is below `floor`; ends at the first place that is.
+    /// Returns true if [`clearance`](Self::clearance) is below `floor`; ends at the first point
+    /// that is.
     pub fn is_below(
         &self,
         origin: DVec3,
@@ -180,7 +183,7 @@ impl Solid {
         let [low, high] = self.faces();
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let faces = |p: DVec3| ((p - middle).abs() - half).max_element();
-        // Farther than this the box only recedes.
+        // The box only recedes beyond this point.
         let end = ((origin.distance(middle) + half.length()) / speed).min(last);
         let clip = Clip::new(self.faces(), origin, direction, &mut false);
         let Some(mut clip) = clip.filter(|clip| clip.t[0] <= last) else {
@@ -218,7 +221,7 @@ impl Solid {
         lowest
     }
 
-    /// The hit at the border of a cell; the outward normal looks along the ray (`side` 1) or
+    /// The hit at the border of a cell; the outward normal points along the ray (`side` 1) or
     /// against it (-1).
     fn cut(
         &self,
@@ -230,7 +233,7 @@ impl Solid {
     ) -> LocalHit {
         let mut normal = DVec3::ZERO;
         normal[axis] = side * direction[axis].signum();
-        // The cell in which the solid lies.
+        // The cell on the solid's side.
         let cell = Cell::new(self, start, direction, t - side * 1e-9 / direction.length());
         LocalHit {
             t: base + t,
@@ -241,8 +244,8 @@ impl Solid {
         }
     }
 
-    /// Where the ray passes from cell to cell, ends of the box included: `(t from the start, axis
-    /// of the plane)`, in order.
+    /// The points at which the ray passes from cell to cell, including the ends of the box: `(t
+    /// from the start, axis of the plane)`, in order.
     fn cuts(&self, start: DVec3, direction: DVec3, clip: Clip) -> Vec<(f64, usize)> {
         let length = clip.t[1] - clip.t[0];
         let mut cuts = vec![(0.0, clip.axis[0])];
@@ -271,8 +274,8 @@ impl LocalTrace {
     }
 }
 
-/// The least value of `f` on an interval, or `lowest` if that is less: steps that a value so high
-/// allows pass none lower. The first value below `floor` ends it.
+/// The least value of `f` on an interval, or `lowest` if that is less. Each step is short enough,
+/// for its value, to pass no lower value. The first value below `floor` ends the search.
 fn least(
     mut f: impl FnMut(f64) -> f64,
     (mut t, end): (f64, f64),
@@ -345,18 +348,18 @@ impl Clip {
     }
 }
 
-/// A replica's own space: the shape box again, moved so that the axis of revolution is x = y = 0.
+/// A replica's own space: the shape box, moved so that the axis of revolution is x = y = 0.
 struct Cell<'a> {
     solid: &'a Solid,
-    /// Where the ray starts, and where it goes.
+    /// The ray's start and direction.
     origin: DVec3,
     direction: DVec3,
-    /// Cell units for one object unit, along each axis; negative: mirrored.
+    /// Cell units per object unit, along each axis; negative for a mirrored replica.
     factor: DVec3,
 }
 
 impl<'a> Cell<'a> {
-    /// The cell that the ray from `start` (object space) is in at `t`.
+    /// The cell that contains the point of the ray from `start` (object space) at `t`.
     fn new(solid: &'a Solid, start: DVec3, direction: DVec3, t: f64) -> Self {
         let mut factor = DVec3::ZERO;
         let mut origin = DVec3::ZERO;
@@ -396,13 +399,13 @@ impl<'a> Cell<'a> {
             - w
     }
 
-    /// How fast `F` can change along the ray: `d` by the length of the way, `w` by its slope times
-    /// the climb.
+    /// Lipschitz constant of `F` along the ray: `d` changes by the length of the path, `w` by its
+    /// slope times the climb.
     fn lipschitz(&self) -> f64 {
         self.direction.length() + (self.solid.offset.bevel * self.direction.z).abs()
     }
 
-    /// Gradient of `F`: outward.
+    /// Gradient of `F`; it points outward.
     fn normal(&self, p: DVec3) -> DVec3 {
         let r = p.x.hypot(p.y);
         let q = DVec2::new(r, p.z);

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-//! Rays whose answer is known by hand.
+//! Rays whose result is computed by hand.
 
 use super::samples;
 use super::*;
@@ -82,7 +82,7 @@ fn a_cylinder_from_all_sides() {
         [0.0, 0.0, -1.0],
         Surface::Turned,
     );
-    // From inside: the back of the surface, its outward normal.
+    // A ray from inside hits the back of the surface, with its outward normal.
     assert_hit(
         shoot(c(), [0.0, 0.0, 0.5], [0.0, 1.0, 0.0]),
         0.25,
@@ -124,12 +124,12 @@ fn rays_that_are_none_hit_nothing() {
             let least = reference.clearance_within(ray, part, 1e-6);
             assert_eq!(least, f64::INFINITY, "{ray:?}");
         }
-        // However the solid stands.
+        // The placement of the solid makes no difference.
         let mut turned = c();
         turned.placement.scale = DVec3::new(1e-200, 1e200, 1.0);
         assert!(shoot(turned, origin, direction).hit.is_none());
     }
-    // Straight down the axis, and within a face's own plane: numbers all the way.
+    // Rays straight down the axis, and within a face's own plane, give finite numbers.
     assert!(
         shoot(c(), [0.0, 0.0, 0.5], [0.0, 0.0, 1e-300])
             .hit
@@ -140,7 +140,7 @@ fn rays_that_are_none_hit_nothing() {
 
 #[test]
 fn the_box_closes_what_it_cuts() {
-    // Wider than its box, and through its floor and ceiling.
+    // A solid wider than its box, and through its floor and ceiling.
     let c = || object(samples::cylinder(0.45, -0.5, 1.5), 0.4);
     assert_hit(
         shoot(c(), [2.0, 0.0, 0.5], [-1.0, 0.0, 0.0]),
@@ -154,14 +154,14 @@ fn the_box_closes_what_it_cuts() {
         [0.0, 0.0, 1.0],
         Surface::Cut(2),
     );
-    // Inside: the face it leaves through.
+    // A ray from inside hits the face through which it leaves.
     assert_hit(
         shoot(c(), [0.1, 0.0, 0.5], [0.0, -1.0, 0.0]),
         0.4,
         [0.0, -1.0, 0.0],
         Surface::Cut(1),
     );
-    // Near the box's corner the cylinder's own side is seen, beyond the face.
+    // The cylinder's own side is seen near the box's corner, beyond the face.
     let y = 0.35f64;
     let x = (0.45f64 * 0.45 - y * y).sqrt();
     let found = shoot(c(), [2.0, y, 0.5], [-1.0, 0.0, 0.0]);
@@ -240,21 +240,21 @@ fn placement_scales_turns_and_moves() {
         rotation: DQuat::from_rotation_y(FRAC_PI_2),
         scale: DVec3::new(1.0, 3.0, 2.0),
     };
-    // Its z lies along world x now: the cap at 0.8 stands at 10 + 1.6.
+    // The solid's z is now along world x: the cap at 0.8 is at 10 + 1.6.
     assert_hit(
         shoot(o.clone(), [20.0, 0.1, 1.1], [-1.0, 0.0, 0.0]),
         8.4,
         [1.0, 0.0, 0.0],
         Surface::Turned,
     );
-    // Along y the elliptic side reaches to 0.75.
+    // The elliptic side extends to 0.75 along y.
     assert_hit(
         shoot(o, [11.0, 5.0, 1.0], [0.0, -1.0, 0.0]),
         4.25,
         [0.0, 1.0, 0.0],
         Surface::Turned,
     );
-    // A ball, squeezed: the normal by the inverse transpose, against the ellipsoid's own.
+    // The normal of a squeezed ball by the inverse transpose, compared with the ellipsoid's own.
     let mut o = object(samples::ball(0.4, 4000), 0.5);
     let scale = DVec3::new(2.0, 0.5, 1.0);
     o.placement.scale = scale;
@@ -275,7 +275,7 @@ fn the_axis_may_stand_anywhere() {
         [0.0, 1.0, 0.0],
         Surface::Turned,
     );
-    // On the corner itself half of it is cut away.
+    // With the axis on the corner itself, half of it is cut away.
     o.axis = [1.0, 0.5];
     assert_hit(
         shoot(o, [2.0, 0.1, 0.5], [-1.0, 0.0, 0.0]),
@@ -313,7 +313,7 @@ fn cavities_and_rings() {
             .abs()
             < 1e-12
     );
-    // From the cavity's middle one sees its wall: the outward normal looks back.
+    // The cavity's wall is seen from its middle: the outward normal points back.
     let hit = shoot(o(), [0.0, 0.0, 0.5], [1.0, 0.0, 0.0]).hit.unwrap();
     assert!((hit.t - 0.25).abs() < 1e-12 && hit.normal.x < 0.0);
     assert_hit(

@@ -1,7 +1,6 @@
-//! What covers a surface, by the formulas as they are written (method: sections 5 and 6): texture
-//! coordinates of each projection, colour and slope at them. Gradients of the coordinates are taken
-//! by differences of the formulas, so that nothing here repeats the derivations that shaders rest
-//! on.
+//! Textures of a surface, directly by the formulas (method: sections 5 and 6): texture coordinates
+//! of each projection, and the colour and slope at them. Gradients of the coordinates are
+//! differences of the formulas, so that nothing here repeats the derivations used in shaders.
 
 use glam::DVec3;
 use revmap::error::Result;
@@ -12,7 +11,7 @@ use revmap::scene::{BumpForm, Object, Scene};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Lengths along the profiles of those objects that are textured by them.
+/// Arc lengths along the profiles of those objects whose texture uses them.
 #[derive(Debug)]
 pub(super) struct Lengths(Vec<Option<Arc<ArcLength>>>);
 
@@ -60,8 +59,8 @@ pub(super) fn coordinates(object: &Object, arc: Option<&ArcLength>, p: DVec3) ->
     }
 }
 
-/// The colour map's light at texture coordinates, from the full size alone: bilinear between
-/// texels, no smaller levels.
+/// The colour map's light at texture coordinates, from only the full size: bilinear between texels,
+/// no smaller levels.
 pub(super) fn color(object: &Object, uv: [f64; 2]) -> Option<[f64; 3]> {
     let level = object.texturing.color_map.as_ref()?.levels.first()?;
     Some(bilinear(object, level, uv, |t| {
@@ -69,8 +68,8 @@ pub(super) fn color(object: &Object, uv: [f64; 2]) -> Option<[f64; 3]> {
     }))
 }
 
-/// The height's change along the surface at `p`, where the outward unit normal is `n`; all in the
-/// cell's own units.
+/// The height's change along the surface at `p`, with outward unit normal `n`; all in the cell's
+/// own units.
 pub(super) fn slope(object: &Object, arc: Option<&ArcLength>, p: DVec3, n: DVec3) -> Option<DVec3> {
     let look = &object.texturing;
     let level = look.displacement_map.as_ref()?.levels.first()?;
@@ -101,8 +100,8 @@ pub(super) fn slope(object: &Object, arc: Option<&ArcLength>, p: DVec3, n: DVec3
     Some(gradient - n * n.dot(gradient))
 }
 
-/// The mean of the four texels around a place, weighted by nearness. Across, textures repeat;
-/// along, they do where the object repeats them or looks from above.
+/// The mean of the four texels around a point, weighted by nearness. Textures always repeat across.
+/// Along, they repeat if the object repeats them or if they are projected from above.
 fn bilinear<T: Copy, const N: usize>(
     object: &Object,
     level: &Level<T>,

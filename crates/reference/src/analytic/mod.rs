@@ -1,14 +1,15 @@
-//! The second method: every place where a ray can change from out to in, by formula.
+//! The second method: all points at which a ray can enter or leave a solid, by formula.
 //!
-//! `F = d - w` vanishes only where the nearest part of the outline, a segment's line or a corner, is at distance `|w|`. With `w`
-//! linear in `z` (in two pieces under a chamfer) a segment gives `alpha r + beta z = gamma`, a frustum of a cone: a quadratic in
-//! `t`. A corner gives `(r - pr)^2 + (z - pz)^2 = w^2`, a conic turned about the axis: a quartic. All roots of all of
-//! them, put in order, cut the ray into pieces on each of which `F` keeps its sign; the sign in the middle of each piece tells in
-//! from out. Roots that belong to no surface do no harm. Nothing here is shared with the bracketing method but the types of
-//! question and answer.
+//! `F = d - w` vanishes only where the nearest part of the outline, a segment's line or a corner,
+//! is at distance `|w|`. `w` is linear in `z` (in two pieces with a chamfer), so a segment gives
+//! `alpha r + beta z = gamma`, a frustum of a cone: a quadratic in `t`. A corner gives `(r -
+//! pr)^2 + (z - pz)^2 = w^2`, a conic turned about the axis: a quartic. All roots, sorted, cut the
+//! ray into pieces on each of which `F` keeps its sign. The sign in the middle of each piece
+//! distinguishes inside from outside. Roots that belong to no surface do no harm. This method
+//! shares only the input and output types with the bracketing method.
 //!
-//! The time grows with the square of the number of segments, and replicas are not known here: it is
-//! there to check the other.
+//! The time grows with the square of the number of segments, and replicas are not supported: this
+//! method exists to check the other.
 
 mod path;
 mod roots;
@@ -23,7 +24,7 @@ use revmap::scene::{Growth, Object, Offset, Scene};
 /// Pieces of a ray shorter than this, in object units, mark it as grazing.
 const SLIVER: f64 = 1e-7;
 
-/// A scene for the analytic method.
+/// A scene prepared for the analytic method.
 #[derive(Debug)]
 pub struct Analytic {
     parts: Vec<Part>,
@@ -52,8 +53,8 @@ impl Analytic {
     /// Prepares a scene.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for what this method does not know: replicas, and profiles that are
-    /// images.
+    /// [`ErrorKind::Content`] for content that this method does not support: replicas, and profiles
+    /// that are images.
     pub fn new(scene: &Scene) -> Result<Self> {
         let mut parts = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
@@ -153,7 +154,7 @@ impl Solid {
         };
         let (mut from, mut by) = (0.0, None);
         for (to, next) in stops {
-            // Doubles of one root are one stop.
+            // A double root gives one stop.
             if (to - from) * speed < 1e-13 && next.is_some() && from > 0.0 {
                 continue;
             }
@@ -172,7 +173,8 @@ impl Solid {
         trace
     }
 
-    /// The hit at `s` after the start; `entering`: the ray is in the solid beyond it.
+    /// The hit at `s` after the start. `entering` is true if the ray is in the solid beyond the
+    /// hit.
     fn hit(
         &self,
         inside: &Inside,
@@ -194,7 +196,7 @@ impl Solid {
                 (DVec3::AXES[face], Surface::Cut(face))
             }
         };
-        // The outward normal looks against a ray that enters, along one that leaves.
+        // The outward normal points against a ray that enters, and along one that leaves.
         let along = gradient.dot(ray.direction) > 0.0;
         let normal = if along == entering {
             -gradient
@@ -242,7 +244,7 @@ impl Solid {
         })
     }
 
-    /// `F`, plainly: all segments for the distance, the winding number for the sign.
+    /// `F` by brute force: all segments for the distance, the winding number for the sign.
     fn value(&self, q: DVec2) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut winding = 0;
@@ -250,7 +252,7 @@ impl Solid {
             for (k, &b) in points.iter().enumerate() {
                 let a = points[(k + points.len() - 1) % points.len()];
                 let (ab, aq) = (b - a, q - a);
-                // Left of an upward segment counts up, right of a downward one down.
+                // A point left of an upward segment counts up, right of a downward one down.
                 if a.y <= q.y {
                     if b.y > q.y && ab.perp_dot(aq) > 0.0 {
                         winding += 1;
@@ -278,7 +280,7 @@ impl Solid {
     }
 }
 
-/// Where a ray is within the box.
+/// The part of a ray within the box.
 struct Inside {
     enter: f64,
     enter_axis: usize,
@@ -287,7 +289,7 @@ struct Inside {
 }
 
 impl Inside {
-    /// `None` when the ray misses the box, or has left it, or is none.
+    /// `None` if the ray misses the box, has already left it, or is invalid.
     fn new(radius: f64, growth: &Growth, ray: Ray) -> Option<Self> {
         if !is_ray(ray.origin, ray.direction) {
             return None;

@@ -1,4 +1,4 @@
-//! A ray in the half-plane, and where it meets the curves on which `F` may vanish.
+//! A ray in the half-plane, and its intersections with the curves on which `F` may vanish.
 
 use super::roots;
 use glam::{DVec2, DVec3};
@@ -17,7 +17,7 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// A normal of the turned curve at a point of it, about the axis; its sign is open.
+    /// A normal of the turned curve at a point relative to the axis; its sign is undetermined.
     pub fn gradient(&self, p: DVec3) -> DVec3 {
         let r = p.truncate().length();
         let out = if r > 1e-12 {
@@ -89,8 +89,8 @@ impl Path {
                     k * self.c - g0 * g0,
                 );
                 Box::new(found.map(move |s| {
-                    // Squaring made the roots of flat cones nearly double; the cone itself has them
-                    // single.
+                    // Squaring made the roots of flat cones nearly double; they are single roots of
+                    // the cone itself.
                     roots::polish(s, reach, |s| {
                         let (r, slope) = self.radius(s);
                         (alpha * r - g0 + g1 * s, alpha * slope + g1)

@@ -1,20 +1,20 @@
-//! Real roots of polynomials, without losing any that a sign change shows.
+//! Real roots of polynomials; every root with a sign change is found.
 
-/// Candidates for the roots of `a x^2 + 2 b x + c`: the roots, and where there is none by a
-/// rounding's width, the vertex.
+/// Candidates for the roots of `a x^2 + 2 b x + c`: the roots, or the vertex if a root is missed by
+/// no more than rounding.
 pub(super) fn quadratic(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
     let mut square = b * b - a * c;
     if square < 0.0 && square > -1e-10 * (b * b + (a * c).abs()) {
         square = 0.0;
     }
-    // Both terms of one sign: nothing cancels. With `a = 0` the second quotient is the root that
-    // remains.
+    // The two terms have the same sign, so nothing cancels. If `a = 0`, the second quotient is the
+    // remaining root.
     let q = -(b + square.sqrt().copysign(b));
     [q / a, c / q].into_iter().filter(|x| x.is_finite())
 }
 
 /// Candidates for the roots of a polynomial in `[0, 1]`: every root with a change of sign, exact to
-/// rounding, and every turning point (where a pair of roots may hide). Coefficients from the
+/// rounding, and every turning point (which may hide a pair of roots). Coefficients from the
 /// constant upwards.
 pub(super) fn in_unit_interval(coefficients: &[f64]) -> Vec<f64> {
     let degree = coefficients.len().saturating_sub(1);
@@ -29,7 +29,7 @@ pub(super) fn in_unit_interval(coefficients: &[f64]) -> Vec<f64> {
     let value = |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let mut low = 0.0;
     for high in stops {
-        // Between turning points the polynomial is monotonic: one root at most.
+        // The polynomial is monotonic between turning points: one root at most.
         if (value(low) < 0.0) != (value(high) < 0.0) {
             roots.push(bisect(&value, low, high));
         }
@@ -53,8 +53,8 @@ fn bisect(value: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     }
 }
 
-/// A few Newton steps on the function itself, given as `(value, slope)`; each must lessen the
-/// value, and all together stay near the start.
+/// A few Newton steps on the function itself, given as `(value, slope)`. Each step must reduce the
+/// value, and the result must stay near the start.
 pub(super) fn polish(start: f64, reach: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut x = start;
     let (mut value, mut slope) = f(x);
@@ -101,7 +101,7 @@ mod tests {
 
         #[test]
         fn quadratics_keep_their_small_roots(p in -1.0..1.0f64, scale in -8..8i32, factor in 0.1..10.0f64) {
-            // Roots p and 10^scale: the textbook formula loses one of them.
+            // The roots are p and 10^scale: the textbook formula loses one of them.
             let q = 10f64.powi(scale);
             prop_assume!(p.abs() > 1e-3 && (p - q).abs() > 0.1 * q.abs().max(p.abs()));
             let found: Vec<f64> = quadratic(factor, -factor * (p + q) / 2.0, factor * p * q).collect();

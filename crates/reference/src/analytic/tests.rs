@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
-//! The two methods against each other, on random solids and random rays.
+//! Compares the two methods on random solids and random rays.
 
 use super::super::random::Random;
 use super::super::{Reference, samples, tests};
@@ -41,7 +41,7 @@ fn random_scene(dice: &mut Random, offset: Offset) -> Scene {
     tests::scene(vec![o])
 }
 
-/// A ray that mostly meets the box: from afar, from near, from within; sometimes along an axis.
+/// A ray that usually hits the box: from afar, from near, from within; sometimes along an axis.
 fn random_ray(dice: &mut Random, scene: &Scene) -> Ray {
     let p = &scene.objects[0].placement;
     let world = DAffine3::from_scale_rotation_translation(p.scale, p.rotation, p.position);
@@ -75,7 +75,7 @@ struct Tally {
     worst: f64,
 }
 
-/// Traces by both methods and compares; what grazes is counted, all else must agree.
+/// Traces by both methods and compares. Grazing rays are counted; all others must agree.
 fn agree(
     seed: u64,
     rays: usize,
@@ -105,7 +105,7 @@ fn agree(
         let error = (p.t - q.t).abs() * ray.direction.length();
         tally.worst = tally.worst.max(error);
         prop_assert!(error < 1e-9, "{error}: {ray:?}\n{a:?}\n{b:?}");
-        // On a crease both normals are right; it is met by a ray in a million.
+        // Both normals of a crease are valid; one ray in a million hits a crease.
         if (p.normal - q.normal).length() > 1e-6 {
             tally.creases += 1;
         }

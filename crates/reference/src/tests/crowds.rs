@@ -1,4 +1,4 @@
-//! Replicas against single objects, copies, images as profiles, odd places of the camera,
+//! Replicas compared with single objects, copies, images as profiles, unusual camera positions,
 //! clearance.
 
 use super::*;
@@ -6,7 +6,7 @@ use revmap::profile::Raster;
 use revmap::scene::Copies;
 use std::f64::consts::PI;
 
-/// Rays at and through the unit box, `n` of them, by the golden ratio.
+/// `n` rays at and through the unit box, by the golden ratio.
 fn rays(n: u32) -> impl Iterator<Item = Ray> {
     (0..n).map(|k| {
         let part = |a: f64| (f64::from(k) * a).fract();
@@ -51,7 +51,7 @@ fn assert_same(a: &Reference, b: &Reference, rays: impl Iterator<Item = Ray>) {
     );
 }
 
-/// One object for each cell of a repeated one.
+/// A single object for each cell of a repeated one.
 fn singles(object: &Object) -> Vec<Object> {
     let mut list = Vec::new();
     let n = object.repeat.map(f64::from);
@@ -80,7 +80,7 @@ fn singles(object: &Object) -> Vec<Object> {
             rotation: DQuat::IDENTITY,
             scale: DVec3::from(n).recip(),
         };
-        // A turned solid is its own mirror image but for where its axis stands.
+        // A turned solid is its own mirror image except for the position of its axis.
         if mirrored[0] {
             one.axis[0] = 1.0 - one.axis[0];
         }
@@ -88,7 +88,7 @@ fn singles(object: &Object) -> Vec<Object> {
             one.axis[1] = 1.0 - one.axis[1];
         }
         if mirrored[2] {
-            // Upside down by half a turn about x, which turns y round too.
+            // Half a turn about x turns it upside down, and turns y round too.
             place.position.z = at(2, 1.0);
             place.rotation = DQuat::from_rotation_x(PI);
             one.axis[1] = 1.0 - one.axis[1];
@@ -117,7 +117,7 @@ fn replicas_are_as_many_single_objects() {
             (o.repeat, o.mirror, o.axis) = (repeat, mirror, axis);
             let many = Reference::new(&scene(singles(&o))).unwrap();
             let one = Reference::new(&scene(vec![o])).unwrap();
-            // Solids that are cut by their cells touch: from within, single ones still show the
+            // Solids cut by their cells touch: single solids, seen from within, still show the
             // joint.
             let outside =
                 |r: &Ray| axis == [0.5; 2] || (r.origin - DVec3::Z * 0.5).abs().max_element() > 0.5;
@@ -130,10 +130,10 @@ fn replicas_are_as_many_single_objects() {
 fn replicas_that_touch_are_one_solid() {
     let mut o = object(samples::cylinder(0.4, 0.0, 1.0), 0.5);
     o.repeat = [1, 1, 4];
-    // From inside one sees the far end, not the joints.
+    // The far end is seen from inside, not the joints.
     let found = shoot(o.clone(), [0.1, 0.0, 0.1], [0.0, 0.0, 1.0]);
     assert!((found.hit.unwrap().t - 0.9).abs() < 1e-9);
-    // A cone's base against the next cone's tip: the joint is surface where only one side is solid.
+    // A cone's base touches the next cone's tip: the joint is surface if only one side is solid.
     o.profile = Arc::new(Profile::new(samples::cone(0.4, 0.0, 1.0), 0.5));
     let found = shoot(o.clone(), [0.2, 0.1, 0.2], [0.0, 0.0, 1.0])
         .hit
@@ -142,7 +142,8 @@ fn replicas_that_touch_are_one_solid() {
         (found.t - 0.05).abs() < 1e-9 && (found.normal + DVec3::Z).length() < 1e-9,
         "{found:?}"
     );
-    // Mirrored, base meets base: from within the lower cone one sees the side of the upper one.
+    // With mirroring, base meets base: the side of the upper cone is seen from within the lower
+    // one.
     o.mirror[2] = true;
     let found = shoot(o, [0.2, 0.1, 0.45], [0.0, 0.0, 1.0]).hit.unwrap();
     let z = 0.75 - 0.25 * 0.05f64.sqrt() / 0.4;
@@ -268,9 +269,9 @@ fn clearance_is_how_deep_or_how_far() {
         let found = at(ball(), y, 0.5);
         assert!((found - (y - 0.3)).abs() < 3e-4, "{y}: {found}");
     }
-    // Past the box it is at least the way to the box.
+    // The clearance of a ray past the box is at least the distance to the box.
     assert!(at(ball(), 0.7, 0.5) >= 0.2 - 1e-4);
-    // Cut by the box: as deep as the box's face allows.
+    // A solid cut by the box is at most as deep as the box's face allows.
     let found = at(object(samples::cylinder(0.45, -1.0, 2.0), 0.5), 0.0, 0.98);
     assert!((found + 0.02).abs() < 3e-4, "{found}");
     // Replicas: the half-size ball's cell.
