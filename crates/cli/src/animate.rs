@@ -1,4 +1,4 @@
-//! `revmap animate`: a turntable, or parameters that move, as numbered pictures with the time of
+//! `revmap animate`: a turntable, or changing parameters, as numbered pictures with the time of
 //! every frame.
 
 use super::options::{Drawing, Tracing};
@@ -47,7 +47,7 @@ pub struct Animate {
     drawing: Drawing,
 }
 
-/// A key that moves.
+/// A key whose value changes from frame to frame.
 struct Vary {
     key: String,
     from: Vec<f64>,
@@ -55,7 +55,7 @@ struct Vary {
     list: bool,
 }
 
-/// One line of the times.
+/// A line of the times.
 #[derive(Default)]
 struct Row {
     prepare_ms: f64,
@@ -123,7 +123,8 @@ impl Animate {
         Ok(())
     }
 
-    /// Every frame: the scene is taken over, drawn, and read back after its times were taken.
+    /// Draws every frame: the scene is updated and drawn, and it is read back after its times were
+    /// measured.
     fn draw(
         &self,
         device: &Device,
@@ -133,7 +134,7 @@ impl Animate {
         progress: &Progress,
     ) -> Result<Vec<Row>> {
         let mut settings = self.drawing.settings(Planes::Color);
-        // Nothing is smoothed where no picture is kept.
+        // Silhouettes are smoothed only if pictures are written.
         settings.antialias = self.samples.antialias(false) && self.output.is_some();
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
@@ -175,7 +176,7 @@ impl Animate {
         Ok(rows)
     }
 
-    /// Where frame `n` goes, if anywhere.
+    /// The file of frame `n`, if pictures are written.
     fn picture(&self, n: u32) -> Option<PathBuf> {
         let folder = self.output.as_ref()?;
         Some(folder.join(format!("frame-{n:04}.png")))
@@ -188,7 +189,7 @@ impl Animate {
         sets.extend(varied.iter().map(|v| v.at(part)));
         let mut scene = file.scene(&sets)?;
         if let Some(turn) = self.turn {
-            // The last frame is one step before the first comes again.
+            // The last frame is one step before the first is repeated.
             let angle = (turn * f64::from(n) / f64::from(self.frames)).to_radians();
             let camera = &mut scene.camera;
             let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
@@ -270,7 +271,7 @@ impl Vary {
         })
     }
 
-    /// The assignment at `part` of the way, 0 to 1.
+    /// The assignment at the fraction `part`, 0 to 1.
     fn at(&self, part: f64) -> String {
         let values: Vec<String> = self
             .from

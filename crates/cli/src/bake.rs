@@ -28,17 +28,17 @@ const PROJECTIONS: [(&str, Projection); 4] = [
 pub struct Bake {
     /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
     profile: PathBuf,
-    /// Where the shape map goes: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit
-    /// floats, without loss)
+    /// File of the shape map: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit floats,
+    /// without loss)
     #[arg(long, short, value_name = "MAP")]
     output: PathBuf,
     /// Rows of the shape map
     #[arg(long, value_name = "N", default_value_t = Object::MAP_ROWS, value_parser = clap::value_parser!(u32).range(2..=16384))]
     map_rows: u32,
-    /// Where distances come from [default: exact]
+    /// Source of distances [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
     map_source: Option<MapSource>,
-    /// Where the axis is: the left edge of half a profile, or the middle of a silhouette
+    /// Position of the axis: the left edge of half a profile, or the middle of a silhouette
     #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&AXES))]
     profile_axis: ProfileAxis,
     /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
@@ -130,7 +130,7 @@ impl Bake {
     }
 }
 
-/// `file` with the projection in its name; a name that tells another one is refused.
+/// `file` with the projection in its name; a name with another projection is refused.
 fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
     match Projection::of_file(file) {
         Some(other) if other != projection => Err(Error::new(
@@ -146,8 +146,8 @@ fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
     }
 }
 
-/// Where the displacement map of a shape map goes: `vase.spherical.exr` and
-/// `vase.displacement.png`.
+/// The file of the displacement map beside a shape map: `vase.displacement.png` for
+/// `vase.spherical.exr`.
 fn beside(map: &Path) -> PathBuf {
     let unmarked = match Projection::of_file(map) {
         Some(_) => map.with_extension(""),

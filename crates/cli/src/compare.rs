@@ -1,4 +1,4 @@
-//! `revmap compare`: how far a frame is from another that is taken for the truth.
+//! `revmap compare`: the difference of a frame from another that counts as the truth.
 
 use super::output;
 use clap::Args;
@@ -22,14 +22,13 @@ pub struct Compare {
     /// A sheet of heat maps, one for each measure
     #[arg(long, value_name = "FILE.png")]
     heat: Option<PathBuf>,
-    /// Length of a texel of the shape map in world units, in which errors of depth are told
-    /// [default: 1/512]
+    /// Length of a texel of the shape map in world units, the unit of depth errors [default: 1/512]
     #[arg(long, value_name = "LENGTH", value_parser = positive)]
     texel: Option<f64>,
     /// Fail unless the frames agree in every bit of every channel
     #[arg(long)]
     exact: bool,
-    /// One JSON object on standard output in place of text
+    /// Print one JSON object on standard output in place of text
     #[arg(long)]
     json: bool,
 }
@@ -83,7 +82,7 @@ impl Compare {
     }
 }
 
-/// The names of the columns of `results.csv`; what does not apply is null.
+/// The names of the columns of `results.csv`; values that do not apply are null.
 fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
     json!({
         "pixels": found.pixels,

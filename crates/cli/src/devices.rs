@@ -1,4 +1,4 @@
-//! `revmap devices`: the Vulkan devices and what the program would use of each.
+//! `revmap devices`: the Vulkan devices, and the features of each that the program would use.
 
 use super::output;
 use clap::Args;

@@ -1,11 +1,11 @@
-//! What the program says of the library's failures: its own options in place of keys and methods,
-//! and an exit code.
+//! Failures of the library as the program prints them: with its own options in place of keys and
+//! methods, and with an exit code.
 
 use super::output;
 use revmap::error::{Error, ErrorKind};
 use std::process::ExitCode;
 
-/// What the library calls by this key is given by this option.
+/// Keys of the library, each with the option that sets it.
 const OPTIONS: [(&str, &str); 6] = [
     ("device", "--device"),
     ("out", "--out"),
@@ -15,14 +15,14 @@ const OPTIONS: [(&str, &str); 6] = [
     ("tolerance", "--tolerance"),
 ];
 
-/// Says what failed in one line, and how the program ends.
+/// Prints the failure in one line, and returns the exit code.
 pub fn report(error: Error) -> ExitCode {
     let code = exit_code(error.kind);
     output::complain(&text(error));
     ExitCode::from(code)
 }
 
-/// 2 wrong usage, 3 no usable device, 1 all else.
+/// Exit codes: 2 wrong usage, 3 no usable device, 1 all others.
 fn exit_code(kind: ErrorKind) -> u8 {
     match kind {
         ErrorKind::Usage => 2,
@@ -48,7 +48,7 @@ fn option(key: &str) -> Option<&'static str> {
     found.map(|(_, option)| *option)
 }
 
-/// The options that help, where a kind of failure has some.
+/// The options that help with a kind of failure, if any.
 fn remedy(kind: ErrorKind) -> &'static str {
     match kind {
         ErrorKind::DeviceLost => "; see --size, --max-steps",

@@ -1,4 +1,4 @@
-//! Ctrl-C: the first ends long work early and in order, the second at once.
+//! Ctrl-C: the first ends long work early but cleanly, the second ends the program at once.
 
 use revmap::error::{Error, ErrorKind, Result};
 use std::sync::OnceLock;
@@ -9,7 +9,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// The exit code that shells give to a program ended by an interrupt.
 const INTERRUPTED: i32 = 130;
 
-/// The flag that an interrupt sets, from now on.
+/// The flag that an interrupt sets after this call.
 pub fn flag() -> Result<&'static AtomicBool> {
     static SET: OnceLock<std::result::Result<(), String>> = OnceLock::new();
     let set = SET.get_or_init(|| {

@@ -6,8 +6,8 @@ use revmap::scene::{Scene, Shadow};
 /// The coarsest level that has a colour of its own.
 const COARSEST: f32 = 12.0;
 
-/// The scene with nothing but colours, those of the levels that its objects were drawn by. What has
-/// no levels is grey.
+/// The scene reduced to colours: those of the levels by which its objects were drawn. Objects
+/// without levels are grey.
 pub fn painted(scene: &Scene, costs: &[ObjectCost]) -> Scene {
     let mut painted = scene.clone();
     painted.lights.clear();
@@ -22,7 +22,7 @@ pub fn painted(scene: &Scene, costs: &[ObjectCost]) -> Scene {
     painted
 }
 
-/// From blue over green to red, linear RGB.
+/// Colours from blue over green to red, linear RGB.
 fn color(level: u32) -> [f32; 3] {
     let at = (level as f32 / COARSEST).min(1.0);
     let near = |middle: f32| (1.0 - 2.0 * (at - middle).abs()).clamp(0.02, 1.0);

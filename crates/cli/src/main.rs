@@ -82,7 +82,7 @@ impl Command {
     }
 }
 
-/// A fault of ours: a bug, told in one line like every failure.
+/// A panic is a bug of the program, reported in one line like every failure.
 const FAILED: u8 = 1;
 
 fn main() -> ExitCode {
@@ -90,7 +90,8 @@ fn main() -> ExitCode {
         Ok(program) => program,
         Err(error) => return usage::report(&error),
     };
-    // With a backtrace asked for, the usual message is wanted; else a bug is one line too, below.
+    // If RUST_BACKTRACE is set, the usual panic message is kept. Otherwise a bug is one line too,
+    // below.
     if std::env::var_os("RUST_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| ()));
     }

@@ -1,4 +1,4 @@
-//! Options that every drawing command takes.
+//! Options of every drawing command.
 
 use super::pipelines::{self, Kept};
 use clap::Args;
@@ -12,12 +12,12 @@ use revmap_lab::method::{Method, MethodSettings};
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
 
-/// Where rays are traced.
+/// The stage that traces rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tracing {
-    /// On the device, in one of its stages.
+    /// A stage of the device.
     Device(DrawStage),
-    /// On the CPU, in double precision: ground truth.
+    /// Ground truth: the CPU, in double precision.
     Reference,
 }
 
@@ -31,7 +31,7 @@ pub const STAGES: [(&str, Tracing); 3] = [
 /// An earlier name of `exact`, which scripts may use.
 pub const ALIAS: &str = "hull";
 
-/// Names of the searches; the first is the one taken when none is named.
+/// Names of the searches; the first is the default.
 pub const SOLVERS: [(&str, Method); Method::ALL.len() + 2] = {
     let mut all = [("default", Method::DEFAULT); Method::ALL.len() + 2];
     all[1] = (ALIAS, Method::Search(Solver::Exact));
@@ -43,17 +43,17 @@ pub const SOLVERS: [(&str, Method); Method::ALL.len() + 2] = {
     all
 };
 
-/// How to draw, and what to say about it.
+/// Options of a drawing and of its messages.
 #[derive(Args, Clone, Debug)]
 pub struct Drawing {
     /// Pixels across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "800x600", value_parser = size)]
     pub size: (u32, u32),
-    /// Where rays are traced: in the fragment shader, in a compute shader, or on the CPU in double
+    /// Stage that traces rays: the fragment shader, a compute shader, or the CPU in double
     /// precision
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
     pub stage: Tracing,
-    /// How the first hit along a ray is found
+    /// Search for the first hit along a ray
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = MethodParser)]
     pub solver: Method,
     /// Bound on the search's steps [default: the solver's own]
@@ -62,10 +62,10 @@ pub struct Drawing {
     /// Rows of every shape map [default: each object's map_rows]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16384))]
     pub map_rows: Option<u32>,
-    /// Where distances come from [default: exact]
+    /// Source of distances [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
     pub map_source: Option<MapSource>,
-    /// How distances are stored on the device
+    /// Format of distances on the device
     #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&MapFormat::NAMES))]
     pub map_format: MapFormat,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an
@@ -92,7 +92,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// The lab's settings. Of these the reference reads the size alone.
+    /// The lab's settings. The reference uses only the size.
     pub fn settings(&self, planes: Planes) -> MethodSettings {
         MethodSettings {
             width: self.size.0,
@@ -112,14 +112,14 @@ impl Drawing {
         }
     }
 
-    /// Opens the device, with the pipelines of earlier runs and the memory that may be taken.
+    /// Opens the device with the pipelines of earlier runs and the memory limit.
     pub fn open(&self) -> revmap::Result<(Device, Kept)> {
         let (device, kept) = pipelines::open(self.device.as_deref())?;
         device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
         Ok((device, kept))
     }
 
-    /// What looks unintended: in the scene, and options that the method passes over.
+    /// Warnings about the scene, and about options that the method ignores.
     pub fn warnings(&self, scene: &Scene) -> Vec<String> {
         let mut found = scene.warnings(self.size.0, self.size.1);
         let given = [

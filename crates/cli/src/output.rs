@@ -1,30 +1,30 @@
-//! What the program says and where it writes.
+//! Standard output, standard error, and output files of the program.
 
 use revmap::error::{Error, ErrorKind, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// One line of results on standard output. A reader that has gone away is no failure.
+/// Prints a line of results on standard output. A closed standard output is not a failure.
 pub fn result(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-/// Results for programs: one JSON value, indented.
+/// Prints results for programs: one JSON value, indented.
 pub fn json(value: &serde_json::Value) {
     result(&format!("{value:#}"));
 }
 
-/// One line beside the results, on standard error.
+/// Prints a line beside the results, on standard error.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", flat(line));
 }
 
-/// What looks unintended, and changes no exit code.
+/// Prints a warning; the exit code stays the same.
 pub fn warn(message: &str) {
     note(&format!("warning: {message}"));
 }
 
-/// A failure: the one line on standard error.
+/// Prints a failure: the one line on standard error.
 pub fn complain(message: &str) {
     note(&format!("revmap: {message}"));
 }
@@ -36,11 +36,11 @@ fn flat(text: &str) -> String {
         .collect()
 }
 
-/// Looks at the output files that `option` names before any work: their endings are among
-/// `endings`, none is named twice, none is one of the `inputs`, and each can be written.
+/// Checks the output files of `option` before any work. Their endings must be among `endings`, none
+/// may be named twice, none may be one of the `inputs`, and each must be writable.
 ///
 /// # Errors
-/// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for what cannot be written.
+/// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for files that cannot be written.
 pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]) -> Result<()> {
     for (i, file) in files.iter().enumerate() {
         let usage = |message: String| {
@@ -66,10 +66,10 @@ pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]
     Ok(())
 }
 
-/// Refuses to write any of `files` over what was read.
+/// Refuses to write any of `files` over an input.
 ///
 /// # Errors
-/// [`ErrorKind::Usage`], naming the file.
+/// [`ErrorKind::Usage`], with the file's name.
 pub fn spare<'a>(
     inputs: impl Iterator<Item = &'a Path>,
     files: &[PathBuf],
@@ -89,7 +89,7 @@ pub fn spare<'a>(
     }
 }
 
-/// Whether `file` ends in `.ending`, in any case.
+/// Returns true if `file` ends in `.ending`, in upper or lower case.
 pub fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
@@ -99,7 +99,7 @@ fn same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Tries to make a file beside `file`, as writing will.
+/// Tries to make a file beside `file`, as the later write does.
 fn writable(file: &Path, option: &str) -> Result<()> {
     let fail = |message: String| {
         Error::new(ErrorKind::File, message)

@@ -1,5 +1,5 @@
-//! Compiled pipelines kept between runs: one file a driver in the user's cache folder. Whatever
-//! goes wrong with it is no failure: pipelines are compiled anew.
+//! Compiled pipelines kept between runs: one file per driver in the user's cache folder. Errors
+//! with this file are not failures: pipelines are compiled again.
 
 use revmap::error::Result;
 use revmap::gpu::Device;
@@ -21,14 +21,14 @@ pub fn open(choice: Option<&str>) -> Result<(Device, Kept)> {
     let file = folder().map(|folder| folder.join(format!("{name}.pipelines")));
     let data = file.as_ref().and_then(|file| std::fs::read(file).ok());
     if let Some(data) = data.as_deref().and_then(whole) {
-        // The driver passes over what is not its own.
+        // The driver ignores data that is not its own.
         let _ = device.add_pipeline_cache(data);
     }
     Ok((device, Kept { file }))
 }
 
 impl Kept {
-    /// Keeps what has been compiled, where anything was.
+    /// Stores the compiled pipelines, if there are any.
     pub fn save(&self, device: &Device) {
         let Some(file) = self
             .file
@@ -44,7 +44,8 @@ impl Kept {
         if old.as_deref().and_then(whole) == Some(&data) {
             return;
         }
-        // Beside, then renamed: of two writers one wins, and a reader never sees half a file.
+        // Written beside the file, then renamed: one of two writers wins, and a reader never sees
+        // half a file.
         let beside = file.with_extension(format!("{}", std::process::id()));
         let made = file.parent().map(std::fs::create_dir_all);
         let written = std::fs::write(&beside, [&sum(&data).to_le_bytes()[..], &data].concat());

@@ -1,4 +1,4 @@
-//! A progress bar on standard error: only on a terminal, only for work that takes over a second.
+//! A progress bar on standard error, only on a terminal, and only for work of more than a second.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -10,14 +10,14 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(1);
 const TICK: Duration = Duration::from_millis(100);
 
-/// Work under way. Dropping it takes the bar off the screen.
+/// Work in progress. Dropping it removes the bar from the screen.
 pub struct Progress {
     bar: ProgressBar,
     watcher: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
-    /// Begins; `quiet` shows nothing at all.
+    /// Begins; `quiet` shows nothing.
     pub fn start(what: &str, quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         bar.set_message(what.to_owned());
@@ -36,12 +36,12 @@ impl Progress {
         Self { bar, watcher }
     }
 
-    /// Changes what stands before the bar.
+    /// Changes the text before the bar.
     pub fn say(&self, what: &str) {
         self.bar.set_message(what.to_owned());
     }
 
-    /// Tells how much is done; may be called from any thread.
+    /// Reports the finished part; may be called from any thread.
     pub fn report(&self, done: usize, total: usize) {
         if self.bar.length() != Some(total as u64) {
             self.bar.set_length(total as u64);

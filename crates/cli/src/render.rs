@@ -28,15 +28,14 @@ use std::time::Instant;
 pub struct Render {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
-    /// Where the picture goes: .png (8-bit sRGB) or .exr (float channels); may be given more than
-    /// once
+    /// Picture file: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
     /// Also writes a picture of the level of patches that each pixel was drawn by: blue is exact,
     /// red the coarsest
     #[arg(long, value_name = "FILE.png")]
     levels: Option<PathBuf>,
-    /// One JSON object on standard output in place of text: all that --verbose says
+    /// Print one JSON object on standard output in place of text: all that --verbose prints
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
     #[command(flatten)]
@@ -45,10 +44,10 @@ pub struct Render {
     drawing: Drawing,
 }
 
-/// A picture and what it cost.
+/// A picture and its cost.
 struct Picture {
     frame: Frame,
-    /// `None` of the reference.
+    /// `None` for the reference.
     device: Option<DeviceReport>,
     times: Times,
     map_bytes: [u64; 2],
@@ -75,7 +74,8 @@ impl Render {
             .output
             .iter()
             .any(|file| output::has_ending(file, "exr"));
-        // What a search leaves undone is counted beside the planes; that is worth a warning.
+        // Searches that run out of steps are counted beside the planes; such pixels cause a
+        // warning.
         let counted = self.drawing.solver.may_run_out() && !self.drawing.quiet;
         let planes = if floats || self.drawing.verbose || self.json || counted {
             Planes::All
@@ -83,7 +83,7 @@ impl Render {
             Planes::Color
         };
         let mut settings = self.drawing.settings(planes);
-        // What is compared with others is exact unless told.
+        // Frames for comparison are exact by default.
         if floats && self.drawing.tolerance.is_none() {
             settings.tolerance = Tolerance::EXACT;
         }
@@ -129,7 +129,8 @@ impl Render {
         })
     }
 
-    /// The picture, after one that waits for the driver's compiler. Times are those of all rays.
+    /// Draws the picture, after one whose time includes the driver's compiler. Times are for all
+    /// rays together.
     fn drawn(
         &self,
         device: &Device,
@@ -150,7 +151,7 @@ impl Render {
         let costs = renderer.object_costs();
         let device_bytes = renderer.device_bytes();
         if let Some(file) = &self.levels {
-            // Colours stand for levels, and are not mixed.
+            // Colours encode levels and are not mixed.
             let settings = MethodSettings {
                 antialias: false,
                 ..*settings
@@ -203,8 +204,8 @@ impl Render {
         })
     }
 
-    /// What was drawn, on which device, how fast. Said when it is done, so that a failure stays one
-    /// line.
+    /// Prints the picture's content, device and times. This output comes at the end, so that a
+    /// failure is one line.
     fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture, spent: [f64; 3]) {
         output::note(&format!(
             "device: {}",
@@ -242,7 +243,7 @@ impl Render {
         }
     }
 
-    /// What `--verbose` adds.
+    /// The additional output of `--verbose`.
     fn details(
         &self,
         scene: &Scene,
@@ -292,7 +293,7 @@ impl Render {
         ));
     }
 
-    /// All that [`details`](Self::details) says, for programs.
+    /// The content of [`details`](Self::details), for programs.
     fn tell_json(
         &self,
         scene: &Scene,
@@ -354,7 +355,7 @@ fn write(frame: &Frame, file: &Path) -> Result<()> {
     }
 }
 
-/// A failure while drawing, with the device's name, which may be the reason.
+/// A failure while drawing, with the device's name, since the device may be the reason.
 fn on(device: &str, mut error: Error) -> Error {
     use ErrorKind::{DeviceLost, Other, OutOfDeviceMemory, Unsupported};
     if [DeviceLost, Other, OutOfDeviceMemory, Unsupported].contains(&error.kind) {
@@ -363,7 +364,7 @@ fn on(device: &str, mut error: Error) -> Error {
     error
 }
 
-/// How an object was drawn, and what it takes on the device.
+/// An object's draw path and its memory on the device.
 fn cost_line(cost: &ObjectCost) -> String {
     let path = format!("{:?}", cost.path).to_lowercase();
     let level = cost.level.map(|level| {
@@ -391,7 +392,7 @@ fn map_size(object: &Object, settings: &MethodSettings) -> [u32; 2] {
     ]
 }
 
-/// How many pixels were hit, and what the search spent on them.
+/// The number of pixels with a hit, and the steps of the search in them.
 struct Steps {
     hits: usize,
     mean: f64,
@@ -399,7 +400,7 @@ struct Steps {
 }
 
 impl Steps {
-    /// `None` where nothing is hit.
+    /// `None` if there is no hit.
     fn of(frame: &Frame) -> Option<Self> {
         let hits: Vec<f32> = (frame.steps.iter().zip(&frame.distance))
             .filter(|(_, distance)| distance.is_finite())
@@ -413,7 +414,8 @@ impl Steps {
     }
 }
 
-/// In how many pixels the search ran out of steps, and what helps; `None` where there are none.
+/// The number of pixels in which the search ran out of steps, and the remedy; `None` if there are
+/// none.
 fn exhausted(frame: &Frame) -> Option<String> {
     (frame.exhausted > 0).then(|| {
         format!(

@@ -1,4 +1,4 @@
-//! `revmap shaders`: what the driver's compiler says of each pipeline.
+//! `revmap shaders`: the statistics of each pipeline from the driver's compiler.
 
 mod techniques;
 
@@ -35,7 +35,7 @@ const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 2] = {
     revmap shaders --stage compute --json | jq '.shaders[] | {technique, solver, statistics}'\n  \
     RADV_FORCE_FAMILY=navi21 revmap shaders --csv > navi21.csv")]
 pub struct Shaders {
-    /// Where rays are traced
+    /// Stages that trace rays
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&DrawStage::NAMES))]
     stage: Vec<DrawStage>,
     /// The searches [default: all]
@@ -45,7 +45,7 @@ pub struct Shaders {
     /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
     device: Option<String>,
-    /// One JSON value on standard output in place of a table
+    /// Print one JSON value on standard output in place of a table
     #[arg(long)]
     json: bool,
     /// Comma-separated values on standard output in place of a table
@@ -53,8 +53,8 @@ pub struct Shaders {
     csv: bool,
 }
 
-/// What the table shows of what drivers say, where they say it; all of it where none of this is
-/// said.
+/// The statistics that the table shows if the driver has them; all statistics if it has none of
+/// these.
 const SHOWN: [&str; 9] = [
     "Subgroups per SIMD",
     "VGPRs",
@@ -134,8 +134,8 @@ struct CompiledShader {
     executable: Executable,
 }
 
-/// The shaders of every technique, by these stages and searches; those of a pipeline that several use
-/// once, where it is used first.
+/// The shaders of every technique, by these stages and searches. The shaders of a shared pipeline
+/// are listed once, at its first use.
 fn compiled(
     compiler: &PipelineCompiler,
     stages: &[DrawStage],
@@ -177,7 +177,7 @@ fn words(shader: &CompiledShader) -> [&str; 6] {
     ]
 }
 
-/// The statistics of these names; empty where one is not said.
+/// The statistics of these names; empty for those that are missing.
 fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
     let value = |name: &&str| {
         shader
@@ -199,7 +199,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// A table as Markdown writes it, each column as wide as its widest cell.
+/// A table in Markdown, each column as wide as its widest cell.
 fn table(head: &[String], rows: &[Vec<String>]) {
     let lines = || std::iter::once(head).chain(rows.iter().map(Vec::as_slice));
     let widest = |column: usize| lines().map(|line| line[column].len()).max();

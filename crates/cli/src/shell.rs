@@ -1,4 +1,4 @@
-//! `revmap completions` and `revmap man`: what a shell and `man` know of the program.
+//! `revmap completions` and `revmap man`: completions for shells and manual pages.
 
 use super::output;
 use clap::{Args, Command};
@@ -61,7 +61,7 @@ impl Man {
     }
 }
 
-/// A reader that closes the pipe early has what it wants.
+/// A reader that closes the pipe early causes no failure.
 fn print(text: &[u8]) {
     let _ = std::io::stdout().write_all(text);
 }

@@ -1,19 +1,19 @@
-//! Wrong usage, told in one line.
+//! Wrong usage, reported in one line.
 
 use super::output;
 use clap::error::ErrorKind;
 use std::process::ExitCode;
 
-/// The exit code for options or arguments that make no sense.
+/// The exit code for invalid options or arguments.
 const WRONG_USAGE: u8 = 2;
 
-/// Prints help and version as they are, every fault as one line.
+/// Prints help and version unchanged, and every fault as one line.
 pub fn report(error: &clap::Error) -> ExitCode {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        // A reader that closes the pipe early, as `head` does, has what it wants.
+        // A reader that closes the pipe early, such as `head`, causes no failure.
         let _ = error.print();
         return ExitCode::SUCCESS;
     }

@@ -1,4 +1,4 @@
-//! What scenes may use, one technique at a time.
+//! Techniques that scenes may use, one at a time.
 
 use revmap::error::Result;
 use revmap::gpu::compiler::Look;
@@ -8,8 +8,8 @@ use revmap::scene::{Clip, Lighting, Object, Shadow};
 use revmap::settings::Planes;
 use std::sync::Arc;
 
-/// Each technique by its name, and what a scene of it looks like. The first has nothing besides its
-/// shape; an extended solid is drawn by the same pipelines.
+/// Each technique by its name, with an example scene. The first has nothing besides its shape; the
+/// same pipelines draw an extended solid.
 pub fn techniques() -> Result<Vec<(&'static str, Look)>> {
     let triangle = [[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]];
     let profile = Arc::new(Profile::polygon(&triangle, 0.5)?);
@@ -28,7 +28,7 @@ pub fn techniques() -> Result<Vec<(&'static str, Look)>> {
     };
     Ok(vec![
         changed("revolution", &|_| ()),
-        // The same code draws what the eye is within.
+        // The same code draws solids that contain the eye.
         changed("cut by the box", &|look| look.object.clip = Clip::Box),
         changed("beveled", &|look| look.object.offset.bevel = 0.25),
         changed("8-bit map", &|look| look.format = MapFormat::Rgba8),

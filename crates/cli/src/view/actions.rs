@@ -1,4 +1,4 @@
-//! What the controls and the pointer ask for, done.
+//! Executes the requests of the controls and the pointer.
 
 use super::app::{App, title};
 use super::controls::Asked;
@@ -11,20 +11,20 @@ use revmap::settings::Planes;
 use std::path::{Path, PathBuf};
 use winit::event::MouseButton;
 
-/// Changes that can be undone.
+/// The number of changes that can be undone.
 const UNDOS: usize = 100;
 
-/// A change that goes on over several frames, and is undone at once.
+/// A change that continues over several frames, and is undone at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// With a button held: of a slider, or of the camera.
+    /// A drag with a button held: of a slider, or of the camera.
     Held,
-    /// With the wheel, until something else is changed.
+    /// Turns of the wheel, until another value changes.
     Wheel,
 }
 
 impl App {
-    /// Does what the controls ask for.
+    /// Executes the requests of the controls.
     pub fn take(&mut self, asked: Asked, before: Shown) {
         if asked != Asked::default() {
             self.problem = None;
@@ -54,7 +54,7 @@ impl App {
         }
     }
 
-    /// Says what was written, or why it was not.
+    /// Reports the written file, or the failure.
     pub fn say(&mut self, written: Result<PathBuf>) {
         match written {
             Ok(path) => {
@@ -76,7 +76,7 @@ impl App {
         match self.write_turned(&folder) {
             Ok(()) => Ok(folder),
             Err(error) => {
-                // Why it failed says more than why its remains cannot be removed.
+                // The first failure is more useful than one from removing its remains.
                 let _ = std::fs::remove_dir_all(&folder);
                 Err(error)
             }
@@ -99,12 +99,12 @@ impl App {
         Ok(())
     }
 
-    /// Shows what was dropped on the window.
+    /// Shows a file that was dropped on the window.
     pub fn load(&mut self, path: &Path) {
         let read = SceneFile::open(path).and_then(|mut file| Ok((file.scene(&[])?, file)));
         match read {
             Ok((scene, file)) => {
-                // Of another file.
+                // The undo list belongs to the former file.
                 (self.undo, self.changing) = (Vec::new(), None);
                 self.shown.scene = scene;
                 self.first = self.shown.clone();
@@ -118,7 +118,7 @@ impl App {
         }
     }
 
-    /// The pointer has moved; what it holds follows.
+    /// Handles a move of the pointer, with a drag if a button is held.
     pub fn drag(&mut self, to: [f64; 2]) {
         let by = [to[0] - self.pointer[0], to[1] - self.pointer[1]];
         self.pointer = to;
@@ -136,14 +136,14 @@ impl App {
         }
     }
 
-    /// The wheel was turned by so many steps.
+    /// Handles a turn of the wheel by `steps`.
     pub fn zoom(&mut self, steps: f64) {
         self.remember(Change::Wheel, self.shown.clone());
         self.version += 1;
         orbit::zoom(&mut self.shown.scene.camera, steps);
     }
 
-    /// Keeps what was shown before a change for undoing, unless the change goes on.
+    /// Stores the state before a change for undoing, unless the change continues an earlier one.
     fn remember(&mut self, change: Change, before: Shown) {
         if self.changing == Some(change) {
             return;

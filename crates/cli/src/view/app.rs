@@ -22,11 +22,11 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
-/// Longer pauses of the controls than this are none.
+/// Longer delays from the controls are ignored.
 const SOON: Duration = Duration::from_secs(5);
 
-/// The window and what is in it. The stage goes before the window, and what is made on its device
-/// before the stage.
+/// The window and its contents. The stage is dropped before the window, and objects made on its
+/// device before the stage.
 pub(super) struct Open {
     pub inspector: Inspector,
     #[cfg(feature = "shaderc")]
@@ -38,24 +38,24 @@ pub(super) struct Open {
 
 pub struct App {
     pub(super) options: View,
-    /// Calls for a frame from another thread.
+    /// Requests a frame from another thread.
     wake: EventLoopProxy<()>,
-    /// Where what is shown was read from.
+    /// The file of the shown scene.
     pub(super) source: PathBuf,
     pub(super) file: SceneFile,
     pub(super) first: Shown,
     pub(super) shown: Shown,
-    /// Counts changes of what is shown.
+    /// Counts changes of the shown state.
     pub(super) version: u64,
     pub(super) undo: Vec<Shown>,
-    /// The change that goes on: all of it is undone at once.
+    /// The change in progress: all of it is undone at once.
     pub(super) changing: Option<Change>,
     pub(super) open: Option<Open>,
     times: Times,
     pub(super) problem: Option<String>,
-    /// What was written last.
+    /// Report of the last written file.
     pub(super) written: String,
-    /// Whether the next frame is kept as a picture.
+    /// True to write the next frame as a picture.
     pub(super) keep: bool,
     pub(super) pointer: [f64; 2],
     pub(super) held: Option<MouseButton>,
@@ -89,7 +89,7 @@ impl App {
         }
     }
 
-    /// What the window ended with.
+    /// The result of the window.
     pub fn end(mut self) -> Result<()> {
         let checked = self.open.take().map_or(Ok(()), |open| {
             let host = open.stage.host.clone();
@@ -133,7 +133,7 @@ impl App {
         })
     }
 
-    /// Draws a frame. Gives when the next is wanted, if no event comes.
+    /// Draws a frame. Returns the delay until the next frame if no event comes.
     fn frame(&mut self) -> Result<Option<Duration>> {
         let Some(open) = &mut self.open else {
             return Ok(None);
@@ -256,7 +256,7 @@ impl App {
     }
 }
 
-/// Of a window that shows this file.
+/// The title of a window that shows this file.
 pub(super) fn title(source: &Path) -> String {
     format!("revmap: {}", source.display())
 }
@@ -281,7 +281,8 @@ impl ApplicationHandler for App {
         };
         let window = open.window.clone();
         let answer = open.gui.on_window_event(&window, &event);
-        // It answers so to a frame, too, which would never let the window rest.
+        // The answer to `RedrawRequested` also requests a repaint, which would redraw the window
+        // forever.
         if answer.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             window.request_redraw();
         }
@@ -330,14 +331,14 @@ impl ApplicationHandler for App {
         }
     }
 
-    /// Another thread has something to show.
+    /// Handles a wake-up from another thread.
     fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
         if let Some(open) = &self.open {
             open.window.request_redraw();
         }
     }
 
-    /// A pause of the controls has ended.
+    /// Handles the end of a delay of the controls.
     fn new_events(&mut self, events: &ActiveEventLoop, cause: winit::event::StartCause) {
         if let (winit::event::StartCause::ResumeTimeReached { .. }, Some(open)) =
             (cause, &self.open)

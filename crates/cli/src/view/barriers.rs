@@ -4,7 +4,7 @@
 use super::vulkan::Vulkan;
 use ash::vk;
 
-/// All of an image of one level.
+/// The whole range of an image with one level.
 pub fn range(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange::default()
         .aspect_mask(aspect)
@@ -12,7 +12,7 @@ pub fn range(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
         .layer_count(1)
 }
 
-/// The same, for copies.
+/// The whole range of an image with one level, for copies.
 pub fn layers(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceLayers {
     vk::ImageSubresourceLayers::default()
         .aspect_mask(aspect)
@@ -59,7 +59,7 @@ impl Use {
         vk::AccessFlags::empty(),
     );
 
-    /// The same use, of which nothing is to be kept: the next may begin when this one is done.
+    /// The same use with its content discarded: the next use may begin after this one.
     pub const fn discarded(self) -> Self {
         Self(vk::ImageLayout::UNDEFINED, self.1, self.2)
     }
@@ -68,7 +68,7 @@ impl Use {
 /// Records the change of an image from one use to another.
 ///
 /// # Safety
-/// `cmd` is recording outside of a pass; the image lives until it has run, and is used so.
+/// `cmd` is recording outside of a pass. The image lives until `cmd` has run, and is used as given.
 pub unsafe fn change(
     host: &Vulkan,
     cmd: vk::CommandBuffer,

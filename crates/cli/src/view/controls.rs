@@ -1,4 +1,4 @@
-//! Sliders and choices for all that a scene and its search hold.
+//! Sliders and choices for all values of a scene and its search.
 
 use super::shown::{Inspected, Shown};
 use super::times::Times;
@@ -8,33 +8,33 @@ use revmap::maps::{MapSource, Projection};
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Tolerance};
 
-/// What the controls say besides values.
+/// Information that the controls show besides values.
 pub struct Told<'a> {
     pub times: &'a Times,
-    /// What the last values led to.
+    /// The problem that the last values caused.
     pub problem: Option<&'a str>,
-    /// What was written last, what an inspected picture says, what becomes of shaders.
+    /// The last written file, the numbers of an inspected picture, the state of shaders.
     pub notes: [&'a str; 3],
     pub undos: usize,
-    /// How each object is drawn.
+    /// The draw path of each object.
     pub draw_paths: &'a [DrawPath],
 }
 
-/// What was asked for.
+/// The requests of the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Asked {
     /// A value was changed.
     pub changed: bool,
     pub undo: bool,
     pub reset: bool,
-    /// The scene as TOML.
+    /// Save the scene as TOML.
     pub save: bool,
-    /// The window as a picture.
+    /// Save the window as a picture.
     pub screenshot: bool,
     pub turntable: bool,
 }
 
-/// All controls.
+/// Shows all controls.
 pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
     let mut asked = Asked::default();
     ui.horizontal(|ui| {
@@ -77,11 +77,11 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
     asked
 }
 
-/// Lines of the compiler that are shown.
+/// Number of lines of the compiler that are shown.
 #[cfg(feature = "shaderc")]
 const LINES: usize = 12;
 
-/// Says in a window of its own why shaders do not compile.
+/// Shows in a window of its own why shaders do not compile.
 #[cfg(feature = "shaderc")]
 pub fn shader_problem(context: &egui::Context, text: &str) {
     egui::Window::new("shaders: those before are kept")
@@ -191,7 +191,7 @@ fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
     let mut pixels = search.tolerance.pixels();
     let slider = Slider::new(&mut pixels, 0.0..=8.0).logarithmic(true);
     changed |= ui.add(slider.text("tolerance, pixels")).changed();
-    // The slider gives no other numbers than a tolerance takes.
+    // The slider's range is within the tolerance's range.
     search.tolerance = Tolerance::new(pixels).unwrap_or(search.tolerance);
     changed |= optional(ui, "map rows", &mut search.map_rows, 512, 2..=4096);
     changed | optional(ui, "max steps", &mut search.max_steps, 64, 1..=1024)
@@ -242,7 +242,8 @@ fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> bool) -> bool {
     .inner
 }
 
-/// Whether any is true. All are looked at: each is a control that must be shown.
+/// Returns true if any value is true. All values are evaluated, since each is a control that must
+/// be shown.
 fn any(all: impl Iterator<Item = bool>) -> bool {
     all.fold(false, |a, b| a | b)
 }

@@ -1,4 +1,4 @@
-//! Commands of the frames in flight, and how long the device takes for them.
+//! Commands of the frames in flight, and their times on the device.
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
 use super::vulkan::{Vulkan, vulkan};
@@ -9,18 +9,18 @@ use std::rc::Rc;
 /// Frames in flight.
 pub const FRAMES: usize = 2;
 
-/// What one of them needs.
+/// The objects of one frame in flight.
 #[derive(Clone, Copy, Default)]
 struct Slot {
     commands: vk::CommandBuffer,
     acquired: vk::Semaphore,
     done: vk::Fence,
-    /// Whether its timers were written.
+    /// True if its timers were written.
     timed: bool,
 }
 
 pub struct Frames {
-    /// The pool, for what egui copies, too.
+    /// The pool, also for the copies of egui.
     pub pool: vk::CommandPool,
     slots: [Slot; FRAMES],
     timers: vk::QueryPool,
@@ -66,8 +66,8 @@ impl Frames {
         Ok(made)
     }
 
-    /// Waits until the device is done with the next slot. Gives it, and a semaphore that nothing
-    /// waits for.
+    /// Waits until the device is done with the next slot. Returns the slot and a semaphore that
+    /// nothing waits for.
     pub fn wait(&self) -> Result<(usize, vk::Semaphore)> {
         self.wait_for(self.next)?;
         Ok((self.next, self.slots[self.next].acquired))
@@ -84,7 +84,7 @@ impl Frames {
         vulkan(waited, "vkWaitForFences")
     }
 
-    /// Begins the commands of a slot that was waited for, and its time.
+    /// Begins the commands of a slot that was waited for, and starts its timer.
     pub fn begin(&self, slot: usize) -> Result<vk::CommandBuffer> {
         let (device, commands) = (&self.host.device, self.slots[slot].commands);
         let info = vk::CommandBufferBeginInfo::default()
@@ -102,7 +102,7 @@ impl Frames {
         Ok(commands)
     }
 
-    /// Milliseconds that the device took for the frame before in this slot, which was waited for.
+    /// Milliseconds of device time of the former frame in this slot, which was waited for.
     pub fn device_ms(&self, slot: usize) -> Option<f64> {
         if !self.slots[slot].timed {
             return None;
@@ -117,7 +117,7 @@ impl Frames {
     }
 
     /// Ends the commands of a slot and submits them: `stages` wait for the slot's semaphore, and
-    /// `drawn` is signalled at the end. The next frame has the next slot.
+    /// `drawn` is signalled at the end. The next frame uses the next slot.
     pub fn submit(
         &mut self,
         slot: usize,

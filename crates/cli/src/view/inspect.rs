@@ -12,40 +12,40 @@ use revmap_lab::report::pictures::steps;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use winit::event_loop::EventLoopProxy;
 
-/// Side of a pixel of the error's picture, in pixels of the window: the reference takes seconds for
-/// a whole window.
+/// Side of a pixel of the error picture, in pixels of the window, since the reference takes seconds
+/// for a whole window.
 const COARSE: u32 = 2;
 
-/// A reference that is being drawn in the background.
+/// A reference frame that is drawn in the background.
 struct Check {
     version: u64,
     drawn: Receiver<Result<Frame>>,
 }
 
-/// The pictures and what makes them.
+/// The pictures and the objects that draw them.
 #[derive(Default)]
 pub struct Inspector {
     offscreen: Option<(Settings, Offscreen)>,
     texture: Option<TextureHandle>,
-    /// The version of the scene that the texture shows, and how.
+    /// The version of the scene in the texture, with the plane and the settings.
     made: Option<(u64, Inspected, Settings)>,
     check: Option<Check>,
-    /// What the picture says in numbers.
+    /// The picture's content in numbers.
     pub words: String,
-    /// Milliseconds of the device for the last off-screen frame.
+    /// Device time of the last off-screen frame, milliseconds.
     pub device_ms: Option<f64>,
-    /// How each object was drawn in it.
+    /// The draw path of each object in the frame.
     pub draw_paths: Vec<DrawPath>,
 }
 
 impl Inspector {
-    /// Whether the window shows a picture made here, and not what is drawn in its own pass.
+    /// Returns true if the window shows a picture made here instead of its own pass.
     pub fn is_wanted(shown: &Shown) -> bool {
         shown.inspected != Inspected::Color
     }
 
-    /// The picture of version `version` of what is shown, for a window of `size` pixels. None until
-    /// the reference has been drawn.
+    /// The picture of version `version` of the shown state, for a window of `size` pixels. Returns
+    /// `None` until the reference has been drawn.
     pub fn picture(
         &mut self,
         shown: &Shown,
@@ -106,12 +106,12 @@ impl Inspector {
         Ok(self.texture.as_ref())
     }
 
-    /// Forgets what was drawn with other shaders.
+    /// Drops frames that were drawn with other shaders.
     pub fn forget(&mut self) {
         (self.offscreen, self.made) = (None, None);
     }
 
-    /// One frame by the device, with the picture's settings.
+    /// Draws a frame on the device, with the picture's settings.
     pub fn draw(&mut self, shown: &Shown, settings: Settings, device: &Device) -> Result<Frame> {
         let offscreen = match &mut self.offscreen {
             Some((made, offscreen)) if *made == settings => {
@@ -129,7 +129,7 @@ impl Inspector {
         offscreen.read()
     }
 
-    /// The reference's frame of this version, once it has been drawn; begins to draw it.
+    /// The reference's frame of this version, if it is finished; otherwise starts to draw it.
     fn reference(
         &mut self,
         shown: &Shown,
@@ -155,7 +155,7 @@ impl Inspector {
         let (done, drawn) = channel();
         let (scene, settings, wake) = (shown.scene.clone(), *settings, wake.clone());
         std::thread::spawn(move || {
-            // A window that was closed meanwhile wants nothing any more.
+            // A failed send is ignored: the window was closed meanwhile.
             let _ = done.send(revmap_reference::draw(&scene, &settings, &|_, _| {}));
             let _ = wake.send_event(());
         });
@@ -199,7 +199,7 @@ fn normals(frame: &Frame) -> Picture {
     })
 }
 
-/// What is hit in its colour, the rest black.
+/// Pixels with a hit in their colour, the others black.
 fn painted(frame: &Frame, color: impl Fn(usize) -> [u8; 3]) -> Picture {
     let pixel = |k: usize| {
         let [r, g, b] = if frame.hits(k) { color(k) } else { [0; 3] };

@@ -10,7 +10,7 @@ use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::allocation_error;
 use std::rc::Rc;
 
-/// An image of one level. Whoever drops it knows that the device is done with it.
+/// An image of one level. The device must have finished its use before it is dropped.
 pub struct Image {
     pub raw: vk::Image,
     pub view: vk::ImageView,
@@ -79,7 +79,7 @@ impl Drop for Image {
     }
 }
 
-/// A buffer. Whoever drops it knows that the device is done with it.
+/// A buffer. The device must have finished its use before it is dropped.
 pub struct Buffer {
     pub raw: vk::Buffer,
     memory: Option<Allocation>,
@@ -113,7 +113,7 @@ impl Buffer {
         }
     }
 
-    /// Its bytes, where the CPU sees them.
+    /// The buffer's bytes, if they are mapped for the CPU.
     pub fn bytes(&self) -> &[u8] {
         let memory = self.memory.as_ref();
         memory
@@ -178,7 +178,7 @@ fn free(host: &Vulkan, memory: Option<Allocation>) {
     if let (Some(memory), Ok(allocator)) = (memory, host.allocator())
         && let Ok(mut allocator) = allocator.lock()
     {
-        // It fails for memory that is not the allocator's.
+        // Freeing fails only for memory of another allocator.
         let _ = allocator.free(memory);
     }
 }

@@ -38,10 +38,10 @@ pub struct View {
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
-    /// Where rays are traced
+    /// Stage that traces rays
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&DrawStage::NAMES))]
     stage: DrawStage,
-    /// How the first hit along a ray is found
+    /// Search for the first hit along a ray
     #[arg(long, value_name = "NAME", default_value = "exact", value_parser = revmap_searches::named)]
     solver: Solver,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact
@@ -54,7 +54,7 @@ pub struct View {
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// What is shown: color, depth, normals, steps, or error against the reference
+    /// Quantity to show: color, depth, normals, steps, or error against the reference
     #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&shown::Inspected::NAMES))]
     show: shown::Inspected,
     /// Draw with the GLSL files of a folder, and with what becomes of them while the window is open

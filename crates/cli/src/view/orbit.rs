@@ -1,17 +1,17 @@
-//! How the pointer moves the camera: left turns it about its target, middle or right shifts both,
-//! the wheel goes nearer.
+//! Camera control by the pointer: the left button turns it about its target, the middle or right
+//! one shifts both, the wheel moves it nearer.
 
 use glam::{DQuat, DVec3};
 use revmap::scene::Camera;
 
 /// Radians of a turn for each pixel.
 const TURN: f64 = 0.008;
-/// The closest that the view comes to the upright, radians.
+/// The smallest angle between the view and the upright, radians.
 const UPRIGHT: f64 = 0.02;
-/// What a step of the wheel leaves of the distance.
+/// Factor of the distance per step of the wheel.
 const STEP: f64 = 0.9;
 
-/// Turns the camera about its target, for a drag of so many pixels to the right and down.
+/// Turns the camera about its target, for a drag in pixels to the right and down.
 pub fn turn(camera: &mut Camera, [right, down]: [f64; 2]) {
     let up = camera.up.normalize_or(DVec3::Z);
     let from = camera.eye - camera.target;
@@ -24,8 +24,8 @@ pub fn turn(camera: &mut Camera, [right, down]: [f64; 2]) {
     camera.eye = camera.target + turned * from;
 }
 
-/// Shifts the camera and its target so that what is at the target follows the pointer, in a picture
-/// of so many pixels in height.
+/// Shifts the camera and its target so that the point at the target follows the pointer. `height`
+/// is that of the picture in pixels.
 pub fn shift(camera: &mut Camera, [right, down]: [f64; 2], height: f64) {
     let from = camera.eye - camera.target;
     let forward = -from.normalize_or(DVec3::X);
@@ -37,7 +37,7 @@ pub fn shift(camera: &mut Camera, [right, down]: [f64; 2], height: f64) {
     camera.target += by;
 }
 
-/// Goes nearer by so many steps of the wheel, or farther.
+/// Moves the camera nearer by `steps` of the wheel, or farther.
 pub fn zoom(camera: &mut Camera, steps: f64) {
     let from = camera.eye - camera.target;
     let distance = (from.length() * STEP.powf(steps)).clamp(1e-3, 1e6);
@@ -60,7 +60,7 @@ mod tests {
             (turned.eye.z - 0.5).abs() < 1e-12 && turned.eye.y < -1.0,
             "{turned:?}"
         );
-        // A drag downwards looks from above.
+        // A downward drag makes the camera look from above.
         turn(&mut turned, [0.0, 50.0]);
         assert!(turned.eye.z > 1.0);
         turn(&mut turned, [0.0, 1e6]);
@@ -73,7 +73,8 @@ mod tests {
     fn what_is_at_the_target_follows_the_pointer() {
         let (mut shifted, height) = (camera(), 600.0);
         shift(&mut shifted, [0.0, height], height);
-        // A whole picture downwards: the view goes up by the height that is seen at the target.
+        // A drag over a whole picture downwards moves the view up by the height visible at the
+        // target.
         let seen = 4.0 * 20f64.to_radians().tan();
         assert!((shifted.target.z - 0.5 - seen).abs() < 1e-9, "{shifted:?}");
         let mut near = camera();

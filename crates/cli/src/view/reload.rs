@@ -1,6 +1,6 @@
-//! Shaders that follow their sources while the window is open. The GLSL files are watched; when one
-//! has changed, what the window draws with is compiled in the background, and taken when all of it
-//! compiles. What is drawn with stays otherwise.
+//! Shaders that are reloaded from their sources while the window is open. A thread watches the GLSL
+//! files. After a change, the window's shaders are compiled in the background and used once all of
+//! them compile. Until then the former shaders stay in use.
 
 use super::scene_renderer::SceneRenderer;
 use super::shown::Shown;
@@ -18,15 +18,15 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
 use winit::event_loop::EventLoopProxy;
 
-/// The folder that is watched where none is named: that of the source tree.
+/// The default folder to watch: that of the source tree.
 pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders-glsl");
-/// Folders in it that hold sources, and the files' endings.
+/// Its subfolders with sources, and the files' endings.
 const PARTS: [&str; 4] = ["", "include/core", "include/search", "include/stage"];
 const ENDINGS: [&str; 4] = ["vert", "frag", "comp", "glsl"];
-/// Numbers that Rust knows, too.
+/// The file whose numbers are also built into the Rust code.
 const SHARED: &str = "include/core/variant.glsl";
 const BUILT: &str = include_str!("../../../../shaders-glsl/include/core/variant.glsl");
-/// How often files are looked at.
+/// Time between two checks of the files.
 const PAUSE: Duration = Duration::from_secs(1);
 
 /// The texts of a folder's files, by their paths in it.
@@ -36,23 +36,23 @@ struct Sources {
     texts: HashMap<String, String>,
 }
 
-/// A device and a renderer on it with shaders of their own.
+/// A device and a renderer on it with their own shaders.
 type Made = (Device, SceneRenderer);
 
 pub struct Reload {
     changed: Receiver<Result<Sources>>,
-    /// What has changed since what is being compiled.
+    /// The latest change since the start of the current compilation.
     next: Option<Sources>,
     making: Option<JoinHandle<Result<Made>>>,
-    /// Tells the compiling thread that nobody waits for it.
+    /// True to make the compiling thread give up.
     given_up: Arc<AtomicBool>,
     wake: EventLoopProxy<()>,
-    /// Why the last sources are not drawn with.
+    /// The reason why the last sources are not in use.
     pub problem: Option<String>,
 }
 
 impl Reload {
-    /// Watches a folder, and calls the window when it has something.
+    /// Watches a folder, and wakes the window after a change.
     pub fn new(folder: &Path, wake: EventLoopProxy<()>) -> Self {
         let (send, changed) = channel();
         let (folder, call) = (folder.to_owned(), wake.clone());
@@ -80,13 +80,13 @@ impl Reload {
         }
     }
 
-    /// Whether shaders are being compiled.
+    /// Returns true while shaders are being compiled.
     pub fn is_busy(&self) -> bool {
         self.making.is_some()
     }
 
-    /// What the window is to draw with from now on, if that is new. `format` is that of its
-    /// pictures.
+    /// The device and the renderer with new shaders, if there are any. `format` is that of the
+    /// window's pictures.
     pub fn take(&mut self, host: &Vulkan, format: vk::Format, shown: &Shown) -> Option<Made> {
         while let Ok(sources) = self.changed.try_recv() {
             match sources {
@@ -117,13 +117,13 @@ impl Reload {
         made
     }
 
-    /// Says why sources are not drawn with, in the window and on standard error.
+    /// Reports, in the window and on standard error, why sources are not in use.
     fn fail(&mut self, problem: String) {
         output::warn(&problem);
         self.problem = Some(problem);
     }
 
-    /// Begins to compile what is shown.
+    /// Starts to compile the shaders of the shown scene.
     fn make(
         &self,
         host: &Vulkan,
@@ -142,7 +142,7 @@ impl Reload {
                 Ok(drawn)
             };
             let made = make();
-            // A window that was closed meanwhile wants nothing any more.
+            // A failed send is ignored: the window was closed meanwhile.
             let _ = wake.send_event(());
             made.map(|drawn| (device, drawn))
         }))
@@ -150,7 +150,7 @@ impl Reload {
 }
 
 impl Drop for Reload {
-    /// The device must outlive what is made on it.
+    /// The device must outlive the objects made on it.
     fn drop(&mut self) {
         self.given_up.store(true, Ordering::Relaxed);
         if let Some(thread) = self.making.take() {
@@ -181,7 +181,7 @@ impl Sources {
         }
     }
 
-    /// Compiles modules as they are asked for, each once.
+    /// Compiles modules on demand, each once.
     fn compiled(self, given_up: Arc<AtomicBool>) -> Result<ShaderSource> {
         if self.texts.get(SHARED).map(String::as_str) != Some(BUILT) {
             let message = "holds numbers that the program was built with; build it anew";
@@ -246,7 +246,7 @@ fn names(folder: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// What tells one state of the files from another.
+/// Time and size of each file, which differ between two states of the files.
 fn stamps(folder: &Path) -> Vec<(String, Option<(SystemTime, u64)>)> {
     let stamp = |name: String| {
         let file = std::fs::metadata(folder.join(&name));

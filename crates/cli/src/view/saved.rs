@@ -1,4 +1,4 @@
-//! What the window writes: the scene as TOML, a turntable, times of its frames.
+//! Files that the window writes: the scene as TOML, a turntable, times of its frames.
 
 use super::shown::Shown;
 use super::times::Cost;
@@ -11,10 +11,10 @@ use revmap::settings::name_of;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
-/// Frames of a turntable.
+/// Number of frames of a turntable.
 pub const TURNTABLE: u32 = 36;
 
-/// A path beside `file` that is not taken: its stem, `-`, a number from 1 on, `ending`.
+/// A free path beside `file`: its stem, `-`, a number from 1 on, `ending`.
 pub fn beside(file: &Path, ending: &str) -> PathBuf {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let numbered = |n: u32| file.with_file_name(format!("{stem}-{n}{ending}"));
@@ -24,7 +24,7 @@ pub fn beside(file: &Path, ending: &str) -> PathBuf {
         .unwrap_or_else(|| numbered(0))
 }
 
-/// Writes what is shown as a scene beside `source`, where its paths lead to the same files.
+/// Writes the shown state as a scene beside `source`, so that its paths lead to the same files.
 pub fn write_scene(
     source: &Path,
     file: &SceneFile,
@@ -33,7 +33,7 @@ pub fn write_scene(
 ) -> Result<PathBuf> {
     let path = beside(source, ".toml");
     let (before, after) = (assignments(first), assignments(shown));
-    // What was not touched stays as the scene has it, or has it not.
+    // Only changed values are written; the others stay as in the file.
     let changed = after.into_iter().filter(|one| !before.contains(one));
     let text = file.text(&changed.collect::<Vec<_>>())?;
     write_bytes(&path, text.as_bytes())?;
@@ -65,7 +65,7 @@ pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
     write_bytes(path, text.as_bytes())
 }
 
-/// Every value that the controls change, as `--set` takes it.
+/// Every value that the controls change, in the form of `--set`.
 fn assignments(scene: &Scene) -> Vec<String> {
     let camera = &scene.camera;
     let mut all = vec![
@@ -148,7 +148,7 @@ mod tests {
         assert!(!text.contains("extend"), "what was not touched: {text}");
         let read = SceneFile::open(&path).unwrap().scene(&[]).unwrap();
         assert_eq!(assignments(&read), assignments(&shown));
-        // The next one takes another name.
+        // The next file gets another name.
         let next = write_scene(&source, &file, &first, &shown).unwrap();
         assert_eq!(next, folder.path().join("cone-2.toml"));
     }

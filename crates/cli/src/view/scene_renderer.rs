@@ -1,4 +1,4 @@
-//! A renderer that holds what the window shows.
+//! A renderer with the shown scene.
 
 use super::frames::FRAMES;
 use super::screen::DEPTH;
@@ -12,12 +12,12 @@ use revmap::settings::{DrawStage, Planes, SearchSettings};
 pub struct SceneRenderer {
     pub renderer: Renderer,
     ids: Vec<ObjectId>,
-    /// What the renderer was made for.
+    /// The stage and settings of the renderer.
     pub by: (DrawStage, SearchSettings),
 }
 
 impl SceneRenderer {
-    /// A renderer without objects, into pictures of this format.
+    /// A renderer without objects, for pictures of this format.
     pub fn new(
         device: &Device,
         format: vk::Format,
@@ -43,7 +43,8 @@ impl SceneRenderer {
         })
     }
 
-    /// Takes over a scene's lights and objects. What fails leaves the rest as it was.
+    /// Updates the renderer to a scene's lights and objects. A failing part leaves the rest
+    /// unchanged.
     pub fn set(&mut self, scene: &Scene) -> Result<()> {
         self.renderer.set_lighting(&scene.lighting())?;
         let objects = &scene.objects;

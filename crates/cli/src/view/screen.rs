@@ -16,7 +16,7 @@ pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The window's pictures, a depth buffer, and the frames in flight.
 pub struct Screen {
-    /// None while there are no pictures.
+    /// `None` while there are no pictures.
     depth: Option<Image>,
     chain: Swapchain,
     pub frames: Frames,
@@ -31,11 +31,11 @@ pub struct Recording {
     picture: usize,
 }
 
-/// What a pass finds in the window's picture.
+/// The content of the window's picture before a pass.
 pub enum Before {
-    /// This colour, in every pixel.
+    /// Every pixel has this colour.
     Cleared([f32; 4]),
-    /// What was copied into it.
+    /// The picture holds a copy.
     Kept,
 }
 
@@ -72,8 +72,8 @@ impl Screen {
         self.chain.format.format
     }
 
-    /// Waits for a free slot and begins its commands. None: the window has another size, or its
-    /// pictures are lost, and [`Screen::resize`] is to be called.
+    /// Waits for a free slot and begins its commands. Returns `None` if the window has another size
+    /// or its pictures are lost; the caller then calls [`Screen::resize`].
     pub fn begin(&mut self) -> Result<Option<Recording>> {
         let (slot, acquired) = self.frames.wait()?;
         let Some(picture) = self.chain.acquire(acquired)? else {
@@ -92,7 +92,8 @@ impl Screen {
         self.chain.images[frame.picture].image
     }
 
-    /// Begins the pass, with viewport and scissor set. What is kept was changed to be drawn into.
+    /// Begins the pass, with viewport and scissor set. The caller has changed a kept picture to be
+    /// drawn into.
     pub fn begin_pass(&self, frame: Recording, before: Before) {
         use vk::ImageLayout as L;
         let (host, device) = (&*self.host, &self.host.device);
@@ -148,7 +149,7 @@ impl Screen {
                 change(host, cmd, shown, Use::COLOR.discarded(), Use::COLOR);
             }
             if let Some(depth) = depth {
-                // The frame before may still test.
+                // The former frame may still use the depth buffer.
                 let tested = (depth.raw, depth.aspect);
                 change(host, cmd, tested, Use::DEPTH.discarded(), Use::DEPTH);
             }
@@ -158,8 +159,8 @@ impl Screen {
         }
     }
 
-    /// Ends the pass, submits and presents; with `keep` the picture is read, too. Gives whether the
-    /// pictures still fit the window.
+    /// Ends the pass, submits and presents; with `keep` the picture is also read. Returns true if
+    /// the pictures still fit the window.
     pub fn finish(&mut self, frame: Recording, keep: bool) -> Result<(bool, Option<Picture>)> {
         use vk::PipelineStageFlags as S;
         let (host, cmd) = (&self.host, frame.commands);
@@ -180,7 +181,7 @@ impl Screen {
                 None
             }
         };
-        // The first to touch the picture are its pass, or the copy into it.
+        // The first use of the picture is its pass, or the copy into it.
         let first = S::COLOR_ATTACHMENT_OUTPUT | S::TRANSFER;
         self.frames.submit(frame.slot, first, drawn)?;
         let fits = self.chain.present(frame.picture);

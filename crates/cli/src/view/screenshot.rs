@@ -10,7 +10,7 @@ use revmap::error::Result;
 use revmap::frame::Picture;
 use std::rc::Rc;
 
-/// A copy that the device makes.
+/// A copy made by the device.
 pub struct Screenshot {
     buffer: Buffer,
     extent: vk::Extent2D,
@@ -21,8 +21,8 @@ impl Screenshot {
     /// Records the copy of an image.
     ///
     /// # Safety
-    /// `cmd` is recording outside of a pass. The image has this extent and a format of four bytes,
-    /// and is to be copied from.
+    /// `cmd` is recording outside of a pass. The image has this extent, a format of four bytes, and
+    /// a use that allows copies from it.
     pub unsafe fn record(
         host: &Rc<Vulkan>,
         cmd: vk::CommandBuffer,
@@ -57,7 +57,7 @@ impl Screenshot {
         })
     }
 
-    /// The picture, opaque, once the device is done.
+    /// The picture, opaque, after the device has finished.
     pub fn picture(&self) -> Picture {
         let swapped = self.format == vk::Format::B8G8R8A8_SRGB;
         let pixel = |p: &[u8]| match swapped {

@@ -1,18 +1,18 @@
-//! What the window shows, and how: what the controls change and what is undone.
+//! The state of the window: the values that the controls change and that can be undone.
 
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
 
-/// What the window shows.
+/// The quantity that the window shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inspected {
-    /// The scene as it is lit.
+    /// The lit scene.
     Color,
     /// Distances from the eye: white is near, dark is far.
     Depth,
     /// World normals: red, green and blue are x, y and z, from -1 to 1.
     Normals,
-    /// Look-ups or patches that each pixel's search made.
+    /// Look-ups or patches of each pixel's search.
     Steps,
     /// Errors of depth and silhouette against the double-precision reference.
     Error,
@@ -29,7 +29,7 @@ impl Inspected {
     ];
 }
 
-/// What is shown, and how.
+/// The shown scene and its settings.
 #[derive(Clone)]
 pub struct Shown {
     pub scene: Scene,
@@ -39,7 +39,7 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// The scene as it is lit, by the fragment stage.
+    /// The lit scene, by the fragment stage.
     pub fn new(scene: Scene, search: SearchSettings) -> Self {
         Self {
             scene,
@@ -49,7 +49,7 @@ impl Shown {
         }
     }
 
-    /// Settings of an off-screen frame of it.
+    /// Settings of an off-screen frame of the shown state.
     pub fn settings(&self, (width, height): (u32, u32), planes: Planes) -> Settings {
         Settings {
             width,

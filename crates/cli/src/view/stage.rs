@@ -1,4 +1,4 @@
-//! What the window shows: the scene's renderer and the controls, in one pass.
+//! The scene's renderer and the controls, drawn in one pass.
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
 use super::frames::FRAMES;
@@ -21,17 +21,17 @@ use std::rc::Rc;
 use std::time::Instant;
 use winit::window::Window;
 
-/// Everything that is drawn with. Fields go in order; the device goes last.
+/// All objects for drawing. Fields are dropped in order, the device last.
 pub struct Stage {
     gui: Gui<GpuAllocator>,
     drawn: SceneRenderer,
-    /// What the renderer is made on, and others that draw with the same shaders.
+    /// The device of the renderer, and of others that draw with the same shaders.
     pub device: Device,
-    /// What the compute stage draws into; none in the fragment stage, or without pictures.
+    /// The target of the compute stage; `None` in the fragment stage, or without pictures.
     traced: Option<Traced>,
     screen: Screen,
     compiled: u64,
-    /// Textures of the controls that go after the next frame.
+    /// Textures of the controls to be freed after the next frame.
     freed: Vec<egui::TextureId>,
     pub host: Rc<Vulkan>,
 }
@@ -39,9 +39,9 @@ pub struct Stage {
 /// A frame that was shown.
 pub struct Frame {
     pub cost: Cost,
-    /// Whether the window has another size now.
+    /// True if the window has another size now.
     pub stale: bool,
-    /// What it looked like, where that was asked for.
+    /// The picture, if it was requested.
     pub picture: Option<Picture>,
 }
 
@@ -93,7 +93,7 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Takes over what is shown. What fails leaves the rest as it was.
+    /// Updates the renderer to the shown state. A failing part leaves the rest unchanged.
     pub fn set(&mut self, shown: &Shown) -> Result<()> {
         let by = (shown.stage, shown.search);
         if self.drawn.by != by {
@@ -117,7 +117,7 @@ impl Stage {
         self.aim()
     }
 
-    /// Of the window's pictures.
+    /// The format of the window's pictures.
     pub fn format(&self) -> vk::Format {
         self.screen.format()
     }
@@ -127,7 +127,7 @@ impl Stage {
         self.aim()
     }
 
-    /// Gives the compute stage something to draw into, of the window's size. The device is idle.
+    /// Makes a target of the window's size for the compute stage. The device must be idle.
     fn aim(&mut self) -> Result<()> {
         self.traced = None;
         let extent = self.screen.extent();
@@ -141,14 +141,14 @@ impl Stage {
         Ok(())
     }
 
-    /// How each object was drawn in the last frame.
+    /// The draw path of each object in the last frame.
     pub fn draw_paths(&self) -> Vec<DrawPath> {
         self.drawn.renderer.draw_paths()
     }
 
     /// Draws a frame: the scene, unless the controls bring a picture of their own, then the
-    /// controls. None: the window has another size. A scene that cannot be drawn is left out, and
-    /// told to `problem`.
+    /// controls. Returns `None` if the window has another size. A scene that cannot be drawn is
+    /// left out, and `problem` gets the reason.
     pub fn draw(
         &mut self,
         scene: Option<&Scene>,
@@ -238,7 +238,7 @@ impl Stage {
         let delta = &mut gui.textures_delta;
         self.freed.extend(delta.free.drain());
         if !delta.set.is_empty() {
-            // Frames in flight may read what is replaced.
+            // Frames in flight may read the replaced texture.
             self.host.wait();
         }
         let (queue, pool) = (self.host.queue, self.screen.frames.pool);

@@ -12,7 +12,7 @@ use std::rc::Rc;
 pub struct Shown {
     pub image: vk::Image,
     pub view: vk::ImageView,
-    /// Presenting waits for it.
+    /// Presenting waits for this semaphore.
     pub drawn: vk::Semaphore,
 }
 
@@ -26,8 +26,7 @@ pub struct Swapchain {
 }
 
 impl Swapchain {
-    /// How pictures are used: drawn into, copied to by the compute stage, copied from by
-    /// screenshots.
+    /// Uses of pictures: drawn into, copied to by the compute stage, copied from by screenshots.
     const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
         vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw()
             | vk::ImageUsageFlags::TRANSFER_DST.as_raw()
@@ -61,7 +60,8 @@ impl Swapchain {
         })
     }
 
-    /// Makes pictures of the window's size; none, where it has no pixels. The device must be idle.
+    /// Makes pictures of the window's size, or none if the window has no pixels. The device must be
+    /// idle.
     pub fn resize(&mut self, (width, height): (u32, u32)) -> Result<()> {
         let host = self.host.clone();
         // SAFETY: the device is idle; the old chain is retired by the new one, and destroyed.
@@ -123,8 +123,8 @@ impl Swapchain {
         }
     }
 
-    /// The number of the next picture, which may be drawn into when `acquired` is signalled. None:
-    /// the window has another size, and `acquired` is left as it was.
+    /// The number of the next picture, which may be drawn into when `acquired` is signalled.
+    /// Returns `None` if the window has another size; `acquired` is then unchanged.
     pub fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<usize>> {
         if self.images.is_empty() {
             return Ok(None);
@@ -139,7 +139,7 @@ impl Swapchain {
         }
     }
 
-    /// Presents a picture when it is drawn. Gives whether the chain still fits the window.
+    /// Presents a picture when it is drawn. Returns true if the chain still fits the window.
     pub fn present(&mut self, image: usize) -> Result<bool> {
         let (chains, indices) = ([self.chain], [image as u32]);
         let drawn = [self.images[image].drawn];
@@ -149,14 +149,15 @@ impl Swapchain {
             .image_indices(&indices);
         // SAFETY: the picture was acquired, and what signals its semaphore was submitted.
         match unsafe { self.functions.queue_present(self.host.queue, &info) } {
-            // Some systems call a picture suboptimal whose size is right; another would be, too.
+            // Some systems report a picture of the right size as suboptimal; a new one would be
+            // suboptimal too.
             Ok(suboptimal) => Ok(!suboptimal || self.fits()?),
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(false),
             Err(code) => vulkan(Err(code), "vkQueuePresentKHR"),
         }
     }
 
-    /// Whether the window has the pictures' size.
+    /// Returns true if the window has the pictures' size.
     fn fits(&self) -> Result<bool> {
         let current = self.capabilities()?.current_extent;
         Ok(current.width == u32::MAX || current == self.extent)

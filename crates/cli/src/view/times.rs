@@ -3,23 +3,23 @@
 use egui::{Color32, Rect, Sense, Stroke, Ui, pos2, vec2};
 use std::collections::VecDeque;
 
-/// Frames that are shown.
+/// Number of frames in the graph.
 const SHOWN: usize = 120;
 
-/// What one frame cost.
+/// The cost of a frame.
 #[derive(Clone, Copy, Default)]
 pub struct Cost {
-    /// Milliseconds of the CPU to take over changes and to record.
+    /// CPU time to apply changes and to record, milliseconds.
     pub prepare: f64,
-    /// Milliseconds of the device, of an earlier frame in the same slot.
+    /// Device time of an earlier frame in the same slot, milliseconds.
     pub device: f64,
-    /// Milliseconds to submit and to present.
+    /// Time to submit and to present, milliseconds.
     pub present: f64,
-    /// Pipelines that were compiled.
+    /// Number of compiled pipelines.
     pub compiled: u64,
 }
 
-/// A part of a frame's cost: its name, its colour, how long it took.
+/// A part of a frame's cost: its name, colour and time.
 type Part = (&'static str, Color32, fn(&Cost) -> f64);
 
 const PARTS: [Part; 3] = [
@@ -28,7 +28,7 @@ const PARTS: [Part; 3] = [
     ("present", Color32::from_rgb(130, 200, 120), |c| c.present),
 ];
 
-/// The last frames, and all of them where they are to be written.
+/// The last frames, or all frames if they are to be written.
 #[derive(Default)]
 pub struct Times {
     last: VecDeque<Cost>,

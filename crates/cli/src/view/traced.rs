@@ -1,4 +1,4 @@
-//! What the compute stage draws into, and how it comes into the window: on the device, by copies.
+//! The target of the compute stage, and its transfer to the window by copies on the device.
 #![allow(unsafe_code)] // raw handles: each use says what it promises
 
 use super::barriers::{Use, change, layers};
@@ -10,9 +10,9 @@ use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::ComputeTarget;
 use std::rc::Rc;
 
-/// Two words a pixel, depths then colours, and an image of the colours. One of each does for all
-/// frames in flight, as the depth buffer does in the fragment stage: frames follow each other on
-/// the device.
+/// Two words per pixel, depths then colours, and an image of the colours. All frames in flight
+/// share one buffer and one image, like the depth buffer in the fragment stage: frames follow each
+/// other on the device.
 pub struct Traced {
     words: Buffer,
     picture: Image,
@@ -20,7 +20,7 @@ pub struct Traced {
     host: Rc<Vulkan>,
 }
 
-/// How the words are used, in order.
+/// Uses of the words, in order.
 #[derive(Clone, Copy)]
 enum Words {
     Cleared,
@@ -69,7 +69,7 @@ impl Traced {
         })
     }
 
-    /// For the renderer.
+    /// The target for the renderer.
     pub fn target(&self) -> ComputeTarget {
         ComputeTarget {
             words: self.words.raw,
@@ -78,7 +78,7 @@ impl Traced {
         }
     }
 
-    /// Records the clearing of what the frame before has left.
+    /// Records the clearing of the former frame's content.
     ///
     /// # Safety
     /// `cmd` is recording outside of a pass; `self` lives until it has run.
@@ -95,12 +95,12 @@ impl Traced {
         }
     }
 
-    /// Records the copy of the traced colours into a picture of the window, which is then to be
-    /// drawn into.
+    /// Records the copy of the traced colours into a picture of the window, which can be drawn into
+    /// afterwards.
     ///
     /// # Safety
-    /// As [`Traced::clear`]; the frame was traced. The window's picture has the same extent, and
-    /// nothing has used it since it was acquired.
+    /// The conditions of [`Traced::clear`]; the frame was traced. The window's picture has the same
+    /// extent, and nothing has used it since it was acquired.
     pub unsafe fn show(&self, cmd: vk::CommandBuffer, window: vk::Image) {
         let (extent, picture) = (self.extent, self.picture.raw);
         let color = vk::ImageAspectFlags::COLOR;
@@ -116,7 +116,7 @@ impl Traced {
                 z: 1,
             },
         ];
-        // The channels' order may differ, which a blit sees to.
+        // The channels' order may differ; the blit converts it.
         let all = vk::ImageBlit::default()
             .src_subresource(layers(color))
             .src_offsets(corners)

@@ -22,9 +22,9 @@ fn device_error(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Unsupported, message.to_string())
 }
 
-/// A device that draws into a window. What is made on it goes before.
+/// A device that draws into a window. Objects made on it must be dropped before it.
 pub struct Vulkan {
-    /// Where all device memory comes from; none while it is being closed.
+    /// The allocator of all device memory; `None` while it is being closed.
     allocator: Option<Arc<Mutex<Allocator>>>,
     features: vk::PhysicalDeviceFeatures,
     pub device: ash::Device,
@@ -58,8 +58,8 @@ unsafe extern "system" fn message(
 }
 
 impl Vulkan {
-    /// Opens the device that `choice` names (its index, or a part of its name), else the first by
-    /// kind that can show pictures in `window`.
+    /// Opens the device that `choice` names by its index or a part of its name. Without `choice`,
+    /// opens the first by kind that can show pictures in `window`.
     pub fn open(window: &Window, choice: Option<&str>) -> Result<Self> {
         let validate =
             std::env::var_os(VALIDATION_VARIABLE).is_some_and(|v| v != "0" && !v.is_empty());
@@ -156,14 +156,14 @@ impl Vulkan {
                 messages,
                 _entry: entry,
             };
-            // The first borrower makes an allocator; it becomes everybody's.
+            // The first borrower makes an allocator, which all others share.
             host.allocator = Some(host.lend(None)?.allocator()?);
             Ok(host)
         }
     }
 
-    /// Lends the device to renderers, whose shaders may be others than those built in. All that is
-    /// made with it must go before this does.
+    /// Lends the device to renderers, whose shaders may differ from the built-in ones. Everything
+    /// made with it must be dropped before this host.
     pub fn lend(&self, shaders: Option<ShaderSource>) -> Result<Device> {
         let host = HostDevice {
             instance: &self.instance,
@@ -185,7 +185,7 @@ impl Vulkan {
         }
     }
 
-    /// Where device memory comes from.
+    /// The allocator of all device memory.
     pub fn allocator(&self) -> Result<&Arc<Mutex<Allocator>>> {
         let closed = || Error::new(ErrorKind::Other, "the device is being closed");
         self.allocator.as_ref().ok_or_else(closed)
@@ -196,7 +196,7 @@ impl Vulkan {
         let _ = unsafe { self.device.device_wait_idle() };
     }
 
-    /// Fails if the validation layers have had anything to say.
+    /// Fails if the validation layers have reported a message.
     pub fn check(&self) -> Result<()> {
         match self.messages.load(Ordering::Relaxed) {
             0 => Ok(()),
@@ -224,7 +224,7 @@ impl Drop for Vulkan {
     }
 }
 
-/// The device that is named, or the best by kind, of those that draw and show.
+/// The named device, or the best by kind, among those that can draw and present.
 unsafe fn choose(
     instance: &ash::Instance,
     surfaces: &khr::surface::Instance,
@@ -248,7 +248,7 @@ unsafe fn choose(
             instance.enumerate_physical_devices(),
             "vkEnumeratePhysicalDevices",
         )?;
-        // A number is an index, unless there are fewer.
+        // A number is an index, unless there are fewer devices.
         let number = choice.as_ref().and_then(|c| c.parse::<usize>().ok());
         let number = number.filter(|n| *n < all.len());
         for (index, physical) in all.into_iter().enumerate() {

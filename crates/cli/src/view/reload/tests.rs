@@ -1,4 +1,4 @@
-//! Sources are watched and compiled, and what they become is drawn with.
+//! Sources are watched and compiled, and the window draws with the result.
 #![allow(unsafe_code)] // a host's device
 #![allow(clippy::unwrap_used)] // a test may stop at what it did not expect
 
