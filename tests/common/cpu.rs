@@ -1,4 +1,4 @@
-//! What tests share that need no device.
+//! Common code of tests that need no device.
 
 mod random;
 #[cfg(feature = "drawing")]

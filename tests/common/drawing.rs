@@ -6,7 +6,7 @@ use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::OnceLock;
 
-/// The device of this process's tests. Without a device or without the layers, tests fail.
+/// The device of this process's tests. Tests fail without a device or without the layers.
 pub fn device() -> &'static Device {
     static DEVICE: OnceLock<Device> = OnceLock::new();
     DEVICE.get_or_init(|| Device::open_validated(None).unwrap())
@@ -24,7 +24,7 @@ pub fn reference(scene: &Scene, settings: &Settings) -> Frame {
     revmap_reference::draw(scene, settings, &|_, _| {}).unwrap()
 }
 
-/// No NaN in any channel, and no infinity but the distance of what is not hit.
+/// Asserts that no channel has a NaN, and that only the distance of background pixels is infinite.
 pub fn assert_sound(frame: &Frame, what: &str) {
     for i in 0..frame.pixels() {
         let values = frame.pixel(i);

@@ -1,4 +1,4 @@
-//! The host of `examples/engine` for tests: opened with the validation layers, and lent to the
+//! The host of `examples/engine` for tests, opened with the validation layers and lent to the
 //! library.
 #![allow(unsafe_code, missing_docs, clippy::unwrap_used)]
 
@@ -10,7 +10,7 @@ mod engine;
 pub use engine::*;
 use revmap::gpu::{HostDevice, Requirements};
 
-/// A host with what the library requires.
+/// A host with everything that the library requires.
 pub fn open() -> Host {
     Host::open(true, |instance, physical| {
         // SAFETY: both are live.

@@ -1,5 +1,5 @@
-//! What GPU tests share: one validated device, scenes, and drawing with any message of the layers a
-//! failure.
+//! Common code of GPU tests: one validated device, scenes, and drawing that fails on any message of
+//! the layers.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod drawing;

@@ -1,5 +1,5 @@
-//! Whether a picture's hits are the first there are: what a search has passed by more than a texel,
-//! and what it has made up.
+//! Checks that a picture's hits are first hits. Counts surfaces that a search has missed by more
+//! than a texel, and hits that do not exist.
 
 use super::{device, reference};
 use rayon::prelude::*;
@@ -15,9 +15,9 @@ use std::iter::Sum;
 pub struct Count {
     /// Hit by the reference.
     pub hits: usize,
-    /// Hit by the reference and not by the picture.
+    /// Hit by the reference only.
     pub missed: usize,
-    /// The reverse.
+    /// Hit by the picture only.
     pub ghost: usize,
     /// The ray goes through more than a texel of solid before the picture's hit, or without one.
     pub passed: usize,
@@ -37,13 +37,13 @@ impl Sum for Count {
     }
 }
 
-/// Compares a drawn frame with the reference's, pixel by pixel; `texel` in object units, for solids
-/// of scale 1, and eyes outside of them.
+/// Compares a drawn frame with the reference's, pixel by pixel. `texel` is in object units, for
+/// solids of scale 1; eyes must be outside of them.
 pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
     let solids = Reference::new(scene).unwrap();
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height).unwrap();
-    // Along a ray F changes by at most 1 + b for a unit of length, b below 3 here, times the cells
-    // that a box is divided into.
+    // F changes along a ray by at most 1 + b per unit of length, with b below 3 here, times the
+    // number of cells along an axis of the box.
     let cells = scene
         .objects
         .iter()
@@ -82,8 +82,8 @@ pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
         .sum()
 }
 
-/// Scenes that differ in parameters alone, each drawn by each of the settings from maps made once,
-/// for the first.
+/// Counts for scenes that differ only in parameters. Each is drawn with each of the settings, from
+/// maps made once, for the first scene.
 pub fn counts<const N: usize>(
     scenes: &[Scene],
     settings: [&Settings; N],

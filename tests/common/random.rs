@@ -1,10 +1,10 @@
-//! Numbers by chance, the same in every run.
+//! Random numbers, the same in every run.
 
 /// Numbers by SplitMix64.
 pub struct Random(pub u64);
 
 impl Random {
-    /// From 0 to 1.
+    /// A number from 0 to 1.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut x = self.0;

@@ -1,11 +1,11 @@
-//! What tests that send rays one by one share: the solids that the rays are sent at.
+//! Common code of tests that trace single rays: the solids as their targets.
 
 pub use super::random::Random;
 use super::shapes;
 use revmap::profile::{Profile, ProfileAxis};
 
-/// Profiles by name: those of [`shapes`], and the drawings of chess pieces; by the environment
-/// variable `ONLY` one of them.
+/// Profiles by name: those of [`shapes`], and the drawings of chess pieces. The environment
+/// variable `ONLY` selects one of them.
 pub fn profiles() -> Vec<(String, Profile)> {
     let mut all: Vec<(String, Profile)> = shapes::all()
         .into_iter()
@@ -24,7 +24,7 @@ pub fn profiles() -> Vec<(String, Profile)> {
     all
 }
 
-/// How many rays are sent at each solid: by the environment variable `RAYS`, or so many.
+/// Number of rays for each solid: the environment variable `RAYS`, or else `usual`.
 pub fn count(usual: usize) -> usize {
     std::env::var("RAYS").map_or(usual, |n| n.parse().unwrap())
 }

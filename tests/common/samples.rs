@@ -79,7 +79,8 @@ pub(crate) fn hollow() -> Outline {
     hollow
 }
 
-/// A random solid: star-shaped about a point on or off the axis, or a stack of discs, by `seed`.
+/// A random solid: star-shaped about a point on or off the axis, or a stack of discs, depending on
+/// `seed`.
 pub(crate) fn random(seed: u64) -> Outline {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1);
     let mut next = move || random.next();

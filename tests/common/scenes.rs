@@ -1,4 +1,4 @@
-//! Scenes of one solid, and how far a picture of them is from the truth.
+//! Scenes of one solid, and the errors of their pictures.
 
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;
@@ -7,7 +7,7 @@ use revmap::scene::{Camera, Light, Object, Placement, Scene};
 use revmap_lab::compare::{CompareOptions, Comparison, compare};
 use std::sync::Arc;
 
-/// How far a frame is from the truth, FLIP aside; depths in texels of a map of so many rows.
+/// Errors of a frame without FLIP; depths in texels of a map of `rows` rows.
 pub fn errors(truth: &Frame, frame: &Frame, rows: u32) -> Comparison {
     let options = CompareOptions {
         texel: 1.0 / f64::from(rows),
@@ -16,7 +16,7 @@ pub fn errors(truth: &Frame, frame: &Frame, rows: u32) -> Comparison {
     compare(truth, frame, &options).unwrap()
 }
 
-/// One object of a polygon, seen from `eye`.
+/// A scene with one object, seen from `eye`.
 pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     let mut scene = Scene::new(Camera::new(eye, DVec3::new(0.0, 0.0, 0.5)));
     scene.lights.push(Light {
@@ -27,8 +27,8 @@ pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     scene
 }
 
-/// Where a camera stands that looks at the middle of a box of height 1 from `distance`, `elevation`
-/// degrees up.
+/// The position of a camera that looks at the middle of a box of height 1 from `distance`,
+/// `elevation` degrees up.
 pub fn eye(elevation: f64, distance: f64) -> DVec3 {
     let (s, c) = elevation.to_radians().sin_cos();
     DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)

@@ -1,4 +1,4 @@
-//! Profiles of tests: each hard in its own way.
+//! Profiles for tests, each with a different difficulty.
 
 use revmap::profile::Profile;
 use std::f64::consts::{PI, TAU};
@@ -56,7 +56,7 @@ pub fn glass() -> Profile {
     polygon(&GLASS, 0.5)
 }
 
-/// Its points; the seventh is the widest.
+/// The glass's points; the seventh is the widest.
 pub const GLASS: [[f64; 2]; 12] = [
     [0.0, 0.04],
     [0.26, 0.04],
@@ -109,7 +109,7 @@ pub fn jewel() -> Profile {
     )
 }
 
-/// All eight, by name.
+/// All eight profiles, by name.
 pub fn all() -> Vec<(&'static str, Profile)> {
     vec![
         ("sphere", sphere()),

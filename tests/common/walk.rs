@@ -1,63 +1,65 @@
-//! CPU twins of shaders: the search of [`Tables`] (`shaders-glsl/include/search/quadric.glsl`), and what
-//! rasteriser and fragments make of a [`ProxyHull`]; in the same 32-bit steps.
+//! CPU twins of shaders, in the same 32-bit steps: the search of [`Tables`]
+//! (`shaders-glsl/include/search/quadric.glsl`), and the rasteriser and fragments of a
+//! [`ProxyHull`].
 //!
 //! # The walk
 //!
-//! The ray is `o + t v`, about the axis, `z` from the box's floor, `t` from where it enters the box
-//! (so that coordinates are small). With `a = vx^2 + vy^2`, `b = ox vx + oy vy`, `c = ox^2 + oy^2`:
-//! `r^2(t) = c + t (2 b + t a)`, least at `-b / a`; rows are passed in the order of `t`.
+//! The ray is `o + t v`, about the axis. `z` is measured from the box's floor, and `t` from the
+//! ray's entry into the box, so that coordinates are small. Let `a = vx^2 + vy^2`, `b = ox vx + oy
+//! vy`, `c = ox^2 + oy^2`. Then `r^2(t) = c + t (2 b + t a)`, least at `-b / a`. Rows are passed in
+//! the order of `t`.
 //!
 //! 1. Begin at the top level of the tree, in the row of the ray's first point.
-//! 2. The node of that row at the present level ends at a row's border; there the ray is at
-//!    `t_out`. Between the present `t` and `t_out` it takes the `r^2` from `min` (at an end, or at
-//!    `-b / a`) to `max` (at an end).
-//! 3. If these meet the node's extent, go down a level; in a row, try its patches.
-//! 4. Else (or then) go on to the border: `t = t_out`, next row; as many levels up as the border's
-//!    number of rows divides by 4. Stop where the ray leaves the box, or where the best hit so far
-//!    lies before `t`.
+//! 2. The node of that row at the present level ends at a row's border, which the ray crosses at
+//!    `t_out`. The values of `r^2` between the present `t` and `t_out` go from `min` (at an end, or
+//!    at `-b / a`) to `max` (at an end).
+//! 3. If these overlap the node's extent, go down a level; in a row, try its patches.
+//! 4. Otherwise, or after that, go on to the border: `t = t_out`, next row. Go up as many levels as
+//!    the border's number of rows is divisible by 4. Stop if the ray leaves the box, or if the best
+//!    hit so far is before `t`.
 //!
-//! A patch's root may lie beyond the row in which it was tried: it is kept as the best so far, and
-//! rows up to there are still walked.
+//! A patch's root may be beyond the row in which it was tried. It is then stored as the best so
+//! far, and rows up to the root are still walked.
 //!
 //! # The patch
 //!
-//! `G` along the ray is `al t^2 + 2 be t + ga`. It falls, from out to in, at one root only: `t =
-//! (-be - s) / al`, `s^2 = be^2 - al ga`, which is `be <= 0 ? ga / (s - be) : -(be + s) / al`
-//! without cancellation, nor division by an `al` of zero (a plane with `be > 0` gives an infinity,
-//! and no hit). A ray that starts inside the solid looks for the way out: the same with `-G`.
+//! `G` along the ray is `al t^2 + 2 be t + ga`. `G` falls, from out to in, at one root only: `t =
+//! (-be - s) / al`, `s^2 = be^2 - al ga`. This is `be <= 0 ? ga / (s - be) : -(be + s) / al`,
+//! without cancellation or division by an `al` of zero (a plane with `be > 0` gives an infinity,
+//! and no hit). A ray that starts inside the solid searches for the exit in the same way, with
+//! `-G`.
 
 use glam::{DVec2, DVec3, Vec3};
 use revmap::surface::{Frustum, GpuPatch, ProxyHull, QuadricPatch, Tables};
 
-/// By how much a hit may lie before or behind the part of the ray within the box, in lengths of 1:
-/// roundings of `t`.
+/// Distance by which a hit may be before or behind the part of the ray within the box, in lengths
+/// of 1: the rounding of `t`.
 const SLACK: f32 = 4e-6;
 
-/// A meeting of ray and solid.
+/// A hit of ray and solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchHit {
     /// The point is `origin + t direction`.
     pub t: f64,
     /// Outward normal, not of unit length.
     pub normal: DVec3,
-    /// The patch; none on a side face of the box.
+    /// The patch; `None` on a side face of the box.
     pub patch: Option<u32>,
 }
 
-/// What a walk did.
+/// The result of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Walk {
     /// First hit: `t` and the record.
     pub hit: Option<(f32, GpuPatch)>,
-    /// Nodes looked at.
+    /// Number of nodes visited.
     pub nodes: u32,
-    /// Patches tried.
+    /// Number of patches tried.
     pub patches: u32,
 }
 
-/// The ray against one quadric: `t` of the root at which it goes from out to in (`side` 1), or from
-/// in to out (-1); NaN, or a number that fails the guard, where there is none. `(a, b, c)` as
-/// above.
+/// The `t` of the root at which the ray goes from out to in of one quadric (`side` 1), or from in
+/// to out (-1). NaN, or a number that fails the guard, if there is none. `(a, b, c)` as above.
 pub fn entering_root(quadric: [f32; 4], side: f32, [a, b, c]: [f32; 3], [oz, vz]: [f32; 2]) -> f32 {
     let [ka, k0, k1, k2] = quadric;
     let al = side * (ka * a + k2 * vz * vz);
@@ -71,8 +73,8 @@ pub fn entering_root(quadric: [f32; 4], side: f32, [a, b, c]: [f32; 3], [oz, vz]
     }
 }
 
-/// The first hit of `o + t v` for `0 <= t <= end`, about the axis, `z` from the floor. `side`
-/// is 1 where the ray starts outside the solid, -1 inside.
+/// The first hit of `o + t v` for `0 <= t <= end`, about the axis, `z` from the floor. `side` is 1
+/// if the ray starts outside the solid, -1 if inside.
 pub fn walk(tables: &Tables, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
     let mut walk = Walk::default();
     let rows = tables.rows.len() as i32;
@@ -133,7 +135,7 @@ pub fn walk(tables: &Tables, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
     }
 }
 
-/// Whether a point is in the solid: counts the patches beyond it, away from the axis.
+/// Returns true if a point is in the solid: counts the patches beyond it, away from the axis.
 pub fn contains(tables: &Tables, square: f32, z: f32) -> bool {
     let rows = tables.rows.len();
     if rows == 0 || !(0.0..=1.0).contains(&z) {
@@ -152,13 +154,13 @@ pub fn contains(tables: &Tables, square: f32, z: f32) -> bool {
         == 1
 }
 
-/// The first boundary point at `t >= 0` of a solid in its box `[-radius, radius]^2 x [0, 1]`, its
-/// axis at `axis` (object units, 0 in the middle), along `origin + t direction`: what a shader
-/// does, in its precision.
+/// The first boundary point at `t >= 0` of a solid along `origin + t direction`, computed as in a
+/// shader, in its precision. The solid is in its box `[-radius, radius]^2 x [0, 1]`, with its axis
+/// at `axis` (object units, 0 in the middle).
 ///
-/// The box's floor and ceiling are patches. Where the ray enters the box through a side face inside
-/// the solid, that face is hit; where it starts inside the solid and meets no patch before it
-/// leaves the box, the face it leaves through.
+/// The box's floor and ceiling are patches. A ray that enters the box through a side face inside
+/// the solid hits that face. A ray that starts inside the solid and hits no patch hits the face
+/// through which it leaves.
 pub fn trace_patches(
     tables: &Tables,
     radius: f64,
@@ -202,7 +204,7 @@ pub fn trace_patches(
             }
         })
     };
-    // Through floor and ceiling one comes from outside, whatever lies there: they are patches.
+    // A ray through floor or ceiling always comes from outside, since these are patches.
     let inside = faces[0] != Some(2) && contains(tables, o.x * o.x + o.y * o.y, o.z);
     if inside && faces[0].is_some() {
         return face(0, -1.0);
@@ -221,18 +223,18 @@ pub fn trace_patches(
     })
 }
 
-/// Whether a point of the quadric belongs to the patch.
+/// Returns true if a point of the quadric belongs to the patch.
 pub fn guards(patch: &QuadricPatch, square: f64, z: f64) -> bool {
     let [cz, cr, low, high] = patch.guard;
     (low..=high).contains(&(cz * z + cr * square))
 }
 
-/// By how much `z` of a hit may lie below the floor or above the ceiling: more than roundings, less
-/// than what guards tell apart.
+/// Distance by which `z` of a hit may be below the floor or above the ceiling: more than rounding,
+/// less than the resolution of guards.
 const HEIGHT_SLACK: f32 = 1e-3;
 
-/// Of corner number `corner` (0 to `6 n - 1`) of its triangles the step of the azimuth, and the
-/// ring.
+/// The step of the azimuth and the ring of corner number `corner` (0 to `6 n - 1`) of the
+/// triangles.
 fn place(frustum: &Frustum, corner: u32) -> (u32, [f32; 2]) {
     let (side, which) = (corner / 6, corner % 6);
     let step = side + u32::from(matches!(which, 1 | 2 | 4));
@@ -240,8 +242,8 @@ fn place(frustum: &Frustum, corner: u32) -> (u32, [f32; 2]) {
     (step, if begins { frustum.from } else { frustum.to })
 }
 
-/// What rasteriser and fragments make of a ray `o + t v` about the axis, from an eye outside:
-/// its nearest fragment.
+/// The nearest fragment of a ray `o + t v` about the axis, from an eye outside, as rasteriser and
+/// fragments compute it.
 pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) -> Walk {
     let mut walk = Walk::default();
     let circle: Vec<DVec2> = (0..=hull.sides)
@@ -260,7 +262,7 @@ pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) ->
             let cell = &records[frustum.first as usize..][..frustum.count as usize];
             for record in cell {
                 walk.patches += 1;
-                // Near the solid, as shaders start their rays at the box.
+                // The ray starts near the solid, as shaders start their rays at the box.
                 let near = -o.dot(v) / v.length_squared();
                 let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
                 let flat = [
@@ -286,7 +288,7 @@ pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) ->
     walk
 }
 
-/// Whether a ray passes a triangle against its normal.
+/// Returns true if a ray passes a triangle against its normal.
 fn enters(o: DVec3, v: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     let normal = (b - a).cross(c - a);
     if normal.dot(v) >= 0.0 || normal.dot(a - o) >= 0.0 {

@@ -1,4 +1,4 @@
-//! How objects are drawn, by cells, tiles or boxes, and how far two frames are apart.
+//! Draw paths of objects (cells, tiles or boxes), and the difference of two frames.
 
 use super::device;
 use revmap::frame::Frame;
@@ -8,15 +8,15 @@ use revmap::settings::{DrawStage, Settings};
 
 pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
-/// How a scene's objects are to be drawn, in either stage.
+/// The expected draw paths of a scene's objects, in either stage.
 pub type Ways<'a> = [&'a [DrawPath]; 2];
 
-/// By cells where the stage has them, and by the tree alone.
+/// Drawn by cells if the stage has them, and by the tree only.
 pub const WRAPPED: Ways<'static> = [&[DrawPath::Cells], &[DrawPath::Tiles]];
 pub const WALKED: Ways<'static> = [&[DrawPath::Tiles], &[DrawPath::Tiles]];
 
-/// Pixels hit, those that one frame hits and the other not, and those that are seen farther apart
-/// than half a texel of 512 rows.
+/// Counts pixels with a hit, pixels that only one frame hits, and pixels whose hits are farther
+/// apart than half a texel of 512 rows.
 pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     let both = || a.distance.iter().zip(&b.distance);
     let hits = both().filter(|(a, _)| a.is_finite()).count();
@@ -29,12 +29,13 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     (hits, edge, far)
 }
 
-/// Draws, and wants every object drawn in that way: another would be right too, and test nothing.
+/// Draws, and fails if an object is drawn by another path: the picture would be right, but would
+/// test nothing.
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
     let drawn = gpu::draw(device(), scene, settings).unwrap();
     let stage = usize::from(settings.stage == DrawStage::Compute);
-    // SwiftShader clips no triangles: there tiles draw what the box cuts.
+    // SwiftShader clips no triangles: tiles draw solids that the box cuts.
     let narrow = device().report().name.contains("SwiftShader");
     if !(narrow && drawn.draw_paths == WALKED[stage]) {
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Smoothed silhouettes cover of each pixel what 64 rays of the reference hit of it.
+//! Compares the coverage of smoothed silhouettes with 64 rays of the reference per pixel.
 
 use crate::common::samples;
 use glam::DVec3;
@@ -19,7 +19,8 @@ fn scene(outline: Outline, eye: DVec3) -> Scene {
     scene
 }
 
-/// Where 64 rays of each pixel are hit, and a picture of one: white solids over nothing.
+/// Coverage of each pixel by 64 rays, and a picture with one ray per pixel: white solids on a
+/// transparent background.
 fn drawn(scene: &Scene) -> (Vec<f64>, Frame) {
     let reference = Reference::new(scene).unwrap();
     let camera = CameraFrame::new(&scene.camera, SIZE.0, SIZE.1).unwrap();
@@ -45,7 +46,8 @@ fn drawn(scene: &Scene) -> (Vec<f64>, Frame) {
         let beside = |x: u32, most: u32| x.saturating_sub(1)..(x + 2).min(most);
         let own = hits(x, y);
         let alike = |y| beside(x, SIZE.0).all(|x| hits(x, y) == own);
-        // What has neighbours like itself is not cut, but by what is thinner than a pixel.
+        // A pixel whose neighbours are like itself is not cut, except by something thinner than a
+        // pixel.
         if beside(y, SIZE.1).all(alike) {
             return f64::from(u8::from(own));
         }
@@ -93,7 +95,7 @@ fn cases() -> Vec<(String, Scene)> {
             all.push((format!("{name} from {eye}"), scene(outline.clone(), eye)));
         }
     }
-    // Another placement, an axis off the middle, an offset that grows the box.
+    // These have another placement, an axis off the middle, or an offset that grows the box.
     let (_, scene) = &mut all[3];
     let object = &mut scene.objects[0];
     object.placement = Placement {
@@ -115,7 +117,7 @@ fn pixels_are_covered_as_64_rays_say() {
         let (covered, one) = drawn(scene);
         let mut smoothed = one.clone();
         silhouettes(scene, &mut smoothed).unwrap();
-        // Planted: lines half a pixel beside.
+        // Planted fault: lines half a pixel beside.
         let mut beside = one.clone();
         let mut moved = scene.clone();
         moved.camera.shift = [0.5, 0.0];
@@ -140,7 +142,7 @@ fn what_is_hidden_smooths_nothing() {
     let (_, one) = drawn(&scene);
     let smoothed = |scene: &Scene| {
         let mut frame = one.clone();
-        // Any blend of two pixels shows.
+        // Every blend of two pixels is visible.
         for (pixel, color) in frame.color.iter_mut().enumerate() {
             color[0] = (pixel % 7) as f32 / 7.0;
         }
@@ -153,7 +155,7 @@ fn what_is_hidden_smooths_nothing() {
     behind.placement.scale = DVec3::splat(0.6);
     scene.objects.push(behind);
     assert!(smoothed(&scene) == alone);
-    // Before it, it would not be passed over.
+    // A solid in front of the other must change the picture.
     scene.objects[1].placement.position = DVec3::new(0.9, 0.2, 0.4);
     let (_, both) = drawn(&scene);
     assert!(both.distance != one.distance);

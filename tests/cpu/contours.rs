@@ -1,4 +1,4 @@
-//! The contour against its definition: it parts the points with `F < 0` from the others.
+//! Checks the contour against its definition: it separates the points with `F < 0` from the others.
 
 use crate::common::samples;
 use crate::common::walk::guards;
@@ -8,14 +8,14 @@ use revmap::profile::Outline;
 use revmap::scene::Offset;
 use revmap::surface::{Contour, ContourSource, FitOptions, ROWS, Tables, fit_patches};
 
-/// Twice the number of turns of the boundary round a point, the axis counted as boundary: 2 inside.
+/// Twice the winding number of the boundary round a point, with the axis as boundary: 2 inside.
 fn turns(contour: &Contour, q: DVec2) -> f64 {
     let mut sum = 0.0;
     for chain in &contour.chains {
         let n = chain.points.len();
         for k in 0..n {
-            // From the last point of an open chain straight down the axis to its first: that is its
-            // mirror's side.
+            // The last point of an open chain is joined to its first straight down the axis, which
+            // belongs to the mirrored half.
             let (a, b) = (chain.points[k] - q, chain.points[(k + 1) % n] - q);
             sum += a.perp_dot(b).atan2(a.dot(b));
         }
@@ -97,7 +97,7 @@ proptest! {
     }
 }
 
-/// Patches hang together, look outwards, and stay as near to the contour as they promise.
+/// Patches are connected, face outwards, and are within their tolerance of the contour.
 #[test]
 fn patches_follow_their_chain() {
     let options = FitOptions::default();
@@ -135,7 +135,7 @@ fn patches_follow_their_chain() {
             };
             let f = self::value(&outline, &offset, p);
             let on_face = p.y == 0.0 || p.y == 1.0;
-            // The chords of the contour's arcs lie a millionth inside.
+            // The chords of the contour's arcs are a millionth inside.
             assert!(
                 on_face || f.abs() < options.tolerance + 1.5e-6,
                 "{f} {patch:?}"
@@ -150,7 +150,7 @@ fn patches_follow_their_chain() {
     }
 }
 
-/// What rows and nodes claim contains what is there.
+/// The extents of rows and nodes contain their patches.
 #[test]
 fn rows_and_nodes_contain_their_patches() {
     let contour = ContourSource::new(&samples::glass())
@@ -185,8 +185,8 @@ fn rows_and_nodes_contain_their_patches() {
     }
 }
 
-/// Two loops that touch, the last corner of the one before the first side of the other in the list:
-/// their curves meet like any others.
+/// Two loops that touch. The last corner of one is before the first side of the other in the list,
+/// and their curves intersect like any others.
 #[test]
 fn loops_that_touch() {
     let touch = [0.23830707371234894, 0.5634481739252806];
@@ -217,7 +217,7 @@ fn loops_that_touch() {
     }
 }
 
-/// A patch that is all but level ends where it ends: points of its quadric beyond are not its own.
+/// A patch that is nearly level ends at its end: points of its quadric beyond are not its own.
 #[test]
 fn flat_patches_end() {
     let texel = 1.0 / 512.0;
@@ -246,7 +246,7 @@ fn flat_patches_end() {
                 for (end, outwards) in [(patch.start, -run), (patch.end, run)] {
                     let beyond = 0.1 * texel * outwards.x.signum();
                     let r = end.x + beyond;
-                    // About the axis radii are not told apart so finely.
+                    // Radii about the axis are not distinguished so finely.
                     if end.x.min(r) < 0.05 {
                         continue;
                     }

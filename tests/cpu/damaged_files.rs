@@ -1,5 +1,5 @@
-//! Files that are noise, or sound files with random faults: every reader takes them or refuses them
-//! in words that name the file. None panics. What is taken is used: profiles are baked.
+//! Random files, and valid files with random faults: every reader accepts them or refuses them with
+//! an error that names the file. None panics. Accepted files are used: profiles are baked.
 
 use proptest::prelude::*;
 use revmap::error::Error;
@@ -11,7 +11,7 @@ use revmap::settings::Settings;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
-/// A random change of a file; places are fractions of its length.
+/// A random change of a file; positions are fractions of its length.
 #[derive(Clone, Debug)]
 enum Fault {
     Byte(f64, u8),
@@ -22,7 +22,7 @@ enum Fault {
     End(f64),
 }
 
-/// What parsers stumble over.
+/// Words that are difficult for parsers.
 const WORDS: [&str; 22] = [
     "nan",
     "inf",
@@ -86,7 +86,7 @@ fn damaged(sound: &[u8], faults: &[Fault]) -> Vec<u8> {
                 bytes.splice(at..at, part);
             }
             Fault::Word(at, word) => {
-                // In place of what stands between two separators, as of a number.
+                // Replaces the text between two separators, such as a number.
                 let begin = place(at);
                 let stays = |b: &u8| b.is_ascii_alphanumeric() || b"+-._".contains(b);
                 let end = begin + bytes[begin..].iter().take_while(|b| stays(b)).count();
@@ -98,7 +98,7 @@ fn damaged(sound: &[u8], faults: &[Fault]) -> Vec<u8> {
     bytes
 }
 
-/// Sound files of each kind, small, in a folder of their own.
+/// Small valid files of each kind, in a folder of their own.
 static SOUND: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -192,7 +192,7 @@ fn options(profile: &Profile) -> BakeOptions {
 
 fn read_profile(file: &Path) -> Result<(), Error> {
     let profile = Profile::load(file, ProfileAxis::Center)?;
-    // Slender boxes are refused here, and name no file.
+    // Slender boxes are refused here, without a file name.
     let _ = ShapeMap::bake(&profile, &options(&profile));
     Ok(())
 }
@@ -221,7 +221,7 @@ fn read_frame(file: &Path) -> Result<(), Error> {
 
 type Reader = fn(&Path) -> Result<(), Error>;
 
-/// Which reader takes which sound file.
+/// Each valid file with its reader.
 const READERS: [(&str, Reader); 12] = [
     ("vase.svg", read_profile),
     ("grey.png", read_profile),
@@ -237,7 +237,7 @@ const READERS: [(&str, Reader); 12] = [
     ("vase.svg", read_scene),
 ];
 
-/// Reads `bytes` in place of a sound file, beside the files that it may name.
+/// Reads `bytes` in place of a valid file, beside the files that it may name.
 fn read(name: &str, reader: Reader, bytes: &[u8]) -> Result<(), Error> {
     let folder = tempfile::tempdir().unwrap();
     if name.ends_with("toml") || name.ends_with("csv") {
@@ -277,7 +277,7 @@ fn sound_files_are_read() {
     }
 }
 
-/// What would take all memory is refused by what the file says of its size.
+/// Files that would use up all memory are refused by the size in their header.
 #[test]
 fn promises_that_no_file_keeps_are_refused() {
     let refused = |name, reader: Reader, bytes: &[u8], words: &str| {
@@ -305,7 +305,7 @@ fn promises_that_no_file_keeps_are_refused() {
     }
 }
 
-/// With right sums behind each chunk, so that faults get past the decoder's first look.
+/// Each chunk gets a valid checksum, so that faults pass the decoder's first check.
 fn damaged_png(sound: &[u8], chunk: usize, faults: &[Fault]) -> Vec<u8> {
     let (signature, mut rest) = sound.split_at(8);
     let mut bytes = signature.to_vec();

@@ -1,5 +1,5 @@
-//! Hulls as a CPU walks them, ray by ray: none is lost between their layers, and nothing that they
-//! leave out can be seen.
+//! Walks hulls on the CPU, ray by ray: no ray is lost between their layers, and nothing that they
+//! leave out is visible.
 
 use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
@@ -12,7 +12,7 @@ use revmap::surface::{
     fit_patches,
 };
 
-/// A solid's boundary, as searches of tables and as hulls take it.
+/// A solid's boundary, as input of table searches and of hulls.
 struct Boundary {
     patches: Vec<QuadricPatch>,
     tables: Tables,
@@ -40,12 +40,14 @@ impl Boundary {
         ProxyHull::new(&self.patches, &options)
     }
 
-    /// Where the tables stop a ray. As wide as the solid: the hull knows no side faces.
+    /// The `t` at which the tables stop a ray. The radius of 2 is wider than the solid, since the
+    /// hull has no side faces.
     fn stop(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         trace_patches(&self.tables, 2.0, DVec2::ZERO, origin, direction).map(|hit| hit.t)
     }
 
-    /// Where a ray is stopped, whether the hull's fragments stop it there, and how many it passes.
+    /// The `t` at which a ray is stopped, the comparison with the hull's fragments, and the number
+    /// of fragments passed.
     fn compare(
         &self,
         hull: &ProxyHull,
@@ -70,8 +72,7 @@ fn eye_around(random: &mut Random) -> DVec3 {
     DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5
 }
 
-/// Every ray that the tables stop is stopped at the same place by the fragments of the hull, and no
-/// other.
+/// The hull's fragments stop exactly the rays that the tables stop, at the same point.
 #[test]
 fn hulls_lose_no_ray() {
     let count = count(600);
@@ -108,8 +109,8 @@ fn hulls_lose_no_ray() {
                     f64::from(wasted) / (count - hits) as f64,
                 );
                 println!("{words}");
-                // The two round their rays differently: at silhouettes one of a thousand may part
-                // ways.
+                // The two round their rays differently: one in a thousand may differ at
+                // silhouettes.
                 if lost as f64 > 1.0 + 1e-3 * hits as f64 {
                     failures.push(words);
                 }
@@ -119,7 +120,7 @@ fn hulls_lose_no_ray() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Vessels and rings: what an eye may look into.
+/// Vessels and rings, whose inside may be visible.
 fn vessels() -> Vec<(&'static str, Vec<[f64; 2]>, bool)> {
     vec![
         // A round flask with a narrow neck.
@@ -184,13 +185,12 @@ fn vessels() -> Vec<(&'static str, Vec<[f64; 2]>, bool)> {
             ],
             true,
         ),
-        // Without a hollow there is nothing to hide.
+        // A solid without a hollow hides nothing.
         ("cone", vec![[0.0, 0.1], [0.4, 0.1], [0.0, 0.9]], false),
     ]
 }
 
-/// Points of cells that a hull leaves out for an eye: what lies between them and the eye hides
-/// every one.
+/// Points of cells that a hull leaves out for an eye: something nearer to the eye hides every one.
 #[test]
 fn what_a_hull_leaves_out_no_ray_meets() {
     let mut random = Random(5);
@@ -202,7 +202,7 @@ fn what_a_hull_leaves_out_no_ray_meets() {
     profiles.push(("glass", shapes::glass(), true));
     for (name, profile, hollow) in profiles {
         let boundary = Boundary::new(&profile.outline, &Offset::default(), 64);
-        // Small cells: as many as there can be are within the hollow.
+        // Small cells: as many as possible are within the hollow.
         let hull = boundary.hull(1);
         let (mut left_out, mut rays) = (0, 0);
         for _ in 0..60 {
@@ -243,8 +243,8 @@ fn what_a_hull_leaves_out_no_ray_meets() {
     }
 }
 
-/// Rays at what is near a joint: a thin ledge at a cell's end, a rim whose outer flank is wrapped by
-/// one frustum.
+/// Rays at the surroundings of a joint: a thin ledge at a cell's end, a rim whose outer flank is
+/// wrapped by one frustum.
 #[test]
 fn rims_and_ledges_lose_no_ray() {
     let ledge = vec![
@@ -258,7 +258,7 @@ fn rims_and_ledges_lose_no_ray() {
         [0.14881301676183442, 0.79],
         [0.4077006168065225, 0.79],
     ];
-    // Its mirror: the ledge looks up, and is seen from below.
+    // The mirror image: the ledge faces up and is seen from below.
     let below = ledge.iter().rev().map(|[r, z]| [*r, 1.0 - z]).collect();
     let rim = vec![
         [0.42037396931714804, 0.8300237391211497],
@@ -267,7 +267,7 @@ fn rims_and_ledges_lose_no_ray() {
         [0.16564666791459592, 0.4096639095138618],
     ];
     let turned = rim.iter().rev().map(|[r, z]| [*r, 1.0 - z]).collect();
-    // The inner wall of a ring above a ledge as thin.
+    // The inner wall of a ring above an equally thin ledge.
     let hole = vec![
         [0.2, 0.2],
         [0.45, 0.2],
@@ -294,8 +294,8 @@ fn rims_and_ledges_lose_no_ray() {
             let (mut lost, mut hits) = (0, 0);
             for _ in 0..count(3000) {
                 let origin = eye_around(&mut random);
-                // A point within a hundredth of a joint, a quarter of a texel under the surface: a ray
-                // at the surface itself may be a silhouette's.
+                // A point within a hundredth of a joint, a quarter of a texel under the surface. A
+                // ray at the surface itself may be at a silhouette.
                 let patch = &patches[(random.next() * patches.len() as f64) as usize];
                 let way = 0.01 * random.next() / patch.start.distance(patch.end);
                 let place = patch.start.lerp(patch.end, way.min(1.0));
@@ -308,7 +308,7 @@ fn rims_and_ledges_lose_no_ray() {
                 hits += usize::from(truth.is_some());
             }
             println!("{name}, {tests} patches a cell: {lost} of {hits} lost");
-            // At silhouettes a rounding decides.
+            // Rounding decides at silhouettes.
             assert!(
                 lost as f64 <= 1e-3 * hits as f64,
                 "{name}, {tests} patches a cell: {lost} of {hits} lost"

@@ -1,5 +1,5 @@
-//! The three sources of distance, measured on a disc at 512 rows: no worse than what `docs/maps.md`
-//! says of them.
+//! The three sources of distance, measured on a disc at 512 rows: no worse than stated in
+//! `docs/maps.md`.
 
 use revmap::maps::accuracy::{Disc, MapErrors};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
@@ -13,8 +13,8 @@ fn errors(source: MapSource, rows: u32) -> MapErrors {
 #[test]
 fn binary_is_what_the_papers_have() {
     let e = errors(MapSource::Binary, 512);
-    // To pixel centres: never nearer than the truth by more than rounding, never farther than a
-    // pixel's diagonal.
+    // Distances to pixel centres are never less than the truth by more than rounding, and never
+    // more by more than a pixel's diagonal.
     assert!(e.mean > 0.0 && e.mean <= 0.36 && e.rms <= 0.41 && e.max <= 1.0);
     assert!((8.0..=10.1).contains(&e.stored_gradient_rms), "{e:?}");
     assert!(e.stored_gradient_max <= 40.0);
@@ -42,12 +42,12 @@ fn exact_is_exact() {
     let e = errors(MapSource::Exact, 512);
     // The polygon of 65536 corners is off by 1e-9, 32 bits by 1e-5 texel, and always downwards.
     assert!(e.mean <= 0.0 && e.rms <= 1e-4 && e.max <= 1e-4, "{e:?}");
-    // Within a cell of a curved field the bilinear derivative turns by half a texel over the
+    // The bilinear derivative turns within a cell of a curved field by half a texel over the
     // radius: 0.15 degrees here.
     assert!(e.gradient_rms <= 0.08 && e.gradient_max <= 0.2, "{e:?}");
 }
 
-/// The measure itself must see errors that are there.
+/// The measure itself must detect errors.
 #[test]
 fn planted_errors_are_found() {
     let disc = Disc::default();

@@ -1,4 +1,4 @@
-//! Profiles from files: what is read, and what is refused with which words.
+//! Profiles from files: accepted files, and refused files with their messages.
 
 use glam::DVec2;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
@@ -34,7 +34,7 @@ fn what_cannot_be_read_is_refused_in_one_line() {
     for part in [8, 30, bottle.len() / 3] {
         assert!(refusal(&file("cut.png", &bottle[..part])).contains("damaged"));
     }
-    // By its content, not its name.
+    // A file is read by its content, not its name.
     let renamed = file("bottle.svg", &bottle);
     assert_eq!(
         Profile::load(renamed, ProfileAxis::Center).unwrap(),
@@ -42,7 +42,7 @@ fn what_cannot_be_read_is_refused_in_one_line() {
     );
 }
 
-/// Every real profile touches its axis, stays inside its box, and is one patch of plausible size.
+/// Every real profile touches its axis, is inside its box, and is one patch of plausible size.
 #[test]
 fn real_profiles_are_plausible() {
     for (name, radius, area) in [
@@ -65,8 +65,8 @@ fn real_profiles_are_plausible() {
     }
 }
 
-/// The same drawing as an image: its map must agree with the drawing's, at the image's resolution
-/// and at others.
+/// The map of a drawing as an image must agree with the drawing's, at the image's resolution and at
+/// others.
 #[test]
 fn an_image_of_a_drawing_gives_its_distances() {
     for name in ["pawn.svg", "bishop.svg", "king.svg", "rook.svg"] {
@@ -87,8 +87,8 @@ fn an_image_of_a_drawing_gives_its_distances() {
                 .map(|(a, b)| f64::from(a - b).abs() * 600.0)
                 .collect();
             let max = errors.iter().copied().fold(0.0, f64::max);
-            // The bottom of a sharp notch lies beyond the last pixel that is half covered; inside
-            // the solid, whole wedges look to it.
+            // The bottom of a sharp notch is beyond the last pixel that is half covered. It is the
+            // nearest point of whole wedges inside the solid.
             assert!(max < 1.7, "{name} at {rows}: {max} pixels");
             let outside: Vec<f64> = errors
                 .iter()
@@ -131,7 +131,7 @@ fn odd_widths_stay_where_they_are() {
         for k in 0..400 {
             let p = DVec2::new(f64::from(k % 20) / 42.0, (f64::from(k / 20) + 0.5) / 20.0);
             let exact = p.distance(DVec2::new(0.0, 0.5)) - radius / 80.0;
-            // Near the middle of the ball the distance has a point, which no bilinear grid can
+            // The distance has a peak near the middle of the ball, which no bilinear grid can
             // follow.
             if exact > -0.3 {
                 worst = worst.max((map.distance_at(p.x, p.y) - exact).abs() * 80.0);

@@ -1,5 +1,5 @@
-//! The scenes that come with the program: each reads, is drawn inside its frame, and its patches
-//! stand on their board.
+//! The scenes that come with the program: each is readable, is drawn inside its frame, and its
+//! chess pieces are on their board.
 
 use glam::{DVec2, DVec3};
 use revmap::scene::{CameraFrame, Scene, file};
@@ -50,7 +50,7 @@ fn there_is_one_for_every_profile_and_for_every_kind_of_input() {
     }
 }
 
-/// The solids reach nearly to the picture's edge, and not beyond it.
+/// The solids extend nearly to the picture's edge, and not beyond it.
 #[test]
 fn solids_fill_their_picture() {
     for (name, scene) in scenes() {

@@ -1,4 +1,4 @@
-//! Quadric patches and their tables against the reference in double precision, ray by ray.
+//! Compares quadric patches and their tables with the reference in double precision, ray by ray.
 
 use crate::common::rays::{Random, count, profiles};
 use crate::common::walk::trace_patches;
@@ -24,7 +24,7 @@ fn shoot(profile: &Profile, offset: Offset, count: usize) -> (Tally, String) {
     shoot_at(profile, &profile.outline, &options, offset, count)
 }
 
-/// The same, with patches made from `own`.
+/// Rays as in `shoot`, with patches made from `own`.
 fn shoot_at(
     profile: &Profile,
     own: &Outline,
@@ -58,7 +58,7 @@ fn against(
     against_offset(profile, Offset::default(), count, trace)
 }
 
-/// A search against the reference.
+/// Compares a search with the reference.
 fn against_offset(
     profile: &Profile,
     offset: Offset,
@@ -125,7 +125,8 @@ fn check(
         quantile(&tally.normal, 1.0)
     );
     println!("{words}");
-    // A wrong ray or two among few thousand say little; their rate is that of all cases together.
+    // One or two wrong rays among few thousand say little; the limit is on the rate of all cases
+    // together.
     if tally.wrong > 2 || p99 > 0.02 {
         failures.push(words);
     }
@@ -219,9 +220,9 @@ fn clip(radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     (to > from).then_some((from, to))
 }
 
-/// Pictures of 512 rows, binary and anti-aliased, against the drawings they came from: at most half
-/// of what the RBM baseline on the binary picture has of wrong rays; of depth (p99) half of it with
-/// anti-aliasing.
+/// Pictures of 512 rows, binary and anti-aliased, compared with their drawings. The wrong rays are
+/// at most half of those of the RBM baseline on the binary picture. With anti-aliasing, the depth
+/// error (p99) is also at most half.
 #[test]
 fn pictures_are_twice_as_good_as_the_rbm_baseline() {
     let count = count(3_000);
@@ -260,11 +261,11 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
                 quantile(&tally.normal, 0.99)
             );
             println!("{words}");
-            // Binary pixels do not say where within a texel a level face lies, and along flat rays
-            // that is most of the depth; and the RBM baseline loses the rays that would be its
-            // worst, so its own p99 is a mild one (tests/bitmaps.rs has pixels in place of random
-            // rays). The column is all ridges: a ray that passes one by a hair meets the next,
-            // twenty texels on.
+            // Binary pixels do not determine the position of a level face within a texel, and this
+            // is most of the depth error along flat rays. The RBM baseline loses the rays that
+            // would be its worst, so its own p99 is mild (tests/gpu/bitmaps.rs has pixels in place
+            // of random rays). The column is all ridges: a ray that narrowly misses one hits the
+            // next, twenty texels on.
             let depth = match (kind, name.as_str()) {
                 ("grey", "column") => 2.3,
                 ("grey", _) => 1.0,

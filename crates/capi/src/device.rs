@@ -1,4 +1,4 @@
-//! Devices: what they must offer, opening one, borrowing a host's.
+//! Devices: their requirements, opening one, borrowing a host's.
 
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, handle};
@@ -227,7 +227,7 @@ pub unsafe extern "C" fn revmap_device_info(
     })
 }
 
-/// As much of a text as fits, ended by 0.
+/// The longest start of a text that fits, ended by 0.
 fn short(text: &str) -> [c_char; 256] {
     let mut all = [0; 256];
     let end = text.floor_char_boundary(all.len() - 1);

@@ -1,5 +1,5 @@
-//! Numbers of the header, and what they stand for. Structures hold them as `uint32_t`, as C may
-//! write any number.
+//! The header's enumerations and the library's values for their numbers. Structures hold these
+//! numbers as `uint32_t`, since C may write any number.
 
 use crate::fault::{Fault, Outcome};
 use revmap::gpu::DepthOrder;
@@ -194,7 +194,7 @@ pub enum RevmapShadow {
     Soft = 2,
 }
 
-/// A function from the numbers of an enumeration to what they stand for.
+/// Functions from the numbers of an enumeration to the library's values.
 macro_rules! numbers {
     ($($function:ident: $from:ident => $to:ty { $($name:ident => $value:expr),* $(,)? })*) => {
         $(pub(crate) fn $function(number: u32) -> Outcome<$to> {

@@ -40,7 +40,7 @@ pub enum RevmapResult {
     Internal = 12,
 }
 
-/// Why a call fails.
+/// The reason why a call fails.
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub result: RevmapResult,
@@ -91,7 +91,7 @@ pub(crate) fn enter(body: impl FnOnce() -> Outcome<()>) -> RevmapResult {
         Err(panic) => Fault::new(RevmapResult::Internal, panic_text(panic.as_ref())),
     };
     let text = CString::new(fault.text.replace('\0', " ")).ok();
-    // A thread that ends has no last failure any more.
+    // A thread that is ending has no last failure.
     let _ = LAST.try_with(|last| last.replace((fault.result, text)));
     fault.result
 }
@@ -156,7 +156,7 @@ mod tests {
         .join()
         .unwrap();
         assert_eq!(last().0, RevmapResult::Internal);
-        // What succeeds says nothing.
+        // A successful call leaves the last failure unchanged.
         assert_eq!(enter(|| Ok(())), RevmapResult::Ok);
         assert_eq!(last().0, RevmapResult::Internal);
     }

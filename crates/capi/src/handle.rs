@@ -1,29 +1,29 @@
-//! Handles: numbers that C holds in place of addresses.
+//! Handles: numbers that C holds instead of addresses.
 //!
-//! A number is given once and never again, so that a handle that was destroyed is never taken for
-//! another.
+//! Each number is used once, so that a destroyed handle is never mistaken for another.
 
 use crate::fault::{Fault, Outcome, RevmapResult};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, RwLock, TryLockError};
 
-/// What lives behind the handles of one kind.
+/// The values behind the handles of one kind.
 pub(crate) struct Registry<T> {
     live: RwLock<BTreeMap<usize, T>>,
 }
 
-/// The type that the header shows a handle to.
+/// The handle's type in the header.
 pub(crate) trait Handle: Sized + 'static {
-    /// What it stands for. Clones are the same thing.
+    /// The value behind a handle. Clones refer to the same object.
     type Value: Clone + 'static;
-    /// What messages call it.
+    /// The name in messages.
     const NAME: &'static str;
     fn registry() -> &'static Registry<Self::Value>;
 
     /// A new handle.
     fn create(value: Self::Value) -> *mut Self {
-        // Steps as between addresses: tools that look at alignment find nothing odd.
+        // Numbers grow in steps like those of addresses, so that tools that check alignment report
+        // nothing.
         static NEXT: AtomicUsize = AtomicUsize::new(16);
         let number = NEXT.fetch_add(16, Ordering::Relaxed);
         let mut live = Self::registry()
@@ -44,7 +44,7 @@ pub(crate) trait Handle: Sized + 'static {
             .ok_or_else(|| missing(Self::NAME, handle.is_null()))
     }
 
-    /// As `get`; none of a null handle.
+    /// The result of `get`; `None` for a null handle.
     fn get_optional(handle: *const Self) -> Outcome<Option<Self::Value>> {
         if handle.is_null() {
             return Ok(None);
@@ -52,7 +52,7 @@ pub(crate) trait Handle: Sized + 'static {
         Self::get(handle).map(Some)
     }
 
-    /// Takes a handle away. Null is none.
+    /// Removes a handle. A null handle is accepted.
     fn destroy(handle: *mut Self) -> Outcome<()> {
         if handle.is_null() {
             return Ok(());
@@ -64,7 +64,7 @@ pub(crate) trait Handle: Sized + 'static {
                 .unwrap_or_else(PoisonError::into_inner);
             live.remove(&handle.addr())
         };
-        // Dropped without the lock: it may take long.
+        // The value is dropped without the lock, since that may take long.
         value.map(drop).ok_or_else(|| missing(Self::NAME, false))
     }
 }
@@ -86,7 +86,7 @@ impl<T> Registry<T> {
     }
 }
 
-/// Calls `work` with what one thread at a time may use.
+/// Calls `work` with a value that one thread at a time may use.
 pub(crate) fn alone<T, R>(
     shared: &Mutex<T>,
     name: &str,

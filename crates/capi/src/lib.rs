@@ -1,10 +1,9 @@
 //! The C interface of revmap: `include/revmap.h`, which is made from these sources, and
 //! `include/revmap.hpp`.
 //!
-//! A handle that C holds is a number, never an address: the module `handle` looks it up, and so
-//! finds handles that are null, destroyed, of another kind, or in use by another thread. Every
-//! function enters through `fault::enter`, which keeps the failure for its thread and lets no panic
-//! out.
+//! A handle in C is a number, never an address. The module `handle` looks it up, and so detects
+//! handles that are null, destroyed, of another kind, or in use by another thread. Every function
+//! enters through `fault::enter`, which stores the failure for its thread and lets no panic out.
 //!
 //! Documentation of public items is written for the header: it names the C functions.
 #![allow(unsafe_code)] // pointers of the caller; what they must be is said in the header

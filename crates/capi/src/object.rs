@@ -1,4 +1,4 @@
-//! Objects as C describes them.
+//! Objects as the C interface describes them.
 
 use crate::enums;
 use crate::fault::{Outcome, RevmapResult, enter};

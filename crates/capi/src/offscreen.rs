@@ -21,7 +21,7 @@ handle!(RevmapOffscreen, "off-screen picture", Arc<Mutex<Drawing>>);
 pub(crate) struct Drawing {
     offscreen: Offscreen,
     planes: revmap::settings::Planes,
-    /// What was read back of the last picture.
+    /// The planes of the last picture that were read back.
     frame: Option<Frame>,
     drawn: bool,
 }
@@ -113,7 +113,7 @@ impl RevmapScene {
 }
 
 impl Drawing {
-    /// What the last picture holds.
+    /// The planes of the last picture.
     fn frame(&mut self) -> Outcome<&Frame> {
         if !self.drawn {
             return Err(Fault::usage(

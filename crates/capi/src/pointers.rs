@@ -1,4 +1,4 @@
-//! Pointers of the caller, looked at before they are followed.
+//! Pointers from the caller, checked before use.
 
 use crate::fault::{Fault, Outcome};
 use std::ffi::{CStr, c_char};
@@ -39,7 +39,7 @@ unsafe fn check_size<T: Described>(from: *const T) -> Outcome<()> {
     )))
 }
 
-/// A structure of the caller's.
+/// A structure from the caller.
 pub(crate) unsafe fn read<T: Described>(from: *const T) -> Outcome<T> {
     // SAFETY: null or the caller's, of the size that it says.
     unsafe {
@@ -48,7 +48,7 @@ pub(crate) unsafe fn read<T: Described>(from: *const T) -> Outcome<T> {
     }
 }
 
-/// Fills a structure of the caller's, whose size is set.
+/// Fills a structure of the caller, whose size is set.
 pub(crate) unsafe fn fill<T: Described>(to: *mut T, value: T) -> Outcome<()> {
     // SAFETY: as in `read`.
     unsafe {
@@ -73,13 +73,13 @@ pub(crate) unsafe fn put<T>(
     Ok(())
 }
 
-/// A value of the caller's that has no size of its own.
+/// A value from the caller without a size of its own.
 pub(crate) unsafe fn take<T: Copy>(from: *const T, what: &str) -> Outcome<T> {
     // SAFETY: null or the caller's.
     unsafe { from.as_ref() }.copied().ok_or_else(|| null(what))
 }
 
-/// An array of the caller's; null where it is empty.
+/// An array from the caller; null if it is empty.
 pub(crate) unsafe fn list<'a, T>(from: *const T, count: usize, what: &str) -> Outcome<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -99,7 +99,7 @@ pub(crate) unsafe fn list<'a, T>(from: *const T, count: usize, what: &str) -> Ou
     Ok(unsafe { std::slice::from_raw_parts(from, count) })
 }
 
-/// A text of the caller's.
+/// A text from the caller.
 pub(crate) unsafe fn text<'a>(from: *const c_char, what: &str) -> Outcome<&'a str> {
     if from.is_null() {
         return Err(null(what));

@@ -1,4 +1,4 @@
-//! Renderers: objects that are recorded into a host's command buffers.
+//! Renderers: objects recorded into a host's command buffers.
 
 pub mod frame;
 pub mod objects;
@@ -21,14 +21,14 @@ use std::sync::{Arc, Mutex};
 pub struct RevmapRenderer;
 handle!(RevmapRenderer, "renderer", Arc<Mutex<Recorder>>);
 
-/// A renderer, and what was prepared in its slots.
+/// A renderer and the prepared frames of its slots.
 pub(crate) struct Recorder {
     renderer: Renderer,
-    /// Whether fragments are drawn, in a pass.
+    /// True if it draws fragments in a pass.
     in_pass: bool,
     /// The frame that each slot was prepared for.
     prepared: Vec<Option<PreparedFrame>>,
-    /// The renderer's notes that were asked for.
+    /// The renderer's notes that the caller has read.
     notes: Vec<CString>,
 }
 

@@ -119,7 +119,7 @@ pub struct RevmapSearch {
 
 described!(RevmapLighting, RevmapCamera, RevmapView, RevmapSearch);
 
-/// At the origin, upright, one world unit high.
+/// The placement at the origin, upright, one world unit high.
 pub(crate) const UPRIGHT: RevmapPlacement = RevmapPlacement {
     position: [0.0; 3],
     rotation: [0.0, 0.0, 0.0, 1.0],
@@ -260,7 +260,7 @@ impl RevmapSearch {
     }
 }
 
-/// A structure's size as it is written down.
+/// A structure's size, as its first field holds it.
 pub(crate) const fn size(bytes: usize) -> u32 {
     assert!(bytes < 1 << 16);
     bytes as u32

@@ -1,27 +1,27 @@
-//! Cone maps of solids that are single-valued in z: `r <= f(z)`, solid all the way to the axis.
+//! Cone maps of solids that are single-valued in z: `r <= f(z)`, solid down to the axis.
 //!
-//! Such a solid is a height field over the axis: `z` is the place, `r` the height. Cone step
-//! mapping (Dummer 2006) keeps, for each place, the widest cone that stands on the surface there
-//! and has nothing of the solid in it; a ray above the surface may go on to where it leaves that
-//! cone. Turned about the axis a cone's two flanks are cones of revolution, and where a ray leaves
-//! one is a quadratic. A ray moves along the axis one way only, so each flank has a slope of its
-//! own.
+//! Such a solid is a height field over the axis: `z` is the position, `r` the height. Cone step
+//! mapping (Dummer 2006) stores, for each position, the widest cone with its tip on the surface
+//! there that contains nothing of the solid. A ray above the surface may advance to its exit from
+//! that cone. The two flanks of a cone become cones of revolution when turned about the axis, and
+//! the exit of a ray from one is a quadratic. A ray moves along the axis in one direction only, so
+//! each flank has a slope of its own.
 //!
 //! # Layout
 //!
 //! Row `i` of `N` is `i / N <= z <= (i + 1) / N`.
 //!
 //! * `[g, g', k_up, k_down]`: `g` and `g'` are the radius at the row's lower and upper border,
-//!   linear in between. From any point of the row, `(z, g(z))`, nothing of the solid at `z' > z`
-//!   lies beyond `g(z) + k_up (z' - z)`, and nothing at `z' < z` beyond `g(z) + k_down (z - z')`.
-//! * `[g, g', h, -1 - 4096 p - q]`, where that is closer to the surface: a level face at the height
-//!   `(i + p / 2047) / N` splits the row. Below it the radius goes from `g` to `h`, above it from
-//!   `q / 4095` of the largest radius to `g'`. Such rows have no cones.
+//!   linear in between. From any point of the row, `(z, g(z))`, nothing of the solid at `z' > z` is
+//!   beyond `g(z) + k_up (z' - z)`, and nothing at `z' < z` is beyond `g(z) + k_down (z - z')`.
+//! * `[g, g', h, -1 - 4096 p - q]`, if that is closer to the surface: a level face at the height
+//!   `(i + p / 2047) / N` splits the row. The radius goes from `g` to `h` below the face, and from
+//!   `q / 4095` of the largest radius to `g'` above it. Such rows have no cones.
 //!
-//! The slopes are those of the borders: with `k` the steepest way from the row's lower end to any
-//! point of the surface above (0 if all of them lead down), and `k'` the same from its upper end,
-//! the row has `max(k, k')`. From a point between two ends the way to a third is the mediant of
-//! theirs, so it is no steeper than the steeper of both.
+//! The slopes are those of the borders. Let `k` be the steepest slope from the row's lower end to
+//! any point of the surface above (0 if all of them descend), and `k'` the same from its upper end.
+//! The row has `max(k, k')`. For a point between the two ends, the slope to a third point is the
+//! mediant of theirs, so it is no steeper than the steeper of both.
 
 mod surface;
 
@@ -34,12 +34,12 @@ use revmap::settings::Solver;
 use revmap::surface::Contour;
 use surface::{Row, Surface};
 
-/// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z
-/// (`r <= f(z)`); others are an error.
+/// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r
+/// <= f(z)`); others are an error.
 pub const CONE: Solver = Solver::Other(&CONE_SEARCH);
 
-/// The same with relaxed cones, wider ones that a step may leave inside the solid, and halvings back:
-/// as the papers list it. It passes surfaces.
+/// Cone step mapping with relaxed cones, followed by halvings, as the papers list it. These cones
+/// are wider, and a step may end inside the solid. The search misses some surfaces.
 pub const RELAXED: Solver = Solver::Other(&RELAXED_SEARCH);
 
 static CONE_SEARCH: Search = Search {
@@ -69,7 +69,7 @@ static RELAXED_SEARCH: Search = Search {
     words: words!("relaxed.glsl"),
 };
 
-/// The rows of a cone map; the [module](self) tells their layout.
+/// The rows of a cone map; the [module](self) documents their layout.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cones {
     /// `[g, g', k_up, k_down]`, or a row with a level face.
@@ -78,27 +78,27 @@ pub struct Cones {
     pub reach: f32,
 }
 
-/// Steeper than this no way can be told from a jump.
+/// Upper limit of slopes, which represents a jump.
 const STEEPEST: f64 = 1e6;
 
 impl Cones {
-    /// The cone map of a contour in `rows` rows. What is thinner in z than a row may be lost, or
+    /// The cone map of a contour in `rows` rows. Features thinner in z than a row may be lost, or
     /// filled.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) where going outwards from the axis one
-    /// leaves the solid more than once, or starts outside of it, at two neighbouring borders of
-    /// rows.
+    /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) if the solid is not single-valued
+    /// at two neighbouring borders of rows: a line outwards from the axis leaves the solid more
+    /// than once, or starts outside of it.
     pub fn new(contour: &Contour, rows: u32) -> Result<Self> {
         Self::with(contour, rows, slopes)
     }
 
-    /// The same with relaxed cones (Policarpo and Oliveira 2007): so wide that a straight ray of
-    /// the half-plane that comes in from the largest radius leaves the solid, where it has entered
-    /// it, no sooner than the cone. Takes time as the square of `rows`.
+    /// The cone map with relaxed cones (Policarpo and Oliveira 2007). Each is so wide that a
+    /// straight ray of the half-plane, which comes in from the largest radius and has entered the
+    /// solid, leaves the solid no sooner than the cone. The time grows with the square of `rows`.
     ///
     /// # Errors
-    /// As [`Cones::new`].
+    /// The errors of [`Cones::new`].
     pub fn relaxed(contour: &Contour, rows: u32) -> Result<Self> {
         Self::with(contour, rows, relaxed_slopes)
     }
@@ -114,7 +114,7 @@ impl Cones {
             .collect();
         let mut down = slopes(&turned);
         down.reverse();
-        // Rounded up, by what 32-bit floats lose of radii and heights.
+        // Rounded up by the rounding of radii and heights to 32-bit floats.
         let steep = |k: f64| (k * (1.0 + 1e-5)).min(STEEPEST) as f32;
         let row = |row: &Row| {
             let [g, g_next] = row.radii.map(|r| r as f32);
@@ -132,7 +132,7 @@ impl Cones {
         })
     }
 
-    /// As `shaders/cone_rows.glsl` reads them.
+    /// The table in the layout of `shaders/cone_rows.glsl`.
     fn table(&self) -> SearchTable {
         SearchTable {
             vectors: self.rows.iter().map(|r| r.map(f32::to_bits)).collect(),
@@ -141,8 +141,8 @@ impl Cones {
     }
 }
 
-/// From each point of a surface the steepest way `dr / dz` to one farther up (they stand in order);
-/// 0 where all lead down.
+/// The steepest slope `dr / dz` from each point of a surface to one farther up (the points are
+/// sorted); 0 if all slopes descend.
 fn slopes(points: &[DVec2]) -> Vec<f64> {
     let slope = |i: usize, j: usize| {
         let way = points[j] - points[i];
@@ -155,7 +155,7 @@ fn slopes(points: &[DVec2]) -> Vec<f64> {
         }
     };
     let mut all = vec![0.0; points.len()];
-    // The upper hull of the points after `i`, nearest last: the steepest way leads to its first
+    // The upper hull of the points after `i`, nearest last: the steepest slope is that to its first
     // corner.
     let mut hull: Vec<usize> = Vec::new();
     for i in (0..points.len()).rev() {
@@ -172,9 +172,9 @@ fn slopes(points: &[DVec2]) -> Vec<f64> {
     all
 }
 
-/// From each point of a surface the steepest way to one farther up where a ray can come out that
-/// has entered in between: one steeper there than the surface, from the largest radius over the
-/// point; 0 where all lead down.
+/// The steepest slope from each point of a surface to an exit farther up, for a ray that has
+/// entered in between; 0 if all slopes descend. At an exit, `dr / dz` of the ray from the largest
+/// radius over the point is greater than that of the surface.
 fn relaxed_slopes(points: &[DVec2]) -> Vec<f64> {
     let top = points.iter().fold(0.0, |m: f64, p| m.max(p.x));
     let of = |(i, from): (usize, &DVec2)| {

@@ -1,6 +1,6 @@
-//! Searches that [`revmap`]'s own are compared with, as their authors have published them.
+//! Published searches for comparison with those of [`revmap`].
 //!
-//! Each is a [`Search`] of plain data, its GLSL in `shaders/`, and a [`Solver`] to name it by:
+//! Every search has a [`Search`] of plain data, its GLSL in `shaders/`, and a [`Solver`]:
 //!
 //! | search | reads | source |
 //! |---|---|---|
@@ -29,7 +29,7 @@ use revmap::settings::Solver;
 #[cfg(doc)]
 use revmap::search::Search;
 
-/// Every search, the library's own last, in the order in which reports list them.
+/// Every search, in the order of reports, with the library's own last.
 pub const ALL: [Solver; 9] = [
     LINEAR,
     RELIEF,
@@ -45,7 +45,7 @@ pub const ALL: [Solver; 9] = [
 /// The search of this name.
 ///
 /// # Errors
-/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) where there is none.
+/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) if there is none.
 pub fn named(name: &str) -> Result<Solver> {
     Solver::named(name, &ALL)
 }

@@ -37,7 +37,7 @@ static SECANT_SEARCH: Search = linear(
     2,
 );
 
-/// `form`: as `linear.glsl` has it.
+/// `form` has the values of `linear.glsl`.
 const fn linear(
     name: &'static str,
     about: &'static str,
@@ -74,7 +74,7 @@ static CIRCLE_SEARCH: Search = Search {
         tells_bevels: true,
         rgba8: true,
     },
-    // Before the halvings of a bevel.
+    // Steps before the halvings that a bevel adds.
     steps: Some(Steps {
         default: 20,
         beveled: 25,

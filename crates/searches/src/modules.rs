@@ -4,7 +4,7 @@ use crate::list::modules;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::search::{SearchModule, Words, unpacked};
 
-/// Sizes and hashes of what `build.rs` has made.
+/// Sizes and hashes of the files from `build.rs`.
 #[allow(clippy::unreadable_literal, dead_code)]
 pub mod generated {
     include!(concat!(env!("OUT_DIR"), "/modules.rs"));

@@ -4,7 +4,7 @@ use crate::modules::generated as g;
 use revmap::search::unpacked;
 use std::collections::BTreeSet;
 
-/// The list of modules is finite and known; whoever lengthens it sees by how much.
+/// Fixes the number of modules, so that an addition is noticed.
 #[test]
 fn modules_are_few() {
     let names: BTreeSet<String> = modules().iter().map(|listed| listed.name()).collect();
@@ -13,8 +13,8 @@ fn modules_are_few() {
     assert_eq!(g::packed().filter(|packed| is_spirv(packed)).count(), 60);
 }
 
-/// What is kept was made from today's sources; and word for word, where the same compiler makes it
-/// here.
+/// Stored SPIR-V was made from today's sources, and is equal word for word if the same compiler is
+/// used here.
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/spirv");

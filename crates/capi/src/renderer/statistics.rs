@@ -1,4 +1,4 @@
-//! What a renderer holds and did.
+//! Statistics of a renderer.
 
 use super::{Recorder, RevmapRenderer, with};
 use crate::fault::{Fault, RevmapResult, enter};

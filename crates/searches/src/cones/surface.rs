@@ -1,5 +1,5 @@
-//! The surface of a contour as the rows of a cone map have it: a slope in each, or a level face
-//! where that is closer.
+//! The surface of a contour in the rows of a cone map: a slope in each, or a level face if that is
+//! closer.
 
 use glam::DVec2;
 use revmap::error::{Error, ErrorKind, Result};
@@ -8,7 +8,7 @@ use revmap::surface::Contour;
 /// A row's level face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Level {
-    /// Its height, in rows from the row's lower border.
+    /// The face's height, in rows from the row's lower border.
     part: f64,
     /// The radius just below it and just above.
     radii: [f64; 2],
@@ -18,7 +18,7 @@ impl Level {
     const PARTS: f64 = 2047.0;
     const RADII: f64 = 4095.0;
 
-    /// As it is kept: the upper radius rounded up, the others to the nearest.
+    /// The stored form: the upper radius rounded up, the others to the nearest.
     fn kept(self, reach: f64) -> Self {
         let upper = (self.radii[1] / reach * Self::RADII)
             .ceil()
@@ -29,7 +29,7 @@ impl Level {
         }
     }
 
-    /// The row's third and fourth number, of a level that is kept.
+    /// The row's third and fourth number, for a level in stored form.
     pub(super) fn numbers(self, reach: f64) -> [f32; 2] {
         let (p, q) = (self.part * Self::PARTS, self.radii[1] / reach * Self::RADII);
         [
@@ -38,7 +38,7 @@ impl Level {
         ]
     }
 
-    /// The row's radius at `x`, in rows from its lower border, where its own are `ends`.
+    /// The row's radius at `x`, in rows from its lower border; `ends` are the radii at its borders.
     fn radius(self, ends: [f64; 2], x: f64) -> f64 {
         if x < self.part {
             ends[0] + (self.radii[0] - ends[0]) * x / self.part
@@ -48,9 +48,9 @@ impl Level {
     }
 }
 
-/// The surface as rows have it.
+/// The surface in rows.
 pub(super) struct Surface {
-    /// From below.
+    /// Rows from below.
     pub(super) rows: Vec<Row>,
     /// Every corner `(r, z)`, upwards.
     pub(super) points: Vec<DVec2>,
@@ -58,18 +58,18 @@ pub(super) struct Surface {
     pub(super) reach: f64,
 }
 
-/// One of its rows.
+/// A row of the surface.
 pub(super) struct Row {
-    /// At its borders, seen from within.
+    /// Radii at the row's borders, as limits from within.
     pub(super) radii: [f64; 2],
     pub(super) level: Option<Level>,
-    /// Its lower end among the points.
+    /// Index of the row's lower end among the points.
     pub(super) first: usize,
 }
 
 impl Surface {
     pub(super) fn new(contour: &Contour, rows: usize) -> Result<Self> {
-        /// Samples of a row that decide on its form.
+        /// Number of samples of a row that decide on its form.
         const FINE: usize = 8;
         let n = rows as f64;
         let borders = crossings(contour, rows, 0.0);
@@ -154,8 +154,8 @@ fn sides(contour: &Contour) -> impl Iterator<Item = [DVec2; 2]> {
     })
 }
 
-/// Where the boundary is crossed going outwards, just above and just below each height `(i + shift)
-/// / rows`.
+/// Radii at which the boundary is crossed going outwards, just above and just below each height
+/// `(i + shift) / rows`.
 fn crossings(contour: &Contour, rows: usize, shift: f64) -> Vec<[Vec<f64>; 2]> {
     let n = rows as f64;
     let mut all: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows + 1];
@@ -181,7 +181,7 @@ fn crossings(contour: &Contour, rows: usize, shift: f64) -> Vec<[Vec<f64>; 2]> {
     all
 }
 
-/// The mean height of what lies all but level in each row.
+/// The mean height of the nearly level sides in each row.
 fn levels(contour: &Contour, rows: usize) -> Vec<Option<f64>> {
     let n = rows as f64;
     let mut sums = vec![[0.0; 2]; rows];
@@ -198,7 +198,7 @@ fn levels(contour: &Contour, rows: usize) -> Vec<Option<f64>> {
             .take(row(high.y) + 1)
             .skip(row(low.y))
         {
-            // What of the side lies within the row.
+            // The part of the side within the row.
             let (from, to) = (low.y.max(i as f64 / n), high.y.min((i + 1) as f64 / n));
             let share = if height > 0.0 {
                 ((to - from) / height).max(0.0)

@@ -51,7 +51,7 @@ fn what_is_not_single_valued_is_refused() {
         0.0,
     );
     assert!(Cones::new(&cup, 64).is_err());
-    // A cavity that is lower than a row is not seen.
+    // A cavity that is lower than a row is missed.
     let scratched = [
         [0.0, 0.1],
         [0.3, 0.1],
@@ -61,7 +61,7 @@ fn what_is_not_single_valued_is_refused() {
         [0.0, 0.9],
     ];
     assert!(Cones::new(&contour(&scratched, 0.0), 64).is_ok());
-    // However far it is extended.
+    // The column is single-valued with every extension.
     let column = [
         [0.0, 0.1],
         [0.1, 0.1],
@@ -102,7 +102,7 @@ fn level_faces_keep_their_height() {
     ];
     for (row, wanted) in cones.rows.iter().zip(expected) {
         for (a, b) in row.iter().zip(wanted) {
-            // The face's height is kept to 1 / 2047 of the row.
+            // The face's height is stored to 1 / 2047 of the row.
             let tolerance = if b < 0.0 { 0.0 } else { 1e-3 * b.max(1.0) };
             assert!((a - b).abs() <= tolerance, "{row:?} is not {wanted:?}");
         }
@@ -110,7 +110,7 @@ fn level_faces_keep_their_height() {
     assert_eq!((cones.rows[9][2], cones.reach), (0.2, 0.3));
 }
 
-/// Every cone of every row against every part of the surface, from all over the row.
+/// Compares every cone of every row with every part of the surface, from all over the row.
 fn assert_empty(cones: &Cones) -> std::result::Result<(), TestCaseError> {
     let n = cones.rows.len() as f64;
     let mut surface = Vec::new();
