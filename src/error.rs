@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// The result of every function in this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The response that a program has to a failure.
+/// Kinds of failure, by what a program can do about them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ErrorKind {
     /// Fix the call: its arguments, or the order of calls, are invalid.
@@ -46,7 +46,7 @@ pub enum ErrorKind {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
-    /// The response that a program has.
+    /// The kind, by what a program can do about it.
     pub kind: ErrorKind,
     /// The file concerned.
     pub file: Option<PathBuf>,

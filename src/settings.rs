@@ -180,7 +180,7 @@ pub enum Planes {
     Color,
     /// Depth only, for shadow maps. In a host's pass only.
     Depth {
-        /// Depth along parallel rays, as for a directional light.
+        /// True for depth along parallel rays, as for a directional light.
         parallel: bool,
     },
     /// Everything a [`Frame`](crate::frame::Frame) holds, in 32-bit floats.

@@ -128,7 +128,7 @@ impl<D: Fn(usize) -> f64> Screen<'_, D> {
             let depth = 1.0 / (a.depth.recip() * (1.0 - s) + b.depth.recip() * s);
             let (bend, pixel_size) = (a.reach + (b.reach - a.reach) * s, self.pixel_size * depth);
             let reach = bend + 2.0 * pixel_size;
-            // Line and ray may disagree on the side of a pixel's middle that is close to the line.
+            // The line and the ray may disagree on the side of a pixel middle close to the line.
             let shows = |across: u32| (self.depth)(number(across) as usize) - depth <= reach;
             let divides = |low: u32| low + 1 < width && shows(low) != shows(low + 1);
             if rest.min(1.0 - rest) < UNSURE && !divides(low) {

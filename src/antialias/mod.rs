@@ -158,7 +158,8 @@ fn mixed(blend: &Blend, color: &impl Fn(usize) -> [f32; 4]) -> [f32; 4] {
     let [r, g, b, a]: [f32; 4] = std::array::from_fn(|c| {
         let (a, b) = (own.0[c], further.0[c]);
         let near = a * own.1 + b * further.1;
-        // The colour from further in is limited to the range of both.
+        // The mix with the colour from further in is at least half of the smaller and at most the
+        // larger of the two.
         let [least, most] = [0.5 * a.min(b), a.max(b)].map(|v| covered * v);
         beyond.0[c] * beyond.1 + near.max(least).min(most)
     });
