@@ -102,8 +102,8 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Paints a group's children onto the layer. `to_profile` maps the group's coordinates to `(r,
-    /// z)`. Returns the number of fills and strokes.
+    /// Paints a group's children onto the layer. `to_profile` maps the group's coordinates to
+    /// `(r, z)`. Returns the number of fills and strokes.
     fn draw_children(
         &self,
         group: &usvg::Group,

@@ -1,9 +1,9 @@
 //! A **profile**: the solid region of the meridian half-plane that is turned about the axis.
 //!
-//! Coordinates are `(r, z)` in object units. The axis is `r = 0`; the shape box extends from `z =
-//! 0` to `z = 1` and to the radius `R`. A profile comes from a picture, a drawing or a polygon.
-//! Every profile holds one [`Outline`]. Maps, arc lengths, surfaces, meshes and the reference are
-//! all computed from this outline.
+//! Coordinates are `(r, z)` in object units. The axis is `r = 0`; the shape box extends from
+//! `z = 0` to `z = 1` and to the radius `R`. A profile comes from a picture, a drawing or a
+//! polygon. Every profile holds one [`Outline`]. Maps, arc lengths, surfaces, meshes and the
+//! reference are all computed from this outline.
 
 mod area;
 #[cfg(feature = "drawing")]

@@ -7,11 +7,11 @@ use glam::DVec3;
 /// The rays of a camera for pictures of one size.
 ///
 /// Let `f = normalize(target - eye)`, `right = normalize(f x up)` and `up' = right x f`. The ray
-/// through the centre of pixel `(i, j)` is `eye + t (f + x right + y up')`, with `x = (2 (i + 1/2)
-/// / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`. The direction is not
-/// normalised: `t` is the depth along `f`. Pixels are square, so `right` and `up` are stored
-/// multiplied by the width of a pixel at depth 1, `2 tan(fov/2) / h`. A pixel's position is the
-/// number of such steps from the middle.
+/// through the centre of pixel `(i, j)` is `eye + t (f + x right + y up')`, with
+/// `x = (2 (i + 1/2) / w - 1) tan(fov/2) w/h`, `y = (1 - 2 (j + 1/2) / h) tan(fov/2)`. The
+/// direction is not normalised: `t` is the depth along `f`. Pixels are square, so `right` and `up`
+/// are stored multiplied by the width of a pixel at depth 1, `2 tan(fov/2) / h`. A pixel's position
+/// is the number of such steps from the middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFrame {
     /// The eye, world units.
@@ -22,8 +22,8 @@ pub struct CameraFrame {
     pub right: DVec3,
     /// Step of one pixel up, at depth 1.
     pub up: DVec3,
-    /// The point of the picture in the view direction, in pixels from its upper left corner: `(w /
-    /// 2, h / 2)` less the [shift](Camera::shift).
+    /// The point of the picture in the view direction, in pixels from its upper left corner:
+    /// `(w / 2, h / 2)` less the [shift](Camera::shift).
     pub middle: [f64; 2],
 }
 

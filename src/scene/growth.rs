@@ -2,8 +2,9 @@
 //!
 //! A grown box is drawn like any other. The outline is put into a larger box, and the whole is
 //! scaled so that this box is one unit high again. Offset, axis and placement are transformed to
-//! match. Let `k = 1 / (1 + low + high)` and `z' = k (z + low)`. The depth is `u = 1 - z = u' / k -
-//! high`, so the offset keeps its form: `k w = k (e - b high) + b min(u', k (c + high))`.
+//! match. Let `k = 1 / (1 + low + high)` and `z' = k (z + low)`. The depth is
+//! `u = 1 - z = u' / k - high`, so the offset keeps its form: `k w = k (e - b high) + b min(u', k
+//! (c + high))`.
 
 use super::{Object, Offset, Placement};
 use crate::profile::{Outline, Profile, Raster};

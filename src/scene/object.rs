@@ -152,8 +152,8 @@ impl Default for Placement {
     }
 }
 
-/// The offset `w(z)` between the profile and the surface `F = d - w = 0`: `w = extend + bevel *
-/// min(u, chamfer)`, with the depth `u = 1 - z`.
+/// The offset `w(z)` between the profile and the surface `F = d - w = 0`:
+/// `w = extend + bevel * min(u, chamfer)`, with the depth `u = 1 - z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     /// `e`, object units; negative insets.
@@ -231,8 +231,8 @@ pub enum BumpForm {
     /// (Mikkelsen 2010).
     #[default]
     SurfaceGradient,
-    /// The formula as printed in the papers on revolution mapping, without the factor `1 / (2 pi
-    /// r)` of the azimuth.
+    /// The formula as printed in the papers on revolution mapping, without the factor
+    /// `1 / (2 pi r)` of the azimuth.
     Papers,
 }
 

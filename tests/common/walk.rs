@@ -5,9 +5,9 @@
 //! # The walk
 //!
 //! The ray is `o + t v`, about the axis. `z` is measured from the box's floor, and `t` from the
-//! ray's entry into the box, so that coordinates are small. Let `a = vx^2 + vy^2`, `b = ox vx + oy
-//! vy`, `c = ox^2 + oy^2`. Then `r^2(t) = c + t (2 b + t a)`, least at `-b / a`. Rows are passed in
-//! the order of `t`.
+//! ray's entry into the box, so that coordinates are small. Let `a = vx^2 + vy^2`,
+//! `b = ox vx + oy vy`, `c = ox^2 + oy^2`. Then `r^2(t) = c + t (2 b + t a)`, least at `-b / a`.
+//! Rows are passed in the order of `t`.
 //!
 //! 1. Begin at the top level of the tree, in the row of the ray's first point.
 //! 2. The node of that row at the present level ends at a row's border, which the ray crosses at
@@ -23,8 +23,8 @@
 //!
 //! # The patch
 //!
-//! `G` along the ray is `al t^2 + 2 be t + ga`. `G` falls, from out to in, at one root only: `t =
-//! (-be - s) / al`, `s^2 = be^2 - al ga`. This is `be <= 0 ? ga / (s - be) : -(be + s) / al`,
+//! `G` along the ray is `al t^2 + 2 be t + ga`. `G` falls, from out to in, at one root only:
+//! `t = (-be - s) / al`, `s^2 = be^2 - al ga`. This is `be <= 0 ? ga / (s - be) : -(be + s) / al`,
 //! without cancellation or division by an `al` of zero (a plane with `be > 0` gives an infinity,
 //! and no hit). A ray that starts inside the solid searches for the exit in the same way, with
 //! `-G`.

@@ -244,8 +244,8 @@ impl Solid {
         }
     }
 
-    /// The points at which the ray passes from cell to cell, including the ends of the box: `(t
-    /// from the start, axis of the plane)`, in order.
+    /// The points at which the ray passes from cell to cell, including the ends of the box:
+    /// `(t from the start, axis of the plane)`, in order.
     fn cuts(&self, start: DVec3, direction: DVec3, clip: Clip) -> Vec<(f64, usize)> {
         let length = clip.t[1] - clip.t[0];
         let mut cuts = vec![(0.0, clip.axis[0])];

@@ -2,10 +2,10 @@
 //!
 //! `F = d - w` vanishes only where the nearest part of the outline, a segment's line or a corner,
 //! is at distance `|w|`. `w` is linear in `z` (in two pieces with a chamfer), so a segment gives
-//! `alpha r + beta z = gamma`, a frustum of a cone: a quadratic in `t`. A corner gives `(r -
-//! pr)^2 + (z - pz)^2 = w^2`, a conic turned about the axis: a quartic. All roots, sorted, cut the
-//! ray into pieces on each of which `F` keeps its sign. The sign in the middle of each piece
-//! distinguishes inside from outside. Roots that belong to no surface do no harm. This method
+//! `alpha r + beta z = gamma`, a frustum of a cone: a quadratic in `t`. A corner gives
+//! `(r - pr)^2 + (z - pz)^2 = w^2`, a conic turned about the axis: a quartic. All roots, sorted,
+//! cut the ray into pieces on each of which `F` keeps its sign. The sign in the middle of each
+//! piece distinguishes inside from outside. Roots that belong to no surface do no harm. This method
 //! shares only the input and output types with the bracketing method.
 //!
 //! The time grows with the square of the number of segments, and replicas are not supported: this
