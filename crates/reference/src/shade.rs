@@ -22,10 +22,10 @@ const LIFT: f64 = 1e-6;
 /// light begins at least `least_lift` off the surface, world units.
 ///
 /// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
-/// (n.l > 0 ? max(0, n.h)^shininess :
-/// 0))`. `l` points towards the light, `h` half way between `l` and the viewer. `n`, tilted by the
-/// bumps, is turned to the viewer's side if the surface faces away. A hidden light adds nothing.
-/// Soft shadows are drawn as hard ones, since they are an estimate without a ground truth.
+/// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
+/// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
+/// away. A hidden light adds nothing. Soft shadows are drawn as hard ones, since they are an
+/// estimate without a ground truth.
 pub(super) fn shade(
     scene: &Scene,
     reference: &Reference,
