@@ -1,20 +1,20 @@
-//! The modules of a search. Build scripts include this file, so it depends on nothing.
+//! Which modules a search is compiled to. Build scripts include this file, so it depends on nothing.
 
-/// The place in which a module traces rays.
+/// Where a module traces rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pass {
-    /// Fragments of shape boxes and of tiles.
+    /// In fragments of shape boxes and of tiles.
     Fragment,
-    /// Compute, through tiles of pixels, each of one copy.
+    /// In compute, through tiles of pixels, each of one copy.
     Tile,
-    /// Compute, through tiles of pixels, each with a list of copies.
+    /// In compute, through tiles of pixels, each with a list of copies.
     Copies,
 }
 
-/// The features of a solid besides its shape; each value includes those before it.
+/// What a solid may have besides its shape; each holds what stands before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Features {
-    /// Only one colour, one solid in its box, no shadows.
+    /// One colour, one solid in its box, no shadows.
     Plain,
     /// Maps of colour and bumps.
     Textured,
@@ -22,7 +22,7 @@ pub enum Features {
     Full,
 }
 
-/// The stored data of a hit.
+/// What is stored of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
     /// Colour.
@@ -34,19 +34,19 @@ pub enum Output {
 /// One module of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SearchModule {
-    /// The place in which rays are traced.
+    /// Where rays are traced.
     pub pass: Pass,
-    /// The supported features of solids.
+    /// What solids may have.
     pub features: Features,
-    /// The stored data.
+    /// What is stored.
     pub output: Output,
-    /// True if it reads a table of its own instead of the shape map.
+    /// Whether it reads a table of its own, not the shape map.
     pub table: bool,
-    /// True if there is a bound on its steps.
+    /// Whether there is a bound on its steps.
     pub bounded: bool,
-    /// True if there may be a bevel.
+    /// Whether there may be a bevel.
     pub beveled: bool,
-    /// True if the map is the papers' texture of unsigned distances, 8 bits a channel.
+    /// Whether the map is the papers' texture of unsigned distances, 8 bits a channel.
     pub rgba8: bool,
 }
 
@@ -61,7 +61,7 @@ impl SearchModule {
         }
     }
 
-    /// The macros for its compilation.
+    /// What it is compiled with.
     #[must_use]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
         let shaded = self.features == Features::Full;
@@ -83,7 +83,7 @@ impl SearchModule {
         all
     }
 
-    /// The module's name, without the search's.
+    /// Its name, without the search's.
     #[must_use]
     pub fn name(&self) -> String {
         let mut name = format!("{:?}.{:?}.{:?}", self.pass, self.features, self.output);
@@ -93,7 +93,7 @@ impl SearchModule {
         name.to_lowercase()
     }
 
-    /// Returns true if this module can replace `wanted`: it does at least the same work.
+    /// Whether it does the work of `wanted`, and more perhaps.
     #[must_use]
     pub fn serves(&self, wanted: &Self) -> bool {
         self.features >= wanted.features
