@@ -1,5 +1,5 @@
-//! Turns `shaders-glsl/` into what Rust embeds: the SPIR-V words of every module that `src/shader/list.rs` lists, and the numbers that
-//! `include/core/variant.glsl` names.
+//! Turns `shaders-glsl/` into what Rust embeds: the SPIR-V words of every module that
+//! `src/shader/list.rs` lists, and the numbers that `include/core/variant.glsl` names.
 //!
 //! The feature `shaderc` compiles the GLSL here; without it the build uses the SPIR-V stored in
 //! `shaders-spirv/`. `REVMAP_KEEP_SPIRV=1 cargo build` renews the stored SPIR-V.

@@ -262,8 +262,8 @@ impl<'a> Nodes<'a> {
             .collect()
     }
 
-    /// Returns true for an anti-aliased picture: at a quarter of the curve's links one end is
-    /// neither as light nor as dark as the nodes around it.
+    /// Returns true for an anti-aliased picture: at more than a quarter of the curve's links one
+    /// end is neither as light nor as dark as the nodes around it.
     fn graded(&self, trails: &[Links]) -> bool {
         let grey = |&(i, j): &(usize, usize)| {
             let (mut low, mut high) = (1.0f64, 0.0f64);
