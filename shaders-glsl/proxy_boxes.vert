@@ -65,5 +65,5 @@ void main()
         gl_Position = strip_corner(i, vertex - BOX_VERTICES);
     }
     hand_over(i, frame.dir_00.w);
-    hand_over_tree();
+    hand_over_tree(EVERYWHERE);
 }

@@ -73,6 +73,7 @@ void main()
         inner.x = inner.x <= inner.y ? inner.x : 1e30;
     }
     PatchRuns runs = NO_PATCHES;
+    vec2 all = vec2(3e38, -3e38);
     for (uint w = 0u; w << 5 < header.x; ++w) {
         uint rest = met[w];
         while (rest != 0u) {
@@ -81,13 +82,12 @@ void main()
             vec2 span;
             bool meets = k < header.x && may_meet(beam, min(k, header.x), span) && span.x <= outer.y;
             cut = cut || meets && span.x < inner.x;
+            all = meets ? vec2(min(all.x, span.x), max(all.y, span.y)) : all;
             take_patch(runs, k, meets);
         }
     }
     bool shows = present && runs.any && outer.x <= outer.y;
-    if (shows && cut) {
-        append(LIST_LENGTHS, uvec2(place, number), 0u);
-    } else if (shows) {
-        append_runs(uvec2(place, number), runs);
+    if (shows && (cut || !append_runs(uvec2(place, number), runs))) {
+        append(LIST_LENGTHS, uvec4(place, number, floatBitsToUint(all)));
     }
 }

@@ -5,12 +5,14 @@
 
 void main()
 {
+    begin_frame();
     share_record();
     barrier();
+    take_shared_record();
     share_instance();
     share_patches();
     barrier();
-    begin_tile();
+    begin_tile(shared_copy());
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     bool found = search_listed(pixel, nearest);

@@ -4,6 +4,9 @@
 #include "stage/vertex.glsl"
 #include "stage/tree_varyings.glsl"
 #include "stage/quad.glsl"
+#if SEARCH == SEARCH_QUADRIC
+#include "stage/beam_span.glsl"
+#endif
 
 void main()
 {
@@ -12,5 +15,12 @@ void main()
     Instance i = begin(min(quad.instance, uint(instances.length()) - 1u));
     place_quad(quad);
     hand_over(i, frame.dir_00.w);
-    hand_over_tree();
+    vec2 span = EVERYWHERE;
+#if SEARCH == SEARCH_QUADRIC
+    if (OUTSIDE != 0u) {
+        PixelRays rays = pixel_rays(i);
+        span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i), 0.0));
+    }
+#endif
+    hand_over_tree(span);
 }

@@ -6,15 +6,19 @@
 
 void main()
 {
+    begin_frame();
     share_record();
     barrier();
+    take_shared_record();
     share_instance();
     barrier();
-    begin_tile();
+    begin_tile(shared_copy());
+    // Tiles of the last list bring the span; those in their own order do not.
+    vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     nearest.instance = 0u;
-    bool found = trace(ray_origin(tile_rays, pixel), ray_direction(tile_rays, pixel), tile_rays.base, nearest.hit);
+    bool found = trace(ray_origin(tile_rays, pixel), ray_direction(tile_rays, pixel), tile_rays.base, span, nearest.hit);
     nearest.steps = nearest.hit.steps;
     nearest.exhausted = nearest.hit.exhausted;
     nearest.depth = depth_of(tile_rays.base + nearest.hit.t);

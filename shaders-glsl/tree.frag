@@ -15,7 +15,10 @@ void main()
     take_over_tree();
     PixelRays rays = varying_rays();
     Hit hit;
-    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, hit);
+    hit.steps = 0u;
+    hit.exhausted = false;
+    vec2 span = span_of_rays();
+    bool found = span.x <= span.y && trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;

@@ -105,7 +105,7 @@ pub(crate) struct Pushed {
     pub tiles: u32,
     /// Number of the list that is read.
     pub list: u32,
-    /// Number of the only solid; for tiles of several copies.
+    /// Number of the only solid.
     pub solid: u32,
 }
 
@@ -372,6 +372,13 @@ impl FramePlan {
                 object: layer.objects[0],
                 call,
             };
+            let solid = objects[layer.objects[0] as usize].number;
+            let direct = |records: &Range<u32>| Pushed {
+                first: records.start,
+                count: records.end - records.start,
+                solid,
+                ..Pushed::default()
+            };
             for records in chunks(&tiles.listed) {
                 let count = records.end - records.start;
                 let (first, tiles) = (records.start, self.list_words);
@@ -381,7 +388,7 @@ impl FramePlan {
                     heads: head,
                     tiles,
                     list,
-                    solid: 0,
+                    solid,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));
@@ -404,33 +411,17 @@ impl FramePlan {
                 self.list_words += 4 * TILE_LISTS * count;
             }
             for records in chunks(&tiles.single) {
-                let count = records.end - records.start;
-                let call = Call::Dispatch(count, direct(&records));
+                let call = Call::Dispatch(records.len() as u32, direct(&records));
                 later.push(step(1, Kind::TileTree, base, call));
             }
             for records in chunks(&tiles.several) {
-                let count = records.end - records.start;
-                let solid = objects[layer.objects[0] as usize].number;
-                let pushed = Pushed {
-                    solid,
-                    ..direct(&records)
-                };
-                let call = Call::Dispatch(count, pushed);
+                let call = Call::Dispatch(records.len() as u32, direct(&records));
                 later.push(step(phase, Kind::TileCopies, base, call));
             }
             phase += u32::from(!tiles.several.is_empty());
         }
         later.sort_by_key(|step| step.phase);
         self.steps.extend(later);
-    }
-}
-
-/// Parameters of tiles that are processed in their stored order.
-fn direct(records: &Range<u32>) -> Pushed {
-    Pushed {
-        first: records.start,
-        count: records.end - records.start,
-        ..Pushed::default()
     }
 }
 

@@ -19,7 +19,7 @@
 //! | `object.N.profile_threshold` | pictures: grey level below which a pixel is solid, 0 black to 1 white | `0.5` |
 //! | `object.N.profile_invert` | pictures: whether light is solid instead | `false` |
 //! | `object.N.profile_smooth` | pictures: noise is blurred away by a Gaussian of this many texels (pixels of the picture) | `0` |
-//! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5` |
+//! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5`, or the largest `r` of the points if that is more |
 //! | `object.N.map_rows` | rows of the shape map | `512` |
 //! | `object.N.color` | linear RGB | `[0.8, 0.8, 0.8]` |
 //! | `object.N.color_map` | an image in place of `color` | |
@@ -328,7 +328,11 @@ impl Reader {
             invert: keys.flag("profile_invert")?.unwrap_or(plain.invert),
             smooth: keys.number("profile_smooth")?.unwrap_or(plain.smooth),
         };
-        let radius = keys.number("radius")?.unwrap_or(RADIUS);
+        let widths = polygon.iter().flatten().map(|[r, _]| *r);
+        let widths = widths.filter(|r| r.is_finite());
+        let radius = keys
+            .number("radius")?
+            .unwrap_or_else(|| widths.fold(RADIUS, f64::max));
         match (file, polygon) {
             (Some(file), None) => {
                 let profile = self

@@ -200,6 +200,21 @@ fn objects_of_one_file_and_axis_share_their_profile() {
     assert_eq!((a.radius, c.radius), (0.5, 0.25));
 }
 
+/// A polygon that is wider than the usual box gets a box of its own width. A radius that is given
+/// stays, and the box cuts the polygon.
+#[test]
+fn a_wide_polygon_gets_a_wide_box() {
+    let radius = |polygon: &str, given: &str| {
+        let text = format!("{CAMERA_LINES}[[object]]\npolygon = {polygon}\n{given}");
+        let scene = parse(&text, std::path::Path::new("."), &[]).unwrap();
+        scene.objects[0].profile.radius
+    };
+    let wide = "[[0, 0], [1, 0], [1, 1], [0, 1]]";
+    assert_eq!(radius(wide, ""), 1.0);
+    assert_eq!(radius(wide, "radius = 0.5"), 0.5);
+    assert_eq!(radius("[[0, 0], [0.3, 0], [0, 1]]", ""), 0.5);
+}
+
 #[test]
 fn a_named_projection_goes_before_the_file_name() {
     let folder = folder();

@@ -1,20 +1,20 @@
-//! Which modules a search is compiled to. Build scripts include this file, so it depends on nothing.
+//! The modules of a search. Build scripts include this file, so it depends on nothing.
 
-/// Where a module traces rays.
+/// The place in which a module traces rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pass {
-    /// In fragments of shape boxes and of tiles.
+    /// Fragments of shape boxes and of tiles.
     Fragment,
-    /// In compute, through tiles of pixels, each of one copy.
+    /// Compute, through tiles of pixels, each of one copy.
     Tile,
-    /// In compute, through tiles of pixels, each with a list of copies.
+    /// Compute, through tiles of pixels, each with a list of copies.
     Copies,
 }
 
-/// What a solid may have besides its shape; each holds what stands before it.
+/// The features of a solid besides its shape; each value includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Features {
-    /// One colour, one solid in its box, no shadows.
+    /// Only one colour, one solid in its box, no shadows.
     Plain,
     /// Maps of colour and bumps.
     Textured,
@@ -22,7 +22,7 @@ pub enum Features {
     Full,
 }
 
-/// What is stored of a hit.
+/// The stored data of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
     /// Colour.
@@ -34,19 +34,19 @@ pub enum Output {
 /// One module of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SearchModule {
-    /// Where rays are traced.
+    /// The place in which rays are traced.
     pub pass: Pass,
-    /// What solids may have.
+    /// The supported features of solids.
     pub features: Features,
-    /// What is stored.
+    /// The stored data.
     pub output: Output,
-    /// Whether it reads a table of its own, not the shape map.
+    /// True if it reads a table of its own instead of the shape map.
     pub table: bool,
-    /// Whether there is a bound on its steps.
+    /// True if there is a bound on its steps.
     pub bounded: bool,
-    /// Whether there may be a bevel.
+    /// True if there may be a bevel.
     pub beveled: bool,
-    /// Whether the map is the papers' texture of unsigned distances, 8 bits a channel.
+    /// True if the map is the papers' texture of unsigned distances, 8 bits a channel.
     pub rgba8: bool,
 }
 
@@ -61,7 +61,7 @@ impl SearchModule {
         }
     }
 
-    /// What it is compiled with.
+    /// The macros for its compilation.
     #[must_use]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
         let shaded = self.features == Features::Full;
@@ -83,7 +83,7 @@ impl SearchModule {
         all
     }
 
-    /// Its name, without the search's.
+    /// The module's name, without the search's.
     #[must_use]
     pub fn name(&self) -> String {
         let mut name = format!("{:?}.{:?}.{:?}", self.pass, self.features, self.output);
@@ -93,7 +93,7 @@ impl SearchModule {
         name.to_lowercase()
     }
 
-    /// Whether it does the work of `wanted`, and more perhaps.
+    /// Returns true if this module can replace `wanted`: it does at least the same work.
     #[must_use]
     pub fn serves(&self, wanted: &Self) -> bool {
         self.features >= wanted.features

@@ -28,14 +28,14 @@
 #include <vulkan/vulkan.h>
 
 /**
- * Number of this interface. It grows when a function or a field is taken away or changes its
+ * Number of this interface. The number grows when a function or a field is removed or changes its
  * meaning.
  */
 #define REVMAP_ABI 1
 
 /**
- * What a function says of itself: done, or the kind of its failure. A failure changes nothing else
- * than the failing function's documentation says, and leaves a text for revmap_last_error_text().
+ * The result of a function: success, or the kind of its failure. A failure changes only what the
+ * failing function's documentation says, and leaves a text for revmap_last_error_text().
  */
 enum RevmapResult
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -47,8 +47,7 @@ enum RevmapResult
      */
     REVMAP_RESULT_OK = 0,
     /**
-     * Arguments that make no sense: a null pointer, a wrong size, an unknown number, a call out of
-     * order.
+     * Invalid arguments: a null pointer, a wrong size, an unknown number, a call out of order.
      */
     REVMAP_RESULT_USAGE = 1,
     /**
@@ -105,7 +104,7 @@ typedef int32_t RevmapResult;
 #endif // __cplusplus
 
 /**
- * Which part of a picture or a drawing is the half-plane that is turned.
+ * The part of a picture or a drawing that is the half-plane to be turned.
  */
 enum RevmapAxis
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -113,7 +112,7 @@ enum RevmapAxis
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+     * The axis is the middle: the picture is a whole silhouette, and its right half is used.
      */
     REVMAP_AXIS_CENTER = 0,
     /**
@@ -130,7 +129,7 @@ typedef uint32_t RevmapAxis;
 #endif // __cplusplus
 
 /**
- * How the first hit along a ray is found.
+ * The search for the first hit along a ray.
  */
 enum RevmapSolver
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -138,7 +137,7 @@ enum RevmapSolver
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * What this version takes where none is named: REVMAP_SOLVER_EXACT.
+     * The default of this version: REVMAP_SOLVER_EXACT.
      */
     REVMAP_SOLVER_DEFAULT = 0,
     /**
@@ -158,7 +157,7 @@ enum RevmapSolver
      */
     REVMAP_SOLVER_CIRCLE = 4,
     /**
-     * Safe steps on the map alone, under every offset; rebuilds nothing when an offset changes.
+     * Safe steps on the map only, under every offset; rebuilds nothing when an offset changes.
      */
     REVMAP_SOLVER_LIVE = 5,
     /**
@@ -174,7 +173,7 @@ enum RevmapSolver
      */
     REVMAP_SOLVER_QUADRIC = 8,
     /**
-     * The same pieces, found by the rasteriser or by tiles of pixels.
+     * The pieces of REVMAP_SOLVER_QUADRIC, found by the rasteriser or by tiles of pixels.
      */
     REVMAP_SOLVER_EXACT = 9,
 };
@@ -187,7 +186,7 @@ typedef uint32_t RevmapSolver;
 #endif // __cplusplus
 
 /**
- * Where the distances of a shape map come from.
+ * The source of the distances of a shape map.
  */
 enum RevmapMapSource
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -220,7 +219,7 @@ typedef uint32_t RevmapMapSource;
 #endif // __cplusplus
 
 /**
- * How the distances of a shape map are stored on the device.
+ * The format of the distances of a shape map on the device.
  */
 enum RevmapMapFormat
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -249,7 +248,7 @@ typedef uint32_t RevmapMapFormat;
 #endif // __cplusplus
 
 /**
- * Which planes of a picture are drawn.
+ * The planes of a picture to draw.
  */
 enum RevmapPlanes
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -257,7 +256,7 @@ enum RevmapPlanes
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Colour alone, 8-bit sRGB.
+     * Colour only, 8-bit sRGB.
      */
     REVMAP_PLANES_COLOR = 0,
     /**
@@ -265,11 +264,11 @@ enum RevmapPlanes
      */
     REVMAP_PLANES_ALL = 1,
     /**
-     * Depth alone, for shadow maps, in a host's pass.
+     * Depth only, for shadow maps, in a host's pass.
      */
     REVMAP_PLANES_DEPTH = 2,
     /**
-     * The same along parallel rays.
+     * Depth only, along parallel rays.
      */
     REVMAP_PLANES_DEPTH_PARALLEL = 3,
 };
@@ -282,7 +281,7 @@ typedef uint32_t RevmapPlanes;
 #endif // __cplusplus
 
 /**
- * A plane that revmap_offscreen_read() gives. Row 0 is on top.
+ * A plane that revmap_offscreen_read() returns. Row 0 is on top.
  */
 enum RevmapPlane
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -298,8 +297,7 @@ enum RevmapPlane
      */
     REVMAP_PLANE_COLOR = 1,
     /**
-     * 1 float a pixel: distance from the eye along the ray, world units; infinite where nothing is
-     * hit.
+     * 1 float a pixel: distance from the eye along the ray, world units; infinite without a hit.
      */
     REVMAP_PLANE_DISTANCE = 2,
     /**
@@ -332,7 +330,7 @@ typedef uint32_t RevmapPlane;
 #endif // __cplusplus
 
 /**
- * Which end of the depth range is near.
+ * The near end of the depth range.
  */
 enum RevmapDepthOrder
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -357,7 +355,7 @@ typedef uint32_t RevmapDepthOrder;
 #endif // __cplusplus
 
 /**
- * How a host begins its pass.
+ * The command by which a host begins its pass.
  */
 enum RevmapPassKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -382,7 +380,7 @@ typedef uint32_t RevmapPassKind;
 #endif // __cplusplus
 
 /**
- * Where rays are traced.
+ * The stage that traces rays.
  */
 enum RevmapStage
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -407,7 +405,7 @@ typedef uint32_t RevmapStage;
 #endif // __cplusplus
 
 /**
- * How texture coordinates follow from the surface's points.
+ * The projection that gives the texture coordinates of surface points.
  */
 enum RevmapProjection
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -419,7 +417,7 @@ enum RevmapProjection
      */
     REVMAP_PROJECTION_CYLINDRICAL = 0,
     /**
-     * From above: x and y of the box.
+     * x and y of the box, seen from above.
      */
     REVMAP_PROJECTION_PLANAR = 1,
     /**
@@ -440,7 +438,7 @@ typedef uint32_t RevmapProjection;
 #endif // __cplusplus
 
 /**
- * How a height map tilts the normal.
+ * The formula by which a height map tilts the normal.
  */
 enum RevmapBumpForm
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -448,11 +446,11 @@ enum RevmapBumpForm
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * By the gradient along the surface.
+     * Gradient along the surface.
      */
     REVMAP_BUMP_FORM_SURFACE_GRADIENT = 0,
     /**
-     * As published, without the factor of the azimuth.
+     * The published formula, without the factor of the azimuth.
      */
     REVMAP_BUMP_FORM_PAPERS = 1,
 };
@@ -465,7 +463,7 @@ typedef uint32_t RevmapBumpForm;
 #endif // __cplusplus
 
 /**
- * How slopes are taken from heights.
+ * The filter that computes slopes from heights.
  */
 enum RevmapSlopeFilter
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -498,7 +496,7 @@ enum RevmapShadow
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * None; nothing is traced.
+     * No shadows; nothing is traced.
      */
     REVMAP_SHADOW_OFF = 0,
     /**
@@ -524,8 +522,8 @@ typedef uint32_t RevmapShadow;
 typedef struct RevmapColorMap RevmapColorMap;
 
 /**
- * A Vulkan device, opened by the library or borrowed from a host. What is made on it keeps what it
- * needs of it.
+ * A Vulkan device, opened by the library or borrowed from a host. Objects made on it keep the
+ * parts of it that they need.
  */
 typedef struct RevmapDevice RevmapDevice;
 
@@ -551,13 +549,13 @@ typedef struct RevmapPrewarm RevmapPrewarm;
 typedef struct RevmapProfile RevmapProfile;
 
 /**
- * Objects on a device, drawn into whatever the host draws into, with several frames in flight,
- * which take turns in slots. It must not be destroyed before the frames that it recorded are done.
+ * Objects on a device, drawn into the host's targets, with several frames in flight, which use
+ * slots in turn. The renderer must not be destroyed before the frames that it recorded are done.
  */
 typedef struct RevmapRenderer RevmapRenderer;
 
 /**
- * What a host has to enable on a device that it lends. No device extension is needed.
+ * Requirements for a device that a host lends. No device extension is needed.
  */
 typedef struct RevmapRequirements {
     /**
@@ -622,7 +620,7 @@ typedef struct RevmapHostDevice {
 } RevmapHostDevice;
 
 /**
- * What a device is.
+ * Properties of a device.
  */
 typedef struct RevmapDeviceInfo {
     /**
@@ -630,15 +628,15 @@ typedef struct RevmapDeviceInfo {
      */
     uint32_t size;
     /**
-     * 1 where the library has opened it with the validation layers, else 0.
+     * 1 if the library has opened it with the validation layers, else 0.
      */
     uint32_t validated;
     /**
-     * Pipelines compiled on it so far.
+     * Number of pipelines compiled on it so far.
      */
     uint64_t pipelines_compiled;
     /**
-     * Its name, UTF-8, ended by 0.
+     * Name of the device, UTF-8, ended by 0.
      */
     char name[256];
     /**
@@ -648,7 +646,7 @@ typedef struct RevmapDeviceInfo {
 } RevmapDeviceInfo;
 
 /**
- * How far the surface stands off the profile: extend + bevel * min(1 - z, chamfer), object units.
+ * Distance of the surface from the profile: extend + bevel * min(1 - z, chamfer), object units.
  */
 typedef struct RevmapOffset {
     /**
@@ -660,17 +658,17 @@ typedef struct RevmapOffset {
      */
     double bevel;
     /**
-     * Depth in [0, 1] below the top to which the bevel reaches. It is 1 by default.
+     * Depth in [0, 1] below the top to which the bevel reaches. The default is 1.
      */
     double chamfer;
 } RevmapOffset;
 
 /**
- * Where the box of a solid is. Its scale of (1, 1, 1) makes it one world unit high.
+ * Placement of a solid's box. With a scale of (1, 1, 1) the box is one world unit high.
  */
 typedef struct RevmapPlacement {
     /**
-     * Of the middle of the box's lower face, world units.
+     * Position of the middle of the box's lower face, world units.
      */
     double position[3];
     /**
@@ -684,7 +682,7 @@ typedef struct RevmapPlacement {
 } RevmapPlacement;
 
 /**
- * One solid of revolution, once or as many copies. Defaults: revmap_object_defaults().
+ * A solid of revolution, drawn once or as many copies. Defaults: revmap_object_defaults().
  */
 typedef struct RevmapObjectInfo {
     /**
@@ -696,11 +694,11 @@ typedef struct RevmapObjectInfo {
      */
     uint32_t map_rows;
     /**
-     * What is turned. Objects that share a profile share its maps.
+     * The profile that is turned about the axis. Objects that share a profile share its maps.
      */
     const struct RevmapProfile *profile;
     /**
-     * What messages call it, UTF-8; may be null.
+     * Name in messages, UTF-8; may be null.
      */
     const char *name;
     /**
@@ -736,7 +734,7 @@ typedef struct RevmapObjectInfo {
      */
     double bump;
     /**
-     * How often textures repeat around and along the solid.
+     * Repetitions of textures around and along the solid.
      */
     double texture_repeat[2];
     /**
@@ -744,15 +742,15 @@ typedef struct RevmapObjectInfo {
      */
     struct RevmapOffset offset;
     /**
-     * Where the axis stands in the box, each in [0, 1]; the middle is (0.5, 0.5).
+     * Position of the axis in the box, each in [0, 1]; the middle is (0.5, 0.5).
      */
     double axis[2];
     /**
-     * How many replicas the box holds along x, y, z; at least 1 each.
+     * Number of replicas in the box along x, y, z; at least 1 each.
      */
     uint32_t repeat[3];
     /**
-     * Whether every second replica along x, y, z is reflected: 0 or 1.
+     * 1 to reflect every second replica along x, y, z, else 0.
      */
     uint32_t mirror[3];
     /**
@@ -760,11 +758,11 @@ typedef struct RevmapObjectInfo {
      */
     uint32_t clip;
     /**
-     * Where it is, if it has no instances.
+     * Placement of a solid without instances.
      */
     struct RevmapPlacement placement;
     /**
-     * Where its copies are; read during the call; null where there are none.
+     * Placements of its copies; read during the call; null if there are none.
      */
     const struct RevmapPlacement *instances;
     /**
@@ -774,7 +772,7 @@ typedef struct RevmapObjectInfo {
 } RevmapObjectInfo;
 
 /**
- * How rays find the surface. Defaults: revmap_search_defaults().
+ * Settings of the search. Defaults: revmap_search_defaults().
  */
 typedef struct RevmapSearch {
     /**
@@ -786,11 +784,11 @@ typedef struct RevmapSearch {
      */
     uint32_t solver;
     /**
-     * Bound on the search's steps; 0 takes the solver's own.
+     * Bound on the search's steps; 0 uses the solver's default.
      */
     uint32_t max_steps;
     /**
-     * Rows of every shape map; 0 takes each object's own.
+     * Rows of every shape map; 0 uses each object's own value.
      */
     uint32_t map_rows;
     /**
@@ -803,18 +801,18 @@ typedef struct RevmapSearch {
     uint32_t map_format;
     /**
      * Smallest projected area, in pixels per visible band of an object's hull, at which the hull
-     * is drawn; below it the box is. UINT32_MAX: boxes alone.
+     * is drawn; below it the box is. UINT32_MAX: boxes only.
      */
     uint32_t proxy_min_pixels;
     /**
      * Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
-     * on patches follow it.
+     * on patches use it.
      */
     double tolerance;
 } RevmapSearch;
 
 /**
- * How a picture is drawn. Defaults: revmap_picture_defaults().
+ * Settings of a picture. Defaults: revmap_picture_defaults().
  */
 typedef struct RevmapPicture {
     /**
@@ -838,7 +836,7 @@ typedef struct RevmapPicture {
      */
     uint32_t planes;
     /**
-     * How rays find the surface.
+     * Settings of the search.
      */
     struct RevmapSearch search;
 } RevmapPicture;
@@ -856,11 +854,11 @@ typedef struct RevmapCamera {
      */
     double eye[3];
     /**
-     * What it looks at.
+     * The point that the camera looks at, world units.
      */
     double target[3];
     /**
-     * Which way is up.
+     * The upward direction.
      */
     double up[3];
     /**
@@ -884,7 +882,7 @@ typedef struct RevmapLight {
 } RevmapLight;
 
 /**
- * What lights all objects. Defaults: revmap_lighting_defaults().
+ * Lights and shadows of all objects. Defaults: revmap_lighting_defaults().
  */
 typedef struct RevmapLighting {
     /**
@@ -948,11 +946,12 @@ typedef struct RevmapTimes {
      */
     uint32_t size;
     /**
-     * Milliseconds that the CPU took to take over changes and to record.
+     * CPU time to apply changes and to record, milliseconds.
      */
     double prepare_ms;
     /**
-     * Milliseconds between timestamps of the device around the work; negative where it has none.
+     * Milliseconds between timestamps of the device around the work; negative if it has no
+     * timestamps.
      */
     double gpu_ms;
     /**
@@ -974,8 +973,7 @@ typedef struct RevmapPass {
      */
     uint32_t kind;
     /**
-     * Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
-     * number.
+     * Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number.
      */
     uint32_t samples;
     /**
@@ -987,35 +985,35 @@ typedef struct RevmapPass {
      */
     uint32_t planes;
     /**
-     * Of a render pass: the subpass, which has a depth attachment.
+     * For a render pass: the subpass, which has a depth attachment.
      */
     uint32_t subpass;
     /**
-     * Of a render pass: the pass. It must live as long as the renderer. Passes that are compatible
-     * with it may be begun instead.
+     * For a render pass: the pass. The pass must live as long as the renderer. Passes that are
+     * compatible with it may be begun instead.
      */
     VkRenderPass render_pass;
     /**
-     * Of dynamic rendering: formats of the colour attachments; read during the call.
+     * For dynamic rendering: formats of the colour attachments; read during the call.
      */
     const VkFormat *color_formats;
     /**
-     * Of dynamic rendering: number of the colour attachments.
+     * For dynamic rendering: number of the colour attachments.
      */
     uint32_t color_format_count;
     /**
-     * Of dynamic rendering: format of the depth attachment.
+     * For dynamic rendering: format of the depth attachment.
      */
     VkFormat depth_format;
     /**
-     * Of dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED where there is
+     * For dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED if there is
      * none.
      */
     VkFormat stencil_format;
 } RevmapPass;
 
 /**
- * What compute shaders write to, and fragments of REVMAP_PLANES_ALL besides their attachments.
+ * The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
  */
 typedef struct RevmapComputeTarget {
     /**
@@ -1054,11 +1052,11 @@ typedef struct RevmapView {
      */
     uint32_t depth_order;
     /**
-     * From world to view space.
+     * Matrix from world to view space.
      */
     double view[16];
     /**
-     * From view to clip space.
+     * Matrix from view to clip space.
      */
     double projection[16];
     /**
@@ -1069,13 +1067,13 @@ typedef struct RevmapView {
 } RevmapView;
 
 /**
- * An object of one renderer, which refuses those of others; never 0. It stays the same object
- * whatever is set, and is never another's once removed.
+ * An object of one renderer, which refuses those of others; never 0. The number refers to the same
+ * object for all its values, and is never reused after its removal.
  */
 typedef uint64_t RevmapObject;
 
 /**
- * What a renderer holds and did.
+ * Contents and work of a renderer.
  */
 typedef struct RevmapStatistics {
     /**
@@ -1104,15 +1102,15 @@ typedef struct RevmapStatistics {
      */
     uint32_t drawn_not;
     /**
-     * Objects that it draws by their boxes.
+     * Number of objects drawn by their boxes.
      */
     uint32_t drawn_by_box;
     /**
-     * By hulls.
+     * Number of objects drawn by hulls.
      */
     uint32_t drawn_by_hull;
     /**
-     * By tiles of the screen.
+     * Number of objects drawn by tiles of the screen.
      */
     uint32_t drawn_by_tiles;
     /**
@@ -1140,9 +1138,11 @@ const char *revmap_version(void);
 uint32_t revmap_abi(void);
 
 /**
- * Tells what a host has to enable on a physical device. The size of requirements must be set.
+ * Returns the requirements for a physical device that a host lends. The size of requirements must
+ * be set.
  *
- * Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what.
+ * Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what is
+ * missing.
  *
  * Thread: any.
  */
@@ -1157,7 +1157,7 @@ RevmapResult revmap_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_add
  * validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
  * environment.
  *
- * Fails with REVMAP_RESULT_UNSUPPORTED where there is none that has what is needed.
+ * Fails with REVMAP_RESULT_UNSUPPORTED if no device meets the requirements.
  *
  * Thread: any.
  */
@@ -1166,8 +1166,8 @@ RevmapResult revmap_device_open(const char *choice,
                                 struct RevmapDevice **device);
 
 /**
- * Borrows a host's device. All handles belong together. They must stay valid until this handle and
- * all that is made with it are destroyed, and the device is idle.
+ * Borrows a host's device. All handles belong together. The handles must stay valid until this
+ * handle and everything made with it are destroyed, and the device is idle.
  *
  * Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something.
  *
@@ -1177,14 +1177,14 @@ RevmapResult revmap_device_borrow(const struct RevmapHostDevice *host,
                                   struct RevmapDevice **device);
 
 /**
- * Tells what a device is. The size of info must be set.
+ * Returns the properties of a device. The size of info must be set.
  *
  * Thread: any.
  */
 RevmapResult revmap_device_info(const struct RevmapDevice *device, struct RevmapDeviceInfo *info);
 
 /**
- * Fails with REVMAP_RESULT_OTHER if the validation layers have had anything to say since the last
+ * Fails with REVMAP_RESULT_OTHER if the validation layers have reported a message since the last
  * call. A borrowed device's host has its own messenger, and this function always succeeds.
  *
  * Thread: any.
@@ -1193,7 +1193,7 @@ RevmapResult revmap_device_check(const struct RevmapDevice *device);
 
 /**
  * Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
- * another driver is passed over.
+ * another driver is ignored.
  *
  * Thread: any.
  */
@@ -1202,9 +1202,9 @@ RevmapResult revmap_device_add_pipeline_cache(const struct RevmapDevice *device,
                                               size_t count);
 
 /**
- * Gives the driver's compiled pipelines. With null bytes count becomes their number; else as many
- * are written as count says, which must not be fewer, and count becomes what was written. The
- * number grows as pipelines are compiled.
+ * Returns the driver's compiled pipelines. With null bytes, count becomes their number. Otherwise
+ * count is the room in bytes, which must be large enough, and becomes the number of bytes written.
+ * The number grows as pipelines are compiled.
  *
  * Thread: any.
  */
@@ -1213,7 +1213,7 @@ RevmapResult revmap_device_pipeline_cache(const struct RevmapDevice *device,
                                           size_t *count);
 
 /**
- * Destroys a device; null is none. What was made with it stays usable.
+ * Destroys a device; null is none. Objects made with it stay usable.
  *
  * Thread: any.
  */
@@ -1227,9 +1227,8 @@ RevmapResult revmap_device_destroy(struct RevmapDevice *device);
 RevmapResult revmap_last_error(void);
 
 /**
- * Why the last call of this thread that failed did so: one line of UTF-8 that says what is wrong
- * and what would be right. Empty if none has failed. It lasts until the next failure on this
- * thread, or the thread's end.
+ * The reason of this thread's last failure: one line of UTF-8 with the cause and the remedy. Empty
+ * if none has failed. The text lasts until the next failure on this thread, or the thread's end.
  *
  * Thread: any.
  */
@@ -1271,8 +1270,8 @@ RevmapResult revmap_offscreen_create(const struct RevmapDevice *device,
                                      struct RevmapOffscreen **offscreen);
 
 /**
- * Takes over another scene. Its cost follows what differs from the scene before. If it fails, what
- * was drawn before can be drawn on.
+ * Updates the picture to another scene. The cost depends on the differences from the former scene.
+ * If it fails, the former scene can still be drawn.
  *
  * Thread: one at a time for a picture.
  */
@@ -1295,8 +1294,8 @@ RevmapResult revmap_offscreen_draw(struct RevmapOffscreen *offscreen, struct Rev
 
 /**
  * Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
- * top. plane is a RevmapPlane; of REVMAP_PLANES_COLOR REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR
- * are there. count is the number of bytes, which must be exact.
+ * top. plane is a RevmapPlane; REVMAP_PLANES_COLOR has REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR.
+ * count is the number of bytes, which must be exact.
  *
  * Thread: one at a time for a picture.
  */
@@ -1335,12 +1334,12 @@ RevmapResult revmap_profile_from_points(const double (*points)[2],
                                         struct RevmapProfile **profile);
 
 /**
- * Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it. What
- * is darker than one half over white is solid; the picture's height is one object unit. axis is a
- * RevmapAxis.
+ * Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it.
+ * Everything darker than one half over white is solid; the picture's height is one object unit.
+ * axis is a RevmapAxis.
  *
- * Fails with REVMAP_RESULT_FILE where that is not possible, and with REVMAP_RESULT_CONTENT where
- * there is nothing to turn.
+ * Fails with REVMAP_RESULT_FILE if that is not possible, and with REVMAP_RESULT_CONTENT if there
+ * is nothing to turn.
  *
  * Thread: any.
  */
@@ -1350,7 +1349,8 @@ RevmapResult revmap_profile_from_bytes(const void *bytes,
                                        struct RevmapProfile **profile);
 
 /**
- * As revmap_profile_from_bytes(), of a file. The path is UTF-8.
+ * Makes a profile from a file, as revmap_profile_from_bytes() does from its content. The path is
+ * UTF-8.
  *
  * Thread: any.
  */
@@ -1359,7 +1359,7 @@ RevmapResult revmap_profile_from_file(const char *path,
                                       struct RevmapProfile **profile);
 
 /**
- * Gives the radius of the profile's box, object units.
+ * Returns the radius of the profile's box, object units.
  *
  * Thread: any.
  */
@@ -1406,11 +1406,11 @@ RevmapResult revmap_renderer_set_lighting(struct RevmapRenderer *renderer,
                                           const struct RevmapLighting *lighting);
 
 /**
- * Sets what compute writes to, from the next prepared frame on. The handles are of the renderer's
- * device, large enough for every view's viewport, which begins at 0. They live until another
- * target is set and the frames recorded before are done.
+ * Sets the target of compute, from the next prepared frame on. The handles are of the renderer's
+ * device, large enough for every view's viewport, which begins at 0. The handles live until
+ * another target is set and the frames recorded before are done.
  *
- * Fails with REVMAP_RESULT_USAGE where the renderer's shaders write to no such target.
+ * Fails with REVMAP_RESULT_USAGE if the renderer's shaders write to no such target.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1418,8 +1418,8 @@ RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
                                                 const struct RevmapComputeTarget *target);
 
 /**
- * Gives the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: what a
- * RevmapComputeTarget's colours are cleared to.
+ * Returns the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: the clear value
+ * of a RevmapComputeTarget's colours.
  *
  * Thread: any.
  */
@@ -1433,16 +1433,16 @@ uint32_t revmap_color_word(float red, float green, float blue, float alpha);
 RevmapResult revmap_renderer_destroy(struct RevmapRenderer *renderer);
 
 /**
- * Prepares the frame of a slot: takes over what was set, writes what changed, records copies of
- * new textures. To be called in every frame before revmap_renderer_record(). It neither submits
- * nor waits.
+ * Prepares the frame of a slot: applies the values that were set, writes those that changed,
+ * records copies of new textures. The host calls it in every frame before
+ * revmap_renderer_record(). This function neither submits nor waits.
  *
  * The command buffer is recording, outside of a pass, for a queue of the device's family. The
  * commands recorded for this slot before have run or were never submitted. Commands of other slots
  * that were recorded before are submitted before these.
  *
- * Fails with REVMAP_RESULT_CONTENT for what cannot be drawn: it stays as it was before it was set.
- * The text begins with the object's number.
+ * Fails with REVMAP_RESULT_CONTENT for an object that cannot be drawn; the object keeps its former
+ * values. The text begins with the object's number.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1452,8 +1452,8 @@ RevmapResult revmap_renderer_prepare(struct RevmapRenderer *renderer,
                                      const struct RevmapView *view);
 
 /**
- * As revmap_renderer_prepare(), seen by a camera in pictures of width * height pixels, with depth
- * 0 at near and 1 at far, both along the view. The output's depth order is
+ * Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
+ * height pixels. Depth is 0 at near and 1 at far, both along the view. The output's depth order is
  * REVMAP_DEPTH_ORDER_NORMAL.
  *
  * Thread: one at a time for a renderer.
@@ -1468,15 +1468,16 @@ RevmapResult revmap_renderer_prepare_camera(struct RevmapRenderer *renderer,
                                             double far);
 
 /**
- * Records the draws of the frame that was prepared for a slot. It binds pipelines, descriptor sets
- * 0 to 2 and an index buffer; it sets neither viewport nor scissor, which are dynamic.
+ * Records the draws of the frame that was prepared for a slot. The function binds pipelines,
+ * descriptor sets 0 to 2 and an index buffer. It sets neither viewport nor scissor, which are
+ * dynamic.
  *
  * The command buffer is recording, within a pass that is compatible with the output, with the
  * view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
  * the commands have run.
  *
- * Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared. What was set
- * since then is not drawn yet.
+ * Fails with REVMAP_RESULT_USAGE, and records nothing, if the slot is not prepared. Values set
+ * since then are not drawn yet.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1486,14 +1487,14 @@ RevmapResult revmap_renderer_record(struct RevmapRenderer *renderer,
 
 /**
  * Records the dispatches of the frame that was prepared for a slot, into a target that was
- * cleared. It records barriers between its own dispatches, none before its first and after its
- * last write.
+ * cleared. The function records barriers between its own dispatches, none before its first and
+ * none after its last write.
  *
  * The command buffer is recording, outside of a pass; writes to the target before are made
  * available to compute shaders. The renderer lives, and the slot is not prepared again, until the
  * commands have run.
  *
- * Fails as revmap_renderer_record().
+ * Fails like revmap_renderer_record().
  *
  * Thread: one at a time for a renderer.
  */
@@ -1513,7 +1514,7 @@ RevmapResult revmap_renderer_add(struct RevmapRenderer *renderer,
                                  RevmapObject *object);
 
 /**
- * Takes an object away. What frames in flight read of it is kept until they are done.
+ * Removes an object. Data that frames in flight read is kept until they are done.
  *
  * Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
  * one.
@@ -1536,7 +1537,7 @@ RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
 /**
  * Moves the surface of an object: extension, bevel and chamfer.
  *
- * Fails as revmap_renderer_set().
+ * Fails like revmap_renderer_set().
  *
  * Thread: one at a time for a renderer.
  */
@@ -1547,7 +1548,7 @@ RevmapResult revmap_renderer_set_offset(struct RevmapRenderer *renderer,
 /**
  * Moves an object that is one copy.
  *
- * Fails as revmap_renderer_set().
+ * Fails like revmap_renderer_set().
  *
  * Thread: one at a time for a renderer.
  */
@@ -1558,7 +1559,7 @@ RevmapResult revmap_renderer_set_placement(struct RevmapRenderer *renderer,
 /**
  * Gives an object other copies; with a count of 0 it is one, at its placement.
  *
- * Fails as revmap_renderer_set().
+ * Fails like revmap_renderer_set().
  *
  * Thread: one at a time for a renderer.
  */
@@ -1585,14 +1586,14 @@ RevmapResult revmap_renderer_prewarm(struct RevmapRenderer *renderer,
 RevmapResult revmap_prewarm_compile(const struct RevmapPrewarm *prewarm);
 
 /**
- * Gives the number of pipelines, compiled or not.
+ * Returns the number of pipelines, compiled or not.
  *
  * Thread: any.
  */
 RevmapResult revmap_prewarm_count(const struct RevmapPrewarm *prewarm, size_t *count);
 
 /**
- * Destroys the list; null is none. What was compiled stays.
+ * Destroys the list; null is none. Compiled pipelines stay.
  *
  * Thread: any.
  */
@@ -1603,8 +1604,8 @@ RevmapResult revmap_prewarm_destroy(struct RevmapPrewarm *prewarm);
  * revmap_renderer_prewarm(): some drivers compile shaders at the first draw, and do it when these
  * commands run. In a pass it sets the scissor, too, to nothing.
  *
- * The slot is prepared; the caller sees to what revmap_renderer_record() or
- * revmap_renderer_record_compute() ask for.
+ * The slot is prepared; the caller meets the conditions of revmap_renderer_record() or
+ * revmap_renderer_record_compute().
  *
  * Thread: one at a time for a renderer.
  */
@@ -1613,7 +1614,7 @@ RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
                                             uint32_t slot);
 
 /**
- * Tells what a renderer holds and did. The size of statistics must be set.
+ * Returns the contents and work of a renderer. The size of statistics must be set.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1621,8 +1622,8 @@ RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
                                         struct RevmapStatistics *statistics);
 
 /**
- * Gives a note: what was done in another way than asked for, and why. The text lasts as long as
- * the renderer.
+ * Returns a note: a deviation from the settings, and its reason. The text lasts as long as the
+ * renderer.
  *
  * Thread: one at a time for a renderer.
  */
@@ -1633,7 +1634,7 @@ RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
 /**
  * Makes a colour map from a PNG or JPEG file. The path is UTF-8.
  *
- * Fails with REVMAP_RESULT_FILE where it cannot be read.
+ * Fails with REVMAP_RESULT_FILE if it cannot be read.
  *
  * Thread: any.
  */
@@ -1661,7 +1662,7 @@ RevmapResult revmap_color_map_destroy(struct RevmapColorMap *color_map);
  * Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
  * filter is a RevmapSlopeFilter.
  *
- * Fails with REVMAP_RESULT_FILE where it cannot be read.
+ * Fails with REVMAP_RESULT_FILE if it cannot be read.
  *
  * Thread: any.
  */
@@ -1705,7 +1706,7 @@ RevmapResult revmap_lighting_defaults(struct RevmapLighting *lighting);
 RevmapResult revmap_camera_defaults(struct RevmapCamera *camera);
 
 /**
- * Fills in the search that is taken where none is named. The size must be set.
+ * Fills in the default search. The size must be set.
  *
  * Thread: any.
  */

@@ -9,8 +9,8 @@ use ash::vk::Handle as _;
 use revmap::gpu::{Device, HostDevice, Requirements};
 use std::ffi::{c_char, c_void};
 
-/// A Vulkan device, opened by the library or borrowed from a host. What is made on it keeps what it
-/// needs of it.
+/// A Vulkan device, opened by the library or borrowed from a host. Objects made on it keep the
+/// parts of it that they need.
 pub struct RevmapDevice;
 handle!(RevmapDevice, "device", Device);
 
@@ -19,7 +19,7 @@ handle!(RevmapDevice, "device", Device);
 #[derive(Clone, Copy)]
 pub struct GetInstanceProcAddr(pub Option<vk::PFN_vkGetInstanceProcAddr>);
 
-/// What a host has to enable on a device that it lends. No device extension is needed.
+/// Requirements for a device that a host lends. No device extension is needed.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RevmapRequirements {
@@ -58,17 +58,17 @@ pub struct RevmapHostDevice {
     pub pipeline_cache: vk::PipelineCache,
 }
 
-/// What a device is.
+/// Properties of a device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RevmapDeviceInfo {
     /// sizeof(RevmapDeviceInfo).
     pub size: u32,
-    /// 1 where the library has opened it with the validation layers, else 0.
+    /// 1 if the library has opened it with the validation layers, else 0.
     pub validated: u32,
-    /// Pipelines compiled on it so far.
+    /// Number of pipelines compiled on it so far.
     pub pipelines_compiled: u64,
-    /// Its name, UTF-8, ended by 0.
+    /// Name of the device, UTF-8, ended by 0.
     pub name: [c_char; 256],
     /// Driver's name and version, UTF-8, ended by 0.
     pub driver: [c_char; 256],
@@ -98,9 +98,11 @@ unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outco
     Ok(unsafe { ash::Instance::load(&functions, instance) })
 }
 
-/// Tells what a host has to enable on a physical device. The size of requirements must be set.
+/// Returns the requirements for a physical device that a host lends. The size of requirements must
+/// be set.
 ///
-/// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what.
+/// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what is
+/// missing.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -138,7 +140,7 @@ pub unsafe extern "C" fn revmap_requirements(
 /// validate, if not 0, switches the validation layers on, as does REVMAP_VALIDATION=1 in the
 /// environment.
 ///
-/// Fails with REVMAP_RESULT_UNSUPPORTED where there is none that has what is needed.
+/// Fails with REVMAP_RESULT_UNSUPPORTED if no device meets the requirements.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -165,8 +167,8 @@ pub unsafe extern "C" fn revmap_device_open(
     })
 }
 
-/// Borrows a host's device. All handles belong together. They must stay valid until this handle and
-/// all that is made with it are destroyed, and the device is idle.
+/// Borrows a host's device. All handles belong together. The handles must stay valid until this
+/// handle and everything made with it are destroyed, and the device is idle.
 ///
 /// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something.
 ///
@@ -205,7 +207,7 @@ pub unsafe extern "C" fn revmap_device_borrow(
     })
 }
 
-/// Tells what a device is. The size of info must be set.
+/// Returns the properties of a device. The size of info must be set.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -237,7 +239,7 @@ fn short(text: &str) -> [c_char; 256] {
     all
 }
 
-/// Fails with REVMAP_RESULT_OTHER if the validation layers have had anything to say since the last
+/// Fails with REVMAP_RESULT_OTHER if the validation layers have reported a message since the last
 /// call. A borrowed device's host has its own messenger, and this function always succeeds.
 ///
 /// Thread: any.
@@ -247,7 +249,7 @@ pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> Rev
 }
 
 /// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
-/// another driver is passed over.
+/// another driver is ignored.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -263,9 +265,9 @@ pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
     })
 }
 
-/// Gives the driver's compiled pipelines. With null bytes count becomes their number; else as many
-/// are written as count says, which must not be fewer, and count becomes what was written. The
-/// number grows as pipelines are compiled.
+/// Returns the driver's compiled pipelines. With null bytes, count becomes their number. Otherwise
+/// count is the room in bytes, which must be large enough, and becomes the number of bytes written.
+/// The number grows as pipelines are compiled.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -293,7 +295,7 @@ pub unsafe extern "C" fn revmap_device_pipeline_cache(
     })
 }
 
-/// Destroys a device; null is none. What was made with it stays usable.
+/// Destroys a device; null is none. Objects made with it stay usable.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

@@ -9,21 +9,21 @@ use revmap::scene::{BumpForm, Clip, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_searches::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
-/// Which part of a picture or a drawing is the half-plane that is turned.
+/// The part of a picture or a drawing that is the half-plane to be turned.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapAxis {
-    /// The axis is the middle: the picture is a whole silhouette, of which the right half is taken.
+    /// The axis is the middle: the picture is a whole silhouette, and its right half is used.
     Center = 0,
     /// The axis is the left edge: the picture is a half profile.
     Left = 1,
 }
 
-/// How the first hit along a ray is found.
+/// The search for the first hit along a ray.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapSolver {
-    /// What this version takes where none is named: REVMAP_SOLVER_EXACT.
+    /// The default of this version: REVMAP_SOLVER_EXACT.
     Default = 0,
     /// Equal steps along the ray.
     Linear = 1,
@@ -33,7 +33,7 @@ pub enum RevmapSolver {
     Secant = 3,
     /// Circle tracing with 20 steps, as published.
     Circle = 4,
-    /// Safe steps on the map alone, under every offset; rebuilds nothing when an offset changes.
+    /// Safe steps on the map only, under every offset; rebuilds nothing when an offset changes.
     Live = 5,
     /// Cone step mapping, for profiles that are single-valued in z.
     Cone = 6,
@@ -41,11 +41,11 @@ pub enum RevmapSolver {
     Relaxed = 7,
     /// The boundary as pieces of quadrics, solved exactly.
     Quadric = 8,
-    /// The same pieces, found by the rasteriser or by tiles of pixels.
+    /// The pieces of REVMAP_SOLVER_QUADRIC, found by the rasteriser or by tiles of pixels.
     Exact = 9,
 }
 
-/// Where the distances of a shape map come from.
+/// The source of the distances of a shape map.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapMapSource {
@@ -59,7 +59,7 @@ pub enum RevmapMapSource {
     Exact = 3,
 }
 
-/// How the distances of a shape map are stored on the device.
+/// The format of the distances of a shape map on the device.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapMapFormat {
@@ -71,21 +71,21 @@ pub enum RevmapMapFormat {
     Rgba8 = 2,
 }
 
-/// Which planes of a picture are drawn.
+/// The planes of a picture to draw.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapPlanes {
-    /// Colour alone, 8-bit sRGB.
+    /// Colour only, 8-bit sRGB.
     Color = 0,
     /// Every plane of RevmapPlane, in 32-bit floats.
     All = 1,
-    /// Depth alone, for shadow maps, in a host's pass.
+    /// Depth only, for shadow maps, in a host's pass.
     Depth = 2,
-    /// The same along parallel rays.
+    /// Depth only, along parallel rays.
     DepthParallel = 3,
 }
 
-/// A plane that revmap_offscreen_read() gives. Row 0 is on top.
+/// A plane that revmap_offscreen_read() returns. Row 0 is on top.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapPlane {
@@ -93,8 +93,7 @@ pub enum RevmapPlane {
     Srgb8 = 0,
     /// 4 floats a pixel: linear colour, not multiplied by alpha.
     Color = 1,
-    /// 1 float a pixel: distance from the eye along the ray, world units; infinite where nothing is
-    /// hit.
+    /// 1 float a pixel: distance from the eye along the ray, world units; infinite without a hit.
     Distance = 2,
     /// 3 floats a pixel: unit world normal, without bump.
     Normal = 3,
@@ -108,7 +107,7 @@ pub enum RevmapPlane {
     Steps = 7,
 }
 
-/// Which end of the depth range is near.
+/// The near end of the depth range.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapDepthOrder {
@@ -118,7 +117,7 @@ pub enum RevmapDepthOrder {
     Reversed = 1,
 }
 
-/// How a host begins its pass.
+/// The command by which a host begins its pass.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapPassKind {
@@ -128,7 +127,7 @@ pub enum RevmapPassKind {
     RenderPass = 1,
 }
 
-/// Where rays are traced.
+/// The stage that traces rays.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapStage {
@@ -138,13 +137,13 @@ pub enum RevmapStage {
     Compute = 1,
 }
 
-/// How texture coordinates follow from the surface's points.
+/// The projection that gives the texture coordinates of surface points.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapProjection {
     /// Azimuth and height.
     Cylindrical = 0,
-    /// From above: x and y of the box.
+    /// x and y of the box, seen from above.
     Planar = 1,
     /// Azimuth and polar angle about the middle of the box.
     Spherical = 2,
@@ -152,27 +151,27 @@ pub enum RevmapProjection {
     Arc = 3,
 }
 
-/// How a height map tilts the normal.
+/// The formula by which a height map tilts the normal.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapBumpForm {
-    /// By the gradient along the surface.
+    /// Gradient along the surface.
     SurfaceGradient = 0,
-    /// As published, without the factor of the azimuth.
+    /// The published formula, without the factor of the azimuth.
     Papers = 1,
 }
 
-/// What the shape box cuts.
+/// The part of a solid that the shape box cuts.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapClip {
-    /// Nothing that an offset adds: the box grows with it.
+    /// The box cuts nothing that an offset adds: it grows with the offset.
     None = 0,
-    /// All that reaches past the profile's box, as in the papers.
+    /// The box cuts everything outside the profile's box, as in the papers.
     Box = 1,
 }
 
-/// How slopes are taken from heights.
+/// The filter that computes slopes from heights.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapSlopeFilter {
@@ -186,7 +185,7 @@ pub enum RevmapSlopeFilter {
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapShadow {
-    /// None; nothing is traced.
+    /// No shadows; nothing is traced.
     Off = 0,
     /// Lit or not.
     Hard = 1,

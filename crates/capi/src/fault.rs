@@ -6,15 +6,14 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What a function says of itself: done, or the kind of its failure. A failure changes nothing else
-/// than the failing function's documentation says, and leaves a text for revmap_last_error_text().
+/// The result of a function: success, or the kind of its failure. A failure changes only what the
+/// failing function's documentation says, and leaves a text for revmap_last_error_text().
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RevmapResult {
     /// Done.
     Ok = 0,
-    /// Arguments that make no sense: a null pointer, a wrong size, an unknown number, a call out of
-    /// order.
+    /// Invalid arguments: a null pointer, a wrong size, an unknown number, a call out of order.
     Usage = 1,
     /// A value of a scene, profile or map that cannot be drawn; the text begins with its name.
     Content = 2,
@@ -116,9 +115,8 @@ pub extern "C" fn revmap_last_error() -> RevmapResult {
         .unwrap_or(RevmapResult::Ok)
 }
 
-/// Why the last call of this thread that failed did so: one line of UTF-8 that says what is wrong
-/// and what would be right. Empty if none has failed. It lasts until the next failure on this
-/// thread, or the thread's end.
+/// The reason of this thread's last failure: one line of UTF-8 with the cause and the remedy. Empty
+/// if none has failed. The text lasts until the next failure on this thread, or the thread's end.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

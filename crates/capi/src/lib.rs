@@ -23,7 +23,7 @@ pub mod values;
 
 use std::ffi::c_char;
 
-/// Number of this interface. It grows when a function or a field is taken away or changes its
+/// Number of this interface. The number grows when a function or a field is removed or changes its
 /// meaning.
 pub const REVMAP_ABI: u32 = 1;
 

@@ -11,7 +11,7 @@ use revmap::scene::{Object, Offset, Placement, Specular, Texturing};
 use std::ffi::c_char;
 use std::ptr::null;
 
-/// One solid of revolution, once or as many copies. Defaults: revmap_object_defaults().
+/// A solid of revolution, drawn once or as many copies. Defaults: revmap_object_defaults().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RevmapObjectInfo {
@@ -19,9 +19,9 @@ pub struct RevmapObjectInfo {
     pub size: u32,
     /// Rows of its shape map.
     pub map_rows: u32,
-    /// What is turned. Objects that share a profile share its maps.
+    /// The profile that is turned about the axis. Objects that share a profile share its maps.
     pub profile: *const RevmapProfile,
-    /// What messages call it, UTF-8; may be null.
+    /// Name in messages, UTF-8; may be null.
     pub name: *const c_char,
     /// Colours in place of color; may be null.
     pub color_map: *const RevmapColorMap,
@@ -39,21 +39,21 @@ pub struct RevmapObjectInfo {
     pub bump_form: u32,
     /// Depth by which the slopes of height_map are scaled.
     pub bump: f64,
-    /// How often textures repeat around and along the solid.
+    /// Repetitions of textures around and along the solid.
     pub texture_repeat: [f64; 2],
     /// Extension, bevel and chamfer.
     pub offset: RevmapOffset,
-    /// Where the axis stands in the box, each in [0, 1]; the middle is (0.5, 0.5).
+    /// Position of the axis in the box, each in [0, 1]; the middle is (0.5, 0.5).
     pub axis: [f64; 2],
-    /// How many replicas the box holds along x, y, z; at least 1 each.
+    /// Number of replicas in the box along x, y, z; at least 1 each.
     pub repeat: [u32; 3],
-    /// Whether every second replica along x, y, z is reflected: 0 or 1.
+    /// 1 to reflect every second replica along x, y, z, else 0.
     pub mirror: [u32; 3],
     /// A RevmapClip.
     pub clip: u32,
-    /// Where it is, if it has no instances.
+    /// Placement of a solid without instances.
     pub placement: RevmapPlacement,
-    /// Where its copies are; read during the call; null where there are none.
+    /// Placements of its copies; read during the call; null if there are none.
     pub instances: *const RevmapPlacement,
     /// Number of copies; 0: one, at placement.
     pub instance_count: usize,

@@ -26,7 +26,7 @@ pub(crate) struct Drawing {
     drawn: bool,
 }
 
-/// How a picture is drawn. Defaults: revmap_picture_defaults().
+/// Settings of a picture. Defaults: revmap_picture_defaults().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RevmapPicture {
@@ -40,7 +40,7 @@ pub struct RevmapPicture {
     pub stage: u32,
     /// REVMAP_PLANES_COLOR or REVMAP_PLANES_ALL.
     pub planes: u32,
-    /// How rays find the surface.
+    /// Settings of the search.
     pub search: RevmapSearch,
 }
 
@@ -68,9 +68,10 @@ pub struct RevmapScene {
 pub struct RevmapTimes {
     /// sizeof(RevmapTimes).
     pub size: u32,
-    /// Milliseconds that the CPU took to take over changes and to record.
+    /// CPU time to apply changes and to record, milliseconds.
     pub prepare_ms: f64,
-    /// Milliseconds between timestamps of the device around the work; negative where it has none.
+    /// Milliseconds between timestamps of the device around the work; negative if it has no
+    /// timestamps.
     pub gpu_ms: f64,
     /// Milliseconds from submission to completion by the clock.
     pub frame_ms: f64,
@@ -201,8 +202,8 @@ pub unsafe extern "C" fn revmap_offscreen_create(
     })
 }
 
-/// Takes over another scene. Its cost follows what differs from the scene before. If it fails, what
-/// was drawn before can be drawn on.
+/// Updates the picture to another scene. The cost depends on the differences from the former scene.
+/// If it fails, the former scene can still be drawn.
 ///
 /// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
@@ -262,8 +263,8 @@ pub unsafe extern "C" fn revmap_offscreen_draw(
 }
 
 /// Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
-/// top. plane is a RevmapPlane; of REVMAP_PLANES_COLOR REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR
-/// are there. count is the number of bytes, which must be exact.
+/// top. plane is a RevmapPlane; REVMAP_PLANES_COLOR has REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR.
+/// count is the number of bytes, which must be exact.
 ///
 /// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]

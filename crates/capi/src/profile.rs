@@ -36,12 +36,12 @@ pub unsafe extern "C" fn revmap_profile_from_points(
     })
 }
 
-/// Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it. What
-/// is darker than one half over white is solid; the picture's height is one object unit. axis is a
-/// RevmapAxis.
+/// Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it.
+/// Everything darker than one half over white is solid; the picture's height is one object unit.
+/// axis is a RevmapAxis.
 ///
-/// Fails with REVMAP_RESULT_FILE where that is not possible, and with REVMAP_RESULT_CONTENT where
-/// there is nothing to turn.
+/// Fails with REVMAP_RESULT_FILE if that is not possible, and with REVMAP_RESULT_CONTENT if there
+/// is nothing to turn.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -61,7 +61,8 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     })
 }
 
-/// As revmap_profile_from_bytes(), of a file. The path is UTF-8.
+/// Makes a profile from a file, as revmap_profile_from_bytes() does from its content. The path is
+/// UTF-8.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -79,7 +80,7 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     })
 }
 
-/// Gives the radius of the profile's box, object units.
+/// Returns the radius of the profile's box, object units.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

@@ -16,8 +16,8 @@ use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, R
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
-/// Objects on a device, drawn into whatever the host draws into, with several frames in flight,
-/// which take turns in slots. It must not be destroyed before the frames that it recorded are done.
+/// Objects on a device, drawn into the host's targets, with several frames in flight, which use
+/// slots in turn. The renderer must not be destroyed before the frames that it recorded are done.
 pub struct RevmapRenderer;
 handle!(RevmapRenderer, "renderer", Arc<Mutex<Recorder>>);
 
@@ -40,30 +40,29 @@ pub struct RevmapPass {
     pub size: u32,
     /// A RevmapPassKind.
     pub kind: u32,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres, whatever the
-    /// number.
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number.
     pub samples: u32,
     /// A RevmapDepthOrder.
     pub depth_order: u32,
     /// A RevmapPlanes: what the fragment shader writes, one plane an attachment.
     pub planes: u32,
-    /// Of a render pass: the subpass, which has a depth attachment.
+    /// For a render pass: the subpass, which has a depth attachment.
     pub subpass: u32,
-    /// Of a render pass: the pass. It must live as long as the renderer. Passes that are compatible
-    /// with it may be begun instead.
+    /// For a render pass: the pass. The pass must live as long as the renderer. Passes that are
+    /// compatible with it may be begun instead.
     pub render_pass: vk::RenderPass,
-    /// Of dynamic rendering: formats of the colour attachments; read during the call.
+    /// For dynamic rendering: formats of the colour attachments; read during the call.
     pub color_formats: *const vk::Format,
-    /// Of dynamic rendering: number of the colour attachments.
+    /// For dynamic rendering: number of the colour attachments.
     pub color_format_count: u32,
-    /// Of dynamic rendering: format of the depth attachment.
+    /// For dynamic rendering: format of the depth attachment.
     pub depth_format: vk::Format,
-    /// Of dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED where there is
+    /// For dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED if there is
     /// none.
     pub stencil_format: vk::Format,
 }
 
-/// What compute shaders write to, and fragments of REVMAP_PLANES_ALL besides their attachments.
+/// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RevmapComputeTarget {
@@ -197,11 +196,11 @@ pub unsafe extern "C" fn revmap_renderer_set_lighting(
     })
 }
 
-/// Sets what compute writes to, from the next prepared frame on. The handles are of the renderer's
-/// device, large enough for every view's viewport, which begins at 0. They live until another
-/// target is set and the frames recorded before are done.
+/// Sets the target of compute, from the next prepared frame on. The handles are of the renderer's
+/// device, large enough for every view's viewport, which begins at 0. The handles live until
+/// another target is set and the frames recorded before are done.
 ///
-/// Fails with REVMAP_RESULT_USAGE where the renderer's shaders write to no such target.
+/// Fails with REVMAP_RESULT_USAGE if the renderer's shaders write to no such target.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -225,8 +224,8 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
     })
 }
 
-/// Gives the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: what a
-/// RevmapComputeTarget's colours are cleared to.
+/// Returns the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: the clear value
+/// of a RevmapComputeTarget's colours.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

@@ -18,7 +18,7 @@ handle!(RevmapHeightMap, "height map", Arc<DisplacementMap>);
 
 /// Makes a colour map from a PNG or JPEG file. The path is UTF-8.
 ///
-/// Fails with REVMAP_RESULT_FILE where it cannot be read.
+/// Fails with REVMAP_RESULT_FILE if it cannot be read.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -67,7 +67,7 @@ pub extern "C" fn revmap_color_map_destroy(color_map: *mut RevmapColorMap) -> Re
 /// Makes a height map from a PNG or JPEG file, whose luminance is the height. The path is UTF-8;
 /// filter is a RevmapSlopeFilter.
 ///
-/// Fails with REVMAP_RESULT_FILE where it cannot be read.
+/// Fails with REVMAP_RESULT_FILE if it cannot be read.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

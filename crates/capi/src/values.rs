@@ -9,11 +9,11 @@ use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
 use revmap::settings::{SearchSettings, Tolerance};
 use std::sync::LazyLock;
 
-/// Where the box of a solid is. Its scale of (1, 1, 1) makes it one world unit high.
+/// Placement of a solid's box. With a scale of (1, 1, 1) the box is one world unit high.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevmapPlacement {
-    /// Of the middle of the box's lower face, world units.
+    /// Position of the middle of the box's lower face, world units.
     pub position: [f64; 3],
     /// Unit quaternion: x, y, z, w.
     pub rotation: [f64; 4],
@@ -21,7 +21,7 @@ pub struct RevmapPlacement {
     pub scale: [f64; 3],
 }
 
-/// How far the surface stands off the profile: extend + bevel * min(1 - z, chamfer), object units.
+/// Distance of the surface from the profile: extend + bevel * min(1 - z, chamfer), object units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevmapOffset {
@@ -29,7 +29,7 @@ pub struct RevmapOffset {
     pub extend: f64,
     /// Slope.
     pub bevel: f64,
-    /// Depth in [0, 1] below the top to which the bevel reaches. It is 1 by default.
+    /// Depth in [0, 1] below the top to which the bevel reaches. The default is 1.
     pub chamfer: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct RevmapLight {
     pub color: [f32; 3],
 }
 
-/// What lights all objects. Defaults: revmap_lighting_defaults().
+/// Lights and shadows of all objects. Defaults: revmap_lighting_defaults().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RevmapLighting {
@@ -67,9 +67,9 @@ pub struct RevmapCamera {
     pub size: u32,
     /// World units.
     pub eye: [f64; 3],
-    /// What it looks at.
+    /// The point that the camera looks at, world units.
     pub target: [f64; 3],
-    /// Which way is up.
+    /// The upward direction.
     pub up: [f64; 3],
     /// Vertical field of view, degrees, between 0 and 180.
     pub fov_y: f64,
@@ -84,16 +84,16 @@ pub struct RevmapView {
     pub size: u32,
     /// A RevmapDepthOrder: the one of the renderer's output.
     pub depth_order: u32,
-    /// From world to view space.
+    /// Matrix from world to view space.
     pub view: [f64; 16],
-    /// From view to clip space.
+    /// Matrix from view to clip space.
     pub projection: [f64; 16],
     /// Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
     /// Vulkan 1.1.
     pub viewport: [f64; 4],
 }
 
-/// How rays find the surface. Defaults: revmap_search_defaults().
+/// Settings of the search. Defaults: revmap_search_defaults().
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RevmapSearch {
@@ -101,19 +101,19 @@ pub struct RevmapSearch {
     pub size: u32,
     /// A RevmapSolver.
     pub solver: u32,
-    /// Bound on the search's steps; 0 takes the solver's own.
+    /// Bound on the search's steps; 0 uses the solver's default.
     pub max_steps: u32,
-    /// Rows of every shape map; 0 takes each object's own.
+    /// Rows of every shape map; 0 uses each object's own value.
     pub map_rows: u32,
     /// A RevmapMapSource.
     pub map_source: u32,
     /// A RevmapMapFormat.
     pub map_format: u32,
     /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
-    /// is drawn; below it the box is. UINT32_MAX: boxes alone.
+    /// is drawn; below it the box is. UINT32_MAX: boxes only.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
-    /// on patches follow it.
+    /// on patches use it.
     pub tolerance: f64,
 }
 
@@ -286,7 +286,7 @@ pub unsafe extern "C" fn revmap_camera_defaults(camera: *mut RevmapCamera) -> Re
     enter(|| unsafe { fill(camera, RevmapCamera::defaults()) })
 }
 
-/// Fills in the search that is taken where none is named. The size must be set.
+/// Fills in the default search. The size must be set.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]

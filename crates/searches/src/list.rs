@@ -1,5 +1,5 @@
-// The list of SPIR-V modules. `build.rs` compiles this list, and searches look modules up in it; so it depends on nothing
-// but `SearchModule`.
+// The list of SPIR-V modules. `build.rs` compiles this list, and searches look modules up in it; so
+// it depends only on `SearchModule`.
 
 use super::module::{Features, Output, Pass, SearchModule};
 
@@ -13,7 +13,7 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Its name; build scripts and tests read it.
+    /// The module's name, for build scripts and tests.
     #[allow(dead_code)]
     pub fn name(&self) -> String {
         let search = self.hook.trim_end_matches(".glsl");
@@ -21,10 +21,12 @@ impl Listed {
     }
 }
 
-/// Every module, of each search the special ones before those that do their work, too.
+/// Every module. For each search, special modules come before the general ones that can replace
+/// them.
 ///
-/// Colour without textures, replicas and shadows has modules of its own, as it is what most
-/// comparisons measure; the RBM baseline in each of its forms. All else is drawn by the full ones.
+/// Colour without textures, replicas and shadows has modules of its own, since most comparisons
+/// measure it. The RBM baseline has them in each of its forms. The full modules draw everything
+/// else.
 pub fn modules() -> Vec<Listed> {
     let mut all = Vec::new();
     for pass in [Pass::Fragment, Pass::Tile, Pass::Copies] {

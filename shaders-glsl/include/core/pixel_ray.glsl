@@ -9,6 +9,8 @@
 #define PIXEL_RAY_GLSL
 #include "core/placement.glsl"
 
+const vec2 EVERYWHERE = vec2(-3e38, 3e38); // a span of t that ends nowhere
+
 struct PixelRays {
     vec3 origin; // of pixel (0, 0), relative to the axis at z = 0
     float base;

@@ -39,7 +39,7 @@ bool is_solid(vec3 p, inout uint steps)
 #endif
 }
 
-bool trace_replicas(vec3 eye, vec3 v, float base, inout Hit hit)
+bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 {
     // In units in which a cell is as large as the box is without repetition; its lower corner at 0.
     vec3 count = vec3(solid.cells.xyz);
@@ -66,7 +66,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, inout Hit hit)
             local = in_cell(o, cell);
             local_v = d * sense * size;
         }
-        bool met = trace_solid(local, local_v, base, inside, hit);
+        bool met = trace_solid(local, local_v, base, REPLICAS == 0u ? span : EVERYWHERE, inside, hit);
         vec3 next = (cell + stride - o) * inverse;
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
@@ -91,17 +91,17 @@ bool trace_replicas(vec3 eye, vec3 v, float base, inout Hit hit)
 }
 #endif
 
-// Of the ray `eye + t v`, t >= -base.
-bool trace(vec3 eye, vec3 v, float base, out Hit hit)
+// Of the ray `eye + t v`, t >= -base, which meets nothing before and behind the t of `span`.
+bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit.steps = 0u;
     hit.exhausted = false;
     hit.sense = vec3(1.0);
     hit.at_border = false;
 #if REPEATED
-    return trace_replicas(eye, v, base, hit);
+    return trace_replicas(eye, v, base, span, hit);
 #else
-    return trace_solid(eye, v, base, false, hit);
+    return trace_solid(eye, v, base, span, false, hit);
 #endif
 }
 

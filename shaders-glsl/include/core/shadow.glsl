@@ -52,7 +52,7 @@ float light_reaching(vec3 place, vec3 point, vec3 towards)
                 open = min(open, solid_openness(eye, v));
             } else {
                 Hit hit;
-                open = trace(eye, v, 0.0, hit) ? 0.0 : open;
+                open = trace(eye, v, 0.0, EVERYWHERE, hit) ? 0.0 : open;
             }
         }
     }

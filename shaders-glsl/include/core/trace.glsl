@@ -37,12 +37,12 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 #endif
 }
 
-// The first hit after `s`; `quadric`, of tables, is what was hit.
-uint search_any(Meridian m, float side, float f, inout float s, inout uint steps, out vec4 quadric)
+// The first hit; `quadric`, of tables, is what was hit. `span`: between these s all that the ray may meet is.
+uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout uint steps, out vec4 quadric)
 {
     quadric = vec4(0.0);
 #if SEARCH == SEARCH_QUADRIC
-    return search_quadric(m, side, s, steps, quadric);
+    return search_quadric(m, side, span, s, steps, quadric);
 #elif READS_TABLES
     return search(m, side, s, steps, quadric);
 #else
@@ -53,8 +53,8 @@ uint search_any(Meridian m, float side, float f, inout float s, inout uint steps
 // Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
 //
 // Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid
-// where it enters.
-bool trace_solid(vec3 eye, vec3 v, float base, bool inside, inout Hit hit)
+// where it enters. `span`: the ray meets nothing before and behind these t.
+bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
     if (!clip_ray(eye, v, base, m)) {
@@ -77,7 +77,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, bool inside, inout Hit hit)
     // From within the solid its boundary is seen from behind; unsigned distances know no inside.
     float side = within && (inside || m.from_eye) && RGBA8 == 0 ? -1.0 : 1.0;
     vec4 quadric;
-    uint end = search_any(m, side, f, s, hit.steps, quadric);
+    uint end = search_any(m, side, f, span - m.t_start, s, hit.steps, quadric);
 #if REPEATED && SEARCH == SEARCH_QUADRIC
     // A floor or ceiling that lies in a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;

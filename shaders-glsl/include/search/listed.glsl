@@ -11,13 +11,11 @@ shared float listed[8u * LONGEST_LIST];
 void share_patches()
 {
     uint self = gl_LocalInvocationIndex;
-    if (ONE_SOLID != 0u) {
-        solid.hull.z = own_solid.hull.z;
-    } else {
-        solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record[1] + 16u]].solid.hull.z;
+    if (ONE_SOLID == 0u) {
+        solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record.y + 16u]].solid.hull.z;
     }
     uint none = listed_word(0u, 0u);
-    uint runs = tile_record[2];
+    uint runs = tile_record.z;
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
         uint place = j + self;
         if (place < 8u * LIST_LENGTH) {

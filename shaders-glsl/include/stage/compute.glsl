@@ -11,14 +11,14 @@ layout(push_constant) uniform Pushed {
     uint heads; // word of list_words where the heads of their lists begin
     uint tiles; // word where the lists' tiles begin
     uint list;  // which of the lists a dispatch takes
-    uint solid; // number of the only solid, of tiles of several copies
+    uint solid; // number of the only solid
 } pushed;
 
 // Lists of tiles, made by tile_lists.comp for N records:
 // - TILE_LISTS heads of four words: an indirect dispatch of a work group for each tile in the list, one unused;
 // - for each list 4 N words: a tile's corner, the number of its instance, the two runs of patches that its rays may
-//   meet, first | number << 9 | first << 15 | number << 24, and one unused. Tiles of the last list walk the tree and
-//   have no runs.
+//   meet, first | number << 9 | first << 15 | number << 24, and one unused. Tiles of the last list walk the tree; the
+//   bits of the first and of the last t at which their rays may meet the solid stand in place of the runs.
 #ifndef LIST_WORDS
 #define LIST_WORDS readonly
 #endif

@@ -33,7 +33,7 @@ bool nearest_copy(uint first, uint count, uvec2 pixel, inout Nearest nearest)
         }
         PixelRays rays = pixel_rays(i);
         Hit hit;
-        bool met = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, hit);
+        bool met = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, EVERYWHERE, hit);
         nearest.steps += hit.steps;
         nearest.exhausted = nearest.exhausted || hit.exhausted;
         float depth = depth_of(rays.base + hit.t);

@@ -35,7 +35,7 @@ uvec2 lengths_of(PatchRuns runs)
 }
 
 // Adds a record to list number `n`. The first makes a whole dispatch of the head, which begins as zeros.
-void append(uint n, uvec2 record, uint runs)
+void append(uint n, uvec4 record)
 {
     uint head = list_head(n);
     uint place = atomicAdd(list_words[head], 1u);
@@ -44,21 +44,22 @@ void append(uint n, uvec2 record, uint runs)
         list_words[head + 2u] = 1u;
     }
     uint at = list_tiles(n) + 4u * place;
-    list_words[at] = record.x;
-    list_words[at + 1u] = record.y;
-    list_words[at + 2u] = runs;
+    for (uint k = 0u; k < 4u; ++k) {
+        list_words[at + k] = record[k];
+    }
 }
 
-void append_runs(uvec2 record, PatchRuns runs)
+// Whether the runs are short enough for a list; else the tile walks the tree.
+bool append_runs(uvec2 record, PatchRuns runs)
 {
     uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;
     if (listed > LONGEST_LIST) {
-        append(LIST_LENGTHS, record, 0u);
-        return;
+        return false;
     }
     uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
-    append(n, record, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24);
+    append(n, uvec4(record, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24, 0u));
+    return true;
 }
 
 #endif

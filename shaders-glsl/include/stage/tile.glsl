@@ -1,5 +1,4 @@
-// A tile of one copy. The work group shares its instance: software drivers read shared memory at constant places once
-// for all lanes.
+// A tile of one copy. A few invocations read record and instance for all: llvmpipe 22 reads storage buffers lane by lane.
 #ifndef TILE_GLSL
 #define TILE_GLSL
 #include "stage/compute.glsl"
@@ -12,48 +11,70 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
     uint instance_words[];
 };
 
-shared uint tile_record[3]; // corner, number of the instance, runs of its listed patches
-shared uint tile_instance[INSTANCE_WORDS];
+uvec4 tile_record; // corner, number of the instance; then the runs of its listed patches, or the bits of its span
+shared uint shared_record[4];
+shared uint shared_instance[INSTANCE_WORDS];
 Look tile_look;
 PixelRays tile_rays;
 
-// Shares what share_instance() reads after a barrier.
-void share_record()
+// Takes over the frame: to be called first.
+void begin_frame()
 {
-    uint n = gl_LocalInvocationIndex;
-    if (n < 3u) {
-        tile_record[n] = LIST_LENGTH != 0u ? list_words[list_tiles(pushed.list) + 4u * gl_WorkGroupID.x + n]
-                                           : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
+    take_frame();
+    take_lights();
+    if (ONE_SOLID != 0u) {
+        take_solid(pushed.solid);
     }
 }
 
-uvec2 tile_corner()
+uint record_word(uint n)
 {
-    return uvec2(tile_record[0] & 0xffffu, tile_record[0] >> 16);
+    return LIST_LENGTH != 0u ? list_words[list_tiles(pushed.list) + 4u * gl_WorkGroupID.x + n]
+                             : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
 }
 
-// Shares what begin_tile() reads after a barrier.
+// Shares what take_shared_record() reads after a barrier.
+void share_record()
+{
+    uint n = gl_LocalInvocationIndex;
+    if (n < 4u) {
+        shared_record[n] = record_word(n);
+    }
+}
+
+void take_shared_record()
+{
+    tile_record = uvec4(shared_record[0], shared_record[1], shared_record[2], shared_record[3]);
+}
+
+// Shares what shared_copy() reads after a barrier.
 void share_instance()
 {
     if (gl_LocalInvocationIndex < INSTANCE_WORDS) {
-        tile_instance[gl_LocalInvocationIndex] = instance_words[INSTANCE_WORDS * tile_record[1] + gl_LocalInvocationIndex];
+        shared_instance[gl_LocalInvocationIndex] = instance_words[INSTANCE_WORDS * tile_record.y + gl_LocalInvocationIndex];
     }
 }
 
 vec4 instance_vector(uint n)
 {
     uint at = 4u * n;
-    return uintBitsToFloat(uvec4(tile_instance[at], tile_instance[at + 1u], tile_instance[at + 2u], tile_instance[at + 3u]));
+    return uintBitsToFloat(uvec4(shared_instance[at], shared_instance[at + 1u], shared_instance[at + 2u], shared_instance[at + 3u]));
 }
 
-// Takes over frame, instance and solid.
-void begin_tile()
+Instance shared_copy()
 {
-    uint number = tile_instance[16];
-    Instance i = Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u), uvec4(number));
-    take_frame();
-    take_solid(number);
-    take_lights();
+    return Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u), uvec4(shared_instance[16]));
+}
+
+uvec2 tile_corner()
+{
+    return uvec2(tile_record.x & 0xffffu, tile_record.x >> 16);
+}
+
+// Takes over the instance and its solid.
+void begin_tile(Instance i)
+{
+    take_solid(i.solid.x);
     tile_look = look_of(i);
     tile_rays = pixel_rays(i);
 }

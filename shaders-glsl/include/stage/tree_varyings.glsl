@@ -14,10 +14,16 @@ layout(location = 14) flat VARYING vec4 tree_offset;
 #if READS_TABLES
 layout(location = 15) flat VARYING uvec4 tree_patches;
 #endif
+#if SEARCH == SEARCH_QUADRIC
+layout(location = 13) flat VARYING vec2 tree_span; // no ray meets anything before and behind these t
+#endif
 
 #ifdef VERTEX_GLSL
-void hand_over_tree()
+void hand_over_tree(vec2 span)
 {
+#if SEARCH == SEARCH_QUADRIC
+    tree_span = span;
+#endif
     tree_bounds = solid.bounds;
     tree_axis = OUTPUT == OUTPUT_DEPTH ? vec4(solid.axis.xy, float(instance_number), 0.0) : solid.axis;
 #if READS_MAP
@@ -31,6 +37,15 @@ void hand_over_tree()
 #endif
 }
 #else
+vec2 span_of_rays()
+{
+#if SEARCH == SEARCH_QUADRIC
+    return tree_span;
+#else
+    return EVERYWHERE;
+#endif
+}
+
 void take_over_tree()
 {
 #if OUTPUT == OUTPUT_DEPTH && REPEATED

@@ -40,16 +40,16 @@ impl Recorder {
     }
 }
 
-/// Prepares the frame of a slot: takes over what was set, writes what changed, records copies of
-/// new textures. To be called in every frame before revmap_renderer_record(). It neither submits
-/// nor waits.
+/// Prepares the frame of a slot: applies the values that were set, writes those that changed,
+/// records copies of new textures. The host calls it in every frame before
+/// revmap_renderer_record(). This function neither submits nor waits.
 ///
 /// The command buffer is recording, outside of a pass, for a queue of the device's family. The
 /// commands recorded for this slot before have run or were never submitted. Commands of other slots
 /// that were recorded before are submitted before these.
 ///
-/// Fails with REVMAP_RESULT_CONTENT for what cannot be drawn: it stays as it was before it was set.
-/// The text begins with the object's number.
+/// Fails with REVMAP_RESULT_CONTENT for an object that cannot be drawn; the object keeps its former
+/// values. The text begins with the object's number.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -66,8 +66,8 @@ pub unsafe extern "C" fn revmap_renderer_prepare(
     })
 }
 
-/// As revmap_renderer_prepare(), seen by a camera in pictures of width * height pixels, with depth
-/// 0 at near and 1 at far, both along the view. The output's depth order is
+/// Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
+/// height pixels. Depth is 0 at near and 1 at far, both along the view. The output's depth order is
 /// REVMAP_DEPTH_ORDER_NORMAL.
 ///
 /// Thread: one at a time for a renderer.
@@ -89,15 +89,16 @@ pub unsafe extern "C" fn revmap_renderer_prepare_camera(
     })
 }
 
-/// Records the draws of the frame that was prepared for a slot. It binds pipelines, descriptor sets
-/// 0 to 2 and an index buffer; it sets neither viewport nor scissor, which are dynamic.
+/// Records the draws of the frame that was prepared for a slot. The function binds pipelines,
+/// descriptor sets 0 to 2 and an index buffer. It sets neither viewport nor scissor, which are
+/// dynamic.
 ///
 /// The command buffer is recording, within a pass that is compatible with the output, with the
 /// view's viewport and a scissor set. The renderer lives, and the slot is not prepared again, until
 /// the commands have run.
 ///
-/// Fails with REVMAP_RESULT_USAGE, and records nothing, where the slot is not prepared. What was set
-/// since then is not drawn yet.
+/// Fails with REVMAP_RESULT_USAGE, and records nothing, if the slot is not prepared. Values set
+/// since then are not drawn yet.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -121,14 +122,14 @@ pub unsafe extern "C" fn revmap_renderer_record(
 }
 
 /// Records the dispatches of the frame that was prepared for a slot, into a target that was
-/// cleared. It records barriers between its own dispatches, none before its first and after its
-/// last write.
+/// cleared. The function records barriers between its own dispatches, none before its first and
+/// none after its last write.
 ///
 /// The command buffer is recording, outside of a pass; writes to the target before are made
 /// available to compute shaders. The renderer lives, and the slot is not prepared again, until the
 /// commands have run.
 ///
-/// Fails as revmap_renderer_record().
+/// Fails like revmap_renderer_record().
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]

@@ -7,8 +7,8 @@ use crate::pointers::{list, put, read, take};
 use crate::values::{RevmapOffset, RevmapPlacement};
 use revmap::gpu::{ObjectId, Renderer};
 
-/// An object of one renderer, which refuses those of others; never 0. It stays the same object
-/// whatever is set, and is never another's once removed.
+/// An object of one renderer, which refuses those of others; never 0. The number refers to the same
+/// object for all its values, and is never reused after its removal.
 pub type RevmapObject = u64;
 
 /// Calls `change` with a renderer and one of its objects.
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn revmap_renderer_add(
     })
 }
 
-/// Takes an object away. What frames in flight read of it is kept until they are done.
+/// Removes an object. Data that frames in flight read is kept until they are done.
 ///
 /// Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
 /// one.
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn revmap_renderer_set(
 
 /// Moves the surface of an object: extension, bevel and chamfer.
 ///
-/// Fails as revmap_renderer_set().
+/// Fails like revmap_renderer_set().
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn revmap_renderer_set_offset(
 
 /// Moves an object that is one copy.
 ///
-/// Fails as revmap_renderer_set().
+/// Fails like revmap_renderer_set().
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn revmap_renderer_set_placement(
 
 /// Gives an object other copies; with a count of 0 it is one, at its placement.
 ///
-/// Fails as revmap_renderer_set().
+/// Fails like revmap_renderer_set().
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]

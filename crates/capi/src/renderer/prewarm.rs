@@ -39,7 +39,7 @@ pub extern "C" fn revmap_prewarm_compile(prewarm: *const RevmapPrewarm) -> Revma
     enter(|| Ok(RevmapPrewarm::get(prewarm)?.compile()?))
 }
 
-/// Gives the number of pipelines, compiled or not.
+/// Returns the number of pipelines, compiled or not.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn revmap_prewarm_count(
     enter(|| unsafe { put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len())) })
 }
 
-/// Destroys the list; null is none. What was compiled stays.
+/// Destroys the list; null is none. Compiled pipelines stay.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -63,8 +63,8 @@ pub extern "C" fn revmap_prewarm_destroy(prewarm: *mut RevmapPrewarm) -> RevmapR
 /// revmap_renderer_prewarm(): some drivers compile shaders at the first draw, and do it when these
 /// commands run. In a pass it sets the scissor, too, to nothing.
 ///
-/// The slot is prepared; the caller sees to what revmap_renderer_record() or
-/// revmap_renderer_record_compute() ask for.
+/// The slot is prepared; the caller meets the conditions of revmap_renderer_record() or
+/// revmap_renderer_record_compute().
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]

@@ -7,7 +7,7 @@ use crate::values::size;
 use revmap::gpu::DrawPath;
 use std::ffi::{CString, c_char};
 
-/// What a renderer holds and did.
+/// Contents and work of a renderer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevmapStatistics {
@@ -24,11 +24,11 @@ pub struct RevmapStatistics {
     pub texture_bytes: u64,
     /// Objects that the last prepared frame does not draw at all.
     pub drawn_not: u32,
-    /// Objects that it draws by their boxes.
+    /// Number of objects drawn by their boxes.
     pub drawn_by_box: u32,
-    /// By hulls.
+    /// Number of objects drawn by hulls.
     pub drawn_by_hull: u32,
-    /// By tiles of the screen.
+    /// Number of objects drawn by tiles of the screen.
     pub drawn_by_tiles: u32,
     /// Notes that revmap_renderer_note() gives.
     pub notes: u32,
@@ -57,7 +57,7 @@ impl Recorder {
     }
 }
 
-/// Tells what a renderer holds and did. The size of statistics must be set.
+/// Returns the contents and work of a renderer. The size of statistics must be set.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
@@ -72,8 +72,8 @@ pub unsafe extern "C" fn revmap_renderer_statistics(
     })
 }
 
-/// Gives a note: what was done in another way than asked for, and why. The text lasts as long as
-/// the renderer.
+/// Returns a note: a deviation from the settings, and its reason. The text lasts as long as the
+/// renderer.
 ///
 /// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]

@@ -5,11 +5,13 @@
 
 void main()
 {
+    begin_frame();
     share_record();
     barrier();
+    take_shared_record();
     share_instance();
     barrier();
-    begin_tile();
+    begin_tile(shared_copy());
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);
     vec3 v = ray_direction(tile_rays, pixel);

@@ -18,7 +18,7 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
     return true;
 }
 
-bool trace_solid(vec3 eye, vec3 v, float base, bool inside, inout Hit hit)
+bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.

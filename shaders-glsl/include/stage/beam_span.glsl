@@ -1,0 +1,37 @@
+// Between which t a beam may meet a solid: by the nodes of a level of the tree and the largest radius of each.
+#ifndef BEAM_SPAN_GLSL
+#define BEAM_SPAN_GLSL
+#include "stage/beam.glsl"
+
+const uint SPAN_NODES = 16u; // of the second level from the top
+const uint SPAN_FIRST = 320u; // number of the first of them
+
+// Where a beam may meet node `k`; the first t is behind the last where it cannot.
+vec2 node_span(Beam beam, uint k)
+{
+    // Divided anew: of a plate a thousand times as wide as high a rounding of the inverse loses pixels.
+    float nearest = -beam.b / beam.a;
+    float least = max(dot(beam.o.xy, beam.o.xy) - beam.a * nearest * nearest, 0.0);
+    // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
+    uint at = SPAN_FIRST + k;
+    float most = node_extent(patch_tables[solid.patches.x + (at >> 2)][at & 3u]).y;
+    float radius = sqrt(max(most, 0.0)) + beam.width;
+    float low = (float(k) / float(SPAN_NODES) - beam.width - beam.o.z) * beam.per_z;
+    float high = (float(k + 1u) / float(SPAN_NODES) + beam.width - beam.o.z) * beam.per_z;
+    float reach = sqrt(max(radius * radius - least, 0.0) / beam.a);
+    vec2 span = vec2(max(min(low, high), nearest - reach), min(max(low, high), nearest + reach));
+    bool meets = most > 0.0 && radius * radius > least && span.x <= span.y;
+    return meets ? span : vec2(3e38, -3e38);
+}
+
+vec2 beam_span(Beam beam)
+{
+    vec2 span = vec2(3e38, -3e38);
+    for (uint k = 0u; k < SPAN_NODES; ++k) {
+        vec2 met = node_span(beam, k);
+        span = vec2(min(span.x, met.x), max(span.y, met.y));
+    }
+    return span;
+}
+
+#endif
