@@ -3,8 +3,8 @@
 pub mod drivers;
 mod run;
 
+use super::columns::results;
 use super::names::number;
-use super::row::COLUMNS;
 use super::stats::{self, Interval};
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
@@ -12,8 +12,8 @@ use run::Run;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The columns that tell what was measured: rows that agree in them are the same measurement.
-const KEY: &[&str] = COLUMNS.split_at(14).0;
+/// How many columns tell what was measured, the first of all: rows that agree in them are the same measurement.
+const KEY: usize = 14;
 
 /// Errors may differ by this share before they count as changed.
 const ERROR_CHANGE: f64 = 0.05;
@@ -82,7 +82,7 @@ pub struct Against {
 /// [`ErrorKind::Content`] with nothing in common.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
-    let key = |record: &[String]| record[..KEY.len()].to_vec();
+    let key = |record: &[String]| record[..KEY].to_vec();
     let mut known: HashMap<Vec<String>, usize> = HashMap::new();
     for (number, record) in before.results.records.iter().enumerate() {
         known.entry(key(record)).or_insert(number);
@@ -138,7 +138,7 @@ fn errors(old: &[String], new: &[String]) -> (Vec<Change>, Vec<Change>) {
         "normal_rms_degrees",
         "flip",
     ] {
-        let Some(at) = COLUMNS.iter().position(|c| *c == name) else {
+        let Some(at) = results().position(|c| c == name) else {
             continue;
         };
         let (Ok(a), Ok(b)) = (old[at].parse::<f64>(), new[at].parse::<f64>()) else {
@@ -166,7 +166,7 @@ pub fn as_text(against: &Against) -> String {
         "old: {}\nnew: {}\n\n",
         against.devices[0], against.devices[1]
     );
-    let columns: Vec<usize> = (0..KEY.len())
+    let columns: Vec<usize> = (0..KEY)
         .filter(|&c| against.pairs.windows(2).any(|w| w[0].key[c] != w[1].key[c]))
         .collect();
     let columns = if columns.is_empty() {

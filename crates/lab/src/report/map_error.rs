@@ -311,7 +311,8 @@ mod tests {
             map_rows: Some(64),
             ..MethodSettings::default()
         };
-        let plan = Plan::new(vec![view], &[settings]);
+        let mut plan = Plan::new(vec![view]);
+        plan.add(0, settings, "");
         let wrong = |truths: &Truths| {
             measure(&plan, (40, 30), truths, &mut |_, _| {}).unwrap()[0]
                 .errors

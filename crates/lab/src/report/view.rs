@@ -12,6 +12,10 @@ pub struct View {
     pub scene: Scene,
     /// How much of the picture its solids take.
     pub framing: Framing,
+    /// The name of the plan's entry that it comes from.
+    pub group: String,
+    /// The parameter of its form, in plans that vary one.
+    pub value: Option<f64>,
 }
 
 /// How much of the picture is solid.
@@ -96,6 +100,8 @@ impl View {
             name: name.into(),
             scene,
             framing: Framing::Whole,
+            group: String::new(),
+            value: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Charts of one value a line, each a marker on its interval: times and ratios side by side.
 
 use super::axis::{Axis, Scale};
-use super::legend::{Key, TEXT, WIDTH, dot, legend, title, word};
+use super::legend::{TEXT, WIDTH, dot, title, word};
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
 use super::{Anchor, Figure, Mark};
@@ -39,8 +39,6 @@ pub struct DotChart {
     pub mark: Option<f64>,
     /// The lines.
     pub blocks: Vec<Block>,
-    /// What the markers mean.
-    pub legend: Vec<(String, Style)>,
 }
 
 const EDGE: f64 = 14.0;
@@ -172,15 +170,9 @@ impl DotChart {
             Anchor::Middle,
             INK,
         ));
-        let entries: Vec<_> = self
-            .legend
-            .iter()
-            .map(|(name, style)| (name.clone(), vec![Key::Dot(*style, false)]))
-            .collect();
-        let below = legend(&mut marks, bottom + 2.0 * TEXT + 30.0, &entries);
         Figure {
             width: WIDTH,
-            height: below + EDGE,
+            height: bottom + 2.0 * TEXT + 14.0 + EDGE,
             top: top - 6.0,
             title: self.title.clone(),
             marks,
@@ -219,16 +211,6 @@ mod tests {
                     name: String::new(),
                     lines: values.iter().enumerate().map(line).collect(),
                 },
-            ],
-            legend: vec![
-                ("fragment".into(), Style::new(color::BLUE, Marker::Disk)),
-                (
-                    "compute".into(),
-                    Style {
-                        filled: false,
-                        ..Style::new(color::BLUE, Marker::Disk)
-                    },
-                ),
             ],
         }
     }

@@ -1,8 +1,8 @@
 //! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
-//! papers, and as pixels for places that show neither.
+//! papers, and as PNG for places that show neither.
 //!
-//! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each
-//! series has a marker of its own as well, so that a print in grey still reads.
+//! Colours are a published palette for every kind of colour vision ([`style`]). Each series has a
+//! marker of its own as well, so that a print in grey still reads.
 
 pub mod axis;
 pub mod dots;
@@ -13,8 +13,6 @@ pub mod pdf;
 pub mod raster;
 pub mod style;
 pub mod svg;
-#[cfg(test)]
-mod vision;
 pub mod xy;
 
 use letters::width;

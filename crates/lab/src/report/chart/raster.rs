@@ -45,7 +45,7 @@ pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::style::{INK, PAPER};
+    use super::super::style::INK;
     use super::super::{Anchor, Mark};
     use super::*;
 
@@ -104,6 +104,5 @@ mod tests {
             )
             .is_err()
         );
-        assert_eq!(PAPER, "#ffffff");
     }
 }

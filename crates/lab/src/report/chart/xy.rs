@@ -311,7 +311,8 @@ fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Opt
                 && b[1] > plot[1]
                 && b[2] < plot[2]
                 && b[3] < plot[3]
-                && !taken.iter().any(|t| overlap(*t, b))
+                // Two numbers side by side must not read as one.
+                && !taken.iter().any(|t| overlap(*t, [b[0] - 4.0, b[1], b[2] + 4.0, b[3]]))
         })
 }
 

@@ -8,7 +8,7 @@ fn crowded() -> XyChart {
         style: Style {
             filled: index.is_multiple_of(2),
             heavy: index == 3,
-            ..Style::new(color::ALL[index], Marker::ALL[index])
+            ..Style::new(color::ALL[index % color::ALL.len()], Marker::ALL[index])
         },
         points: (0..7)
             .map(|k| Point {
