@@ -241,6 +241,8 @@ pub static COLUMNS: &[Column] = columns! {
     "hit_share", "pixels hit", "share of the picture's pixels in which the reference hits a solid" => |_, r| Cell::Share(r.covered());
     "time_ms", "time (ms)", "time of a frame by the device's timestamps, by the wall clock where the device has none: geometric mean of the passes' medians" => |_, r| r.time().map_or(Cell::text("clocks disagree"), |t| Cell::Number(t.value));
     "time_interval", "95 % interval", "ends of the interval that covers the value with 95 % confidence, Student's over the passes; not resolved: wider than the plan allows" => |c, r| r.time().map_or(Cell::Empty, |t| Cell::Text(c.ends(&t)));
+    "time_low_ms", "time, low (ms)", "lower end of the 95 % interval of the time" => |_, r| Cell::number(r.time().and_then(|t| t.ends()).map(|e| e.0));
+    "time_high_ms", "time, high (ms)", "upper end of the 95 % interval of the time" => |_, r| Cell::number(r.time().and_then(|t| t.ends()).map(|e| e.1));
     "rate", "frames / s", "1000 over the time" => |_, r| Cell::number(r.time().map(|t| 1e3 / t.value));
     "above_floor", "above the floor / RBM baseline", "time above the floor over the whole time of the RBM baseline in the same picture and stage" => |c, r| {
         let baseline = Over::Baseline.of(c.rows, r).and_then(Row::time);
@@ -320,7 +322,13 @@ impl Context<'_> {
     /// # Errors
     /// As [`named`].
     pub fn file(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
-        self.table(rows, names, |c| c.name, Cell::csv)
+        // A number in each cell: an interval is two columns.
+        let split = |name: &str| match name {
+            "time_interval" => vec!["time_low_ms".to_owned(), "time_high_ms".to_owned()],
+            name => vec![name.to_owned()],
+        };
+        let names: Vec<String> = names.iter().flat_map(|n| split(n.as_ref())).collect();
+        self.table(rows, &names, |c| c.name, Cell::csv)
     }
 
     /// A page's table of these columns.

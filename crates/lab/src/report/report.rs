@@ -141,52 +141,77 @@ impl Run<'_> {
                 }
             };
             for chart in &exhibit.chart {
-                let mut own = chart.clone();
-                own.title = place.fill(&chart.title);
-                own.guide = place.fill(&chart.guide);
-                let figures = own.figures(context, &place.rows, &self.extra)?;
-                for (k, figure) in figures.iter().enumerate() {
-                    let mut name = place.fill(&chart.file);
-                    if k > 0 {
-                        name += &format!("-{}", k + 1);
-                    }
-                    keep_figure(folder, &name, figure)?;
-                    head(page);
-                    page.figure(figure, &place.fill(&chart.caption));
-                }
+                self.chart(context, chart, &place, page, &mut head, folder)?;
             }
             for table in &exhibit.table {
-                let shown = match table.of {
-                    exhibit::Records::Flights => flight::table(self.flights),
-                    _ => table.shown(context, &place.rows)?,
-                };
-                if shown.records.is_empty() {
-                    continue;
-                }
-                head(page);
-                if !table.heading.is_empty() {
-                    page.heading(&table.heading);
-                }
-                page.table(&shown, &exhibit::left(&shown));
-                if table.print {
-                    let above = if table.heading.is_empty() {
-                        &place.heading
-                    } else {
-                        &Some(table.heading.clone())
-                    };
-                    text += &above
-                        .as_ref()
-                        .map(|h| format!("{h}\n\n"))
-                        .unwrap_or_default();
-                    text += &format!("{}\n", shown.aligned());
-                }
-                if let Some(file) = &table.csv {
-                    let table = context.file(&place.rows, &table.columns)?;
-                    write_text(&folder.join(file), &table.csv())?;
-                }
+                text += &self.table(context, exhibit, table, &place, page, &mut head, folder)?;
             }
         }
         Ok(text)
+    }
+
+    fn chart(
+        &self,
+        context: &Context,
+        chart: &exhibit::Chart,
+        place: &Place,
+        page: &mut Page,
+        head: &mut dyn FnMut(&mut Page),
+        folder: &Path,
+    ) -> Result<()> {
+        let mut own = chart.clone();
+        own.title = place.fill(&chart.title);
+        own.guide = place.fill(&chart.guide);
+        let figures = own.figures(context, &place.rows, &self.extra)?;
+        for (k, figure) in figures.iter().enumerate() {
+            let mut name = place.fill(&chart.file);
+            if k > 0 {
+                name += &format!("-{}", k + 1);
+            }
+            keep_figure(folder, &name, figure)?;
+            head(page);
+            page.figure(figure, &place.fill(&chart.caption));
+        }
+        Ok(())
+    }
+
+    /// Writes a table; returns its text if it is printed.
+    #[allow(clippy::too_many_arguments)]
+    fn table(
+        &self,
+        context: &Context,
+        exhibit: &Exhibit,
+        table: &exhibit::Table,
+        place: &Place,
+        page: &mut Page,
+        head: &mut dyn FnMut(&mut Page),
+        folder: &Path,
+    ) -> Result<String> {
+        let shown = match table.of {
+            exhibit::Records::Flights => flight::table(self.flights),
+            _ => table.shown(context, &place.rows)?,
+        };
+        if shown.records.is_empty() {
+            return Ok(String::new());
+        }
+        head(page);
+        if !table.heading.is_empty() {
+            page.heading(&table.heading);
+        }
+        page.table(&shown, &exhibit::left(&shown));
+        if let Some(file) = &table.csv {
+            let table = context.file(&place.rows, &table.columns)?;
+            write_text(&folder.join(file), &table.csv())?;
+        }
+        if !table.print {
+            return Ok(String::new());
+        }
+        let own = Some(&table.heading).filter(|h| !h.is_empty());
+        let above = own.or(place.heading.as_ref()).or(exhibit.chapter.as_ref());
+        let above = above
+            .map(|heading| format!("{heading}\n\n"))
+            .unwrap_or_default();
+        Ok(format!("{above}{}\n", shown.aligned()))
     }
 
     /// What is compared, where and how it was measured, which rows are excluded, and what every

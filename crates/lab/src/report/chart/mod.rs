@@ -99,6 +99,25 @@ pub struct Figure {
 pub type Bounds = [f64; 4];
 
 impl Mark {
+    /// A level word.
+    #[must_use]
+    pub fn word(
+        at: (f64, f64),
+        text: &str,
+        size: f64,
+        anchor: Anchor,
+        color: &'static str,
+    ) -> Self {
+        Self::Word {
+            at,
+            text: text.to_owned(),
+            size,
+            anchor,
+            color,
+            upwards: false,
+        }
+    }
+
     /// The rectangle that it covers.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -22,7 +22,7 @@ impl Labels {
     #[must_use]
     pub fn new<'a>(ways: impl IntoIterator<Item = &'a MethodSettings>) -> Self {
         let own = |s: &MethodSettings| s.method.is_mesh() || s.method == Method::Floor;
-        let counts = |s: &&MethodSettings| !is_rbm_baseline(s) && !own(s);
+        let counts = |s: &&MethodSettings| !is_baseline_of_any_rows(s) && !own(s);
         let ways: Vec<_> = ways.into_iter().filter(counts).collect();
         fn differs<T: PartialEq>(
             ways: &[&MethodSettings],
@@ -42,8 +42,11 @@ impl Labels {
     /// The search and what else tells this way from the others, without the stage.
     #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
-        if is_rbm_baseline(s) {
-            return RBM_BASELINE.to_owned();
+        if is_baseline_of_any_rows(s) {
+            let rows = s.map_rows.filter(|_| self.rows);
+            return rows.map_or(RBM_BASELINE.to_owned(), |n| {
+                format!("{RBM_BASELINE} {n} rows")
+            });
         }
         let mut name = s.method.to_string();
         if s.edges != Edges::OneRay {
@@ -60,10 +63,11 @@ impl Labels {
         if let (true, Some(rows)) = (self.rows, s.map_rows) {
             name += &format!(" {rows} rows");
         }
-        if let (true, Some(source)) = (self.source, s.map_source) {
+        let maps = s.method.reads_map();
+        if let (true, Some(source)) = (self.source && maps, s.map_source) {
             name += &format!(" {}", source.name());
         }
-        if self.format {
+        if self.format && maps {
             name += &format!(" {}", s.map_format.name());
         }
         if self.tolerance && s.method.follows_tolerance() {
@@ -71,4 +75,12 @@ impl Labels {
         }
         name
     }
+}
+
+/// Whether settings are those of the RBM baseline, whatever rows its map has.
+fn is_baseline_of_any_rows(s: &MethodSettings) -> bool {
+    is_rbm_baseline(&MethodSettings {
+        map_rows: None,
+        ..*s
+    })
 }

@@ -51,12 +51,20 @@ fn no_words_cover_each_other_however_crowded() {
     }
     // The check itself finds what is planted.
     let mut figure = crowded().figure();
-    figure
-        .marks
-        .push(word((20.0, 30.0), "planted", 14.0, Anchor::Start, INK));
-    figure
-        .marks
-        .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
+    figure.marks.push(Mark::word(
+        (20.0, 30.0),
+        "planted",
+        14.0,
+        Anchor::Start,
+        INK,
+    ));
+    figure.marks.push(Mark::word(
+        (-20.0, 300.0),
+        "outside",
+        14.0,
+        Anchor::Start,
+        INK,
+    ));
     assert!(figure.faults().len() >= 2);
 }
 

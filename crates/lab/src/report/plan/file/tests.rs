@@ -275,9 +275,8 @@ fn a_sweep_moves_one_axis_at_a_time() {
             .filter(|s| !super::super::is_rbm_baseline(s))
             .count()
     };
-    // Steps in both stages, rows x sources and formats in one; rows of cones in both. A format that
-    // is the default is there already.
-    assert_eq!([of(0), of(1), of(2)], [6 * 2 + 5 * 3 + 2, 2, 5 * 2]);
+    // Steps in both stages, rows x sources and formats in one; rows of cones in both.
+    assert_eq!([of(0), of(1), of(2)], [6 * 2 + 5 * 3 + 3, 2, 5 * 2]);
     // A list of bounds is combined with all others instead.
     let given = Overrides {
         lists: Lists {
