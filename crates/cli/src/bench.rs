@@ -54,7 +54,7 @@ pub struct Scale {
     pub full: bool,
 }
 
-/// What is done; one of these at a time
+/// The task; one of these at a time
 #[derive(Args)]
 #[group(id = "what", multiple = false, conflicts_with = "full")]
 struct What {
@@ -71,7 +71,7 @@ struct What {
     /// How time grows with pixels, with solids and with rows of the map
     #[arg(long)]
     scaling: bool,
-    /// What a tolerance costs: errors and times of ten scenes at five tolerances
+    /// The cost of a tolerance: errors and times of ten scenes at five tolerances
     #[arg(long)]
     budget: bool,
     /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them

@@ -23,7 +23,7 @@ const EXTENTS: [(&str, &Extent); 3] = [
 /// Names of framings.
 const FRAMINGS: [(&str, Framing); 2] = [("whole", Framing::Whole), ("close", Framing::Close)];
 
-/// What to measure; lists are separated by commas
+/// Views and ways of drawing; lists are separated by commas
 #[derive(Args, Clone, Debug)]
 pub struct Lists {
     /// The scenes, TOML files [default: solids that the program carries]
@@ -32,7 +32,7 @@ pub struct Lists {
     /// Pixels across and down [default: 800x600]
     #[arg(long, value_name = "WIDTHxHEIGHT,...", value_delimiter = ',', value_parser = size)]
     pub size: Vec<(u32, u32)>,
-    /// Where rays are traced [default: fragment,compute]
+    /// Stages in which rays are traced [default: fragment,compute]
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<Tracing>,
     /// The searches, meshes among them [default: those worth choosing between; all with --full]
@@ -44,7 +44,7 @@ pub struct Lists {
     /// Rows of every shape map [default: each object's map_rows]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub map_rows: Vec<u32>,
-    /// Where distances come from [default: exact]
+    /// Sources of distances [default: exact]
     #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&MapSource::NAMES))]
     pub map_source: Vec<MapSource>,
     /// How distances are stored on the device [default: r32]
@@ -93,10 +93,10 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// What is named, for a plan to apply.
+    /// The named values, for a plan to apply.
     ///
     /// # Errors
-    /// Of reading scenes.
+    /// A scene cannot be read.
     pub fn overrides(&self, quick: bool) -> Result<Overrides> {
         let device = |stage: &Tracing| match stage {
             Tracing::Device(stage) => Some(*stage),
@@ -126,7 +126,7 @@ impl Lists {
     /// The folder of results, or that of one made for them below `results/`.
     ///
     /// # Errors
-    /// As [`folder::claim`].
+    /// See [`folder::claim`].
     pub fn folder(&self, name: &str) -> Result<PathBuf> {
         let Some(out) = &self.out else {
             return folder::fresh(Path::new("results"), name);

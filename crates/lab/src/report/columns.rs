@@ -15,7 +15,7 @@ use revmap::maps::MapSource;
 use revmap::scene::Offset;
 use revmap::settings::Tolerance;
 
-/// What a cell holds.
+/// The content of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
     /// Nothing.
@@ -33,7 +33,7 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// As files have it.
+    /// Its text in files.
     #[must_use]
     pub fn csv(&self) -> String {
         match self {
@@ -45,7 +45,7 @@ impl Cell {
         }
     }
 
-    /// As tables show it.
+    /// Its text in tables.
     #[must_use]
     pub fn shown(&self) -> String {
         match self {
@@ -93,7 +93,7 @@ impl Cell {
     }
 }
 
-/// What cells are made from, beside their row.
+/// The sources of cells beside their row.
 pub struct Context<'a> {
     /// All rows.
     pub rows: &'a [Row],
@@ -115,9 +115,9 @@ pub struct Column {
     pub name: &'static str,
     /// Its heading in tables and on axes, with its unit.
     pub heading: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub meaning: &'static str,
-    /// What lies below is drawn here, in charts with logarithmic axes; 0: nothing is moved.
+    /// Smaller values are drawn here, on logarithmic axes; 0 for none.
     pub floor: f64,
     /// The cell of a row.
     pub cell: fn(&Context, &Row) -> Cell,
@@ -320,7 +320,7 @@ impl Context<'_> {
     /// A file's table of these columns: a record a row.
     ///
     /// # Errors
-    /// As [`named`].
+    /// See [`named`].
     pub fn file(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         // A number in each cell: an interval is two columns.
         let split = |name: &str| match name {
@@ -334,7 +334,7 @@ impl Context<'_> {
     /// A page's table of these columns.
     ///
     /// # Errors
-    /// As [`named`].
+    /// See [`named`].
     pub fn page(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         self.table(rows, names, |c| c.heading, Cell::shown)
     }

@@ -12,7 +12,7 @@ use run::Run;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// How many columns tell what was measured, the first of all: rows that agree in them are the same measurement.
+/// Number of columns that name the measurement, the first of all: rows that agree in them are the same measurement.
 const KEY: usize = 14;
 
 /// Errors may differ by this share before they count as changed.
@@ -21,7 +21,7 @@ const ERROR_CHANGE: f64 = 0.05;
 /// One measurement that both folders hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// What was measured: the values of the columns that tell it.
+    /// The measurement: the values of the columns that name it.
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
@@ -29,16 +29,16 @@ pub struct Pair {
     /// run: what is left when one run had the slower machine. `None` where a run lacks that loop,
     /// and for the loop itself.
     pub relative: Option<Interval>,
-    /// What of the errors has grown.
+    /// The errors that have grown.
     pub worse: Vec<Change>,
-    /// What of the errors has shrunk.
+    /// The errors that have shrunk.
     pub better: Vec<Change>,
 }
 
 /// An error that differs: column, old, new.
 pub type Change = (&'static str, f64, f64);
 
-/// What became of a time.
+/// The change of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The interval lies above 1.
@@ -52,7 +52,7 @@ pub enum Verdict {
 }
 
 impl Pair {
-    /// What became of its time: in proportion to the RBM baseline where both runs have it.
+    /// The change of its time: in proportion to the RBM baseline where both runs have it.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match self.relative.or(self.time) {
@@ -67,7 +67,7 @@ impl Pair {
 /// Two runs side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
-    /// What both hold, in the order of the new run.
+    /// The measurements of both, in the order of the new run.
     pub pairs: Vec<Pair>,
     /// How many measurements only the old run has, and only the new one.
     pub alone: (usize, usize),

@@ -16,7 +16,7 @@ use std::time::Instant;
 /// A Vulkan device to measure on.
 pub struct DeviceBench {
     device: MethodDevice,
-    /// Whether the device's clock counts, where it has one.
+    /// True if the device's clock counts, where it has one.
     own_clock: bool,
 }
 
@@ -24,14 +24,14 @@ impl DeviceBench {
     /// Measures on this device; without its own clock by the wall clock alone.
     ///
     /// # Errors
-    /// Of Vulkan.
+    /// Vulkan fails.
     pub fn new(device: Device, own_clock: bool) -> Result<Self> {
         let device = MethodDevice::new(device)?;
         Ok(Self { device, own_clock })
     }
 }
 
-/// What draws one frame.
+/// A way to draw one frame.
 enum Drawer {
     /// So many frames, one for each ray of a pixel.
     Rays(MethodRenderer, u32),

@@ -35,7 +35,7 @@ pub struct FlightTimes {
     pub settings: MethodSettings,
     /// How many solids it went through.
     pub solids: u32,
-    /// Of every frame; the CPU's part of a new view is within `prepare_ms`.
+    /// Times of every frame; the CPU's part of a new view is within `prepare_ms`.
     pub times: Vec<Times>,
     /// Frames that were held to exact pictures, and their errors in pixels.
     pub errors: Vec<(usize, PixelErrors)>,
@@ -44,7 +44,7 @@ pub struct FlightTimes {
 /// Flies through `count` solids in so many frames; each `every`th picture is held to an exact one.
 ///
 /// # Errors
-/// Of the device, and of the solids that the program carries.
+/// The device fails, or a solid that the program carries cannot be read.
 pub fn fly(
     device: &MethodDevice,
     settings: &MethodSettings,
@@ -109,7 +109,7 @@ impl FlightTimes {
         [median, all.into_iter().fold(0.0, f64::max)]
     }
 
-    /// What the CPU takes of a median frame, milliseconds.
+    /// The CPU's part of a median frame, milliseconds.
     #[must_use]
     pub fn prepare_ms(&self) -> f64 {
         let all: Vec<f64> = self.times.iter().map(|t| t.prepare_ms).collect();

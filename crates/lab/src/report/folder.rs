@@ -191,7 +191,7 @@ pub fn raw(rows: &[Row]) -> Table {
     table
 }
 
-/// What is in no summary and why: rows whose clocks disagree (`row` is their number in
+/// The rows in no summary, and why: those whose clocks disagree (`row` is their number in
 /// `results.csv`), and measurements that could not be made (`row` is empty).
 #[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {

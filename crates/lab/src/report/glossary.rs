@@ -1,4 +1,4 @@
-//! What the names of methods in a report mean, in a sentence each: a reader of one page needs no
+//! The meanings of methods' names in a report, a sentence each: a reader of one page needs no
 //! other.
 
 use super::measure::Measured;
@@ -8,7 +8,7 @@ use super::row::Row;
 use crate::method::Method;
 use revmap::settings::Solver;
 
-/// What a search does.
+/// The meaning of a method's name.
 #[must_use]
 pub fn meaning(method: Method) -> &'static str {
     match method {

@@ -1,6 +1,6 @@
 //! The note on the machine that stands beside every result.
 
-/// Where and when something was measured.
+/// Place and time of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     /// The Vulkan device's name.

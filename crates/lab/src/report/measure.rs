@@ -24,17 +24,17 @@ pub trait TimedRenderer {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of drawing.
+    /// Drawing fails.
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// What makes renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
+/// A source of renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
 /// itself.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
     /// # Errors
-    /// Where this way of drawing does not apply to the view; a failure of the device itself is
+    /// This way of drawing does not apply to the view; a failure of the device itself is
     /// [`ErrorKind::DeviceLost`] and ends the run.
     fn timed_renderer(
         &mut self,
@@ -45,13 +45,13 @@ pub trait Bench {
     /// One frame with all planes, and the bytes of its maps.
     ///
     /// # Errors
-    /// As [`Bench::timed_renderer`].
+    /// See [`Bench::timed_renderer`].
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
-    /// What should be seen.
+    /// The truth.
     ///
     /// # Errors
-    /// Of the scene.
+    /// The scene is wrong.
     fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
 }
 
@@ -75,20 +75,20 @@ pub struct RenderedCase<'a> {
     pub case: &'a Case,
     /// The picture.
     pub frame: &'a Frame,
-    /// What should be seen.
+    /// The truth.
     pub truth: &'a Frame,
     /// How the two were compared.
     pub options: &'a CompareOptions,
 }
 
-/// What came out.
+/// The outcome of a run.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// Rows in the order of the plan's cases, without those left out.
     pub rows: Vec<Row>,
     /// Cases that could not be measured, and why.
     pub left_out: Vec<(Case, String)>,
-    /// Whether the run was ended early.
+    /// True if the run was ended early.
     pub interrupted: bool,
     /// How long it took.
     pub took: Duration,
@@ -384,7 +384,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Whether every row's interval is narrow enough.
+    /// True if every row's interval is narrow enough.
     fn known(&self) -> bool {
         let narrow = |row: &Row| {
             row.time()
@@ -393,7 +393,7 @@ impl Run<'_> {
         self.rows.iter().flatten().all(narrow)
     }
 
-    /// Whether one more pass, as long as those before, would end too late.
+    /// True if one more pass, as long as those before, would end too late.
     fn late(&self, passes: usize) -> bool {
         let gone = self.start.elapsed();
         gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time()
@@ -406,14 +406,14 @@ fn mean_flip(truth: &Frame, frame: &Frame) -> f64 {
     map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len().max(1) as f64
 }
 
-/// Whether the median of these samples is known to within `precision`, by their median deviation.
+/// True if the median of these samples is known to within `precision`, by their median deviation.
 fn settled(samples: &[Sample], precision: f64) -> bool {
     let times: Vec<f64> = samples.iter().map(|s| s.frame_ms).collect();
     let Some(middle) = super::stats::median(&times) else {
         return false;
     };
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // Of a normal distribution the median's standard error is 1.25 sigma / sqrt n, sigma 1.48
+    // The standard error of a normal distribution's median is 1.25 sigma / sqrt n, sigma is 1.48
     // median deviations.
     let error =
         1.25 * 1.48 * super::stats::median(&off).unwrap_or(0.0) / (times.len() as f64).sqrt();

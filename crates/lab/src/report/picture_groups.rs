@@ -17,7 +17,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// What it holds, in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are
+    /// Its content in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are
     /// hit`.
     #[must_use]
     pub fn title(&self) -> String {
@@ -43,7 +43,7 @@ impl Part {
         format!("{name}: {count}, of which {hit} of the pixels are hit")
     }
 
-    /// What its charts call its views.
+    /// The name of its views in charts.
     #[must_use]
     pub fn views(&self) -> &'static str {
         match self.framing {
@@ -53,7 +53,7 @@ impl Part {
         }
     }
 
-    /// What the names of its files end in: nothing for the part that holds all.
+    /// The ending of its files' names: nothing for the part that holds all.
     #[must_use]
     pub fn ending(&self, parts: &[Self]) -> String {
         match self.framing {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub struct Shot {
     /// Index of the view.
     pub view: usize,
-    /// What it shows.
+    /// Its title.
     pub caption: String,
     /// A PNG file's bytes.
     pub small: Vec<u8>,
@@ -30,7 +30,7 @@ pub const MOST_STEPS: f64 = 128.0;
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
-/// Of more views than this heat maps of the first alone are shown, and of each view a smaller
+/// Beyond so many views, heat maps are of the first alone, and each view has a smaller
 /// picture.
 const MANY_VIEWS: usize = 12;
 /// Pictures of many views are at most this wide.
@@ -43,7 +43,7 @@ pub struct Album {
     heat_maps: bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
-    /// What was collected.
+    /// The pictures.
     pub shots: Vec<Shot>,
 }
 
@@ -146,7 +146,7 @@ impl Album {
     }
 }
 
-/// Whether a way of drawing is worth a heat map: in a sweep only searches as they are drawn by
+/// True if a way of drawing is worth a heat map: in a sweep only searches as they are drawn by
 /// default, and at one middling bound on steps.
 fn worth(s: &MethodSettings) -> bool {
     let plain = s.map_rows.is_none()
@@ -156,7 +156,7 @@ fn worth(s: &MethodSettings) -> bool {
     is_rbm_baseline(s) || (usual && s.method != Method::Floor)
 }
 
-/// What the colours of heat maps mean.
+/// The meaning of the colours of heat maps.
 #[must_use]
 pub fn heat_key() -> String {
     format!(

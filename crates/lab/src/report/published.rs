@@ -20,7 +20,7 @@ pub struct Printed {
     pub values: [f64; 3],
     /// Frames per second at each of [`SIZES`].
     pub rates: [[f64; 3]; 2],
-    /// What the article says of speed as the parameter grows.
+    /// The article's claim: how speed changes as the parameter grows.
     pub claim: &'static str,
 }
 

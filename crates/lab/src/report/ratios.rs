@@ -131,7 +131,7 @@ pub fn over(rows: &[Row], over: Over) -> Vec<Ratio<'_>> {
     ours.flat_map(of).collect()
 }
 
-/// Whether the depth error of a row (99th percentile) is no more than that of another.
+/// True if the depth error of a row (99th percentile) is no more than that of another.
 fn errs_no_more(row: &Row, other: &Row) -> bool {
     let p99 = |r: &Row| r.errors.depth.map(|d| d.p99);
     p99(row).zip(p99(other)).is_some_and(|(a, b)| a <= b)
@@ -200,7 +200,7 @@ pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
     (row.settings.method != Method::Floor).then_some(above)
 }
 
-/// Whether two rows show the same view at the same size.
+/// True if two rows show the same view at the same size.
 fn same_picture(a: &Row, b: &Row) -> bool {
     let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
     key(a) == key(b)

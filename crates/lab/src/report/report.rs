@@ -29,22 +29,22 @@ pub struct Run<'a> {
     pub plan: &'a Plan,
     /// The rows.
     pub measured: &'a Measured,
-    /// Where it was measured.
+    /// The machine.
     pub machine: &'a Machine,
     /// Pictures.
     pub album: &'a Album,
     /// Flights.
     pub flights: &'a [FlightTimes],
-    /// What charts show beside rows.
+    /// Figures in charts that are not rows.
     pub extra: Extra,
 }
 
 /// Rows that have tables and charts of their own, and how these are named.
 struct Place<'a> {
     rows: Vec<&'a Row>,
-    /// What stands above them.
+    /// The heading above them.
     heading: Option<String>,
-    /// What the words in braces stand for.
+    /// The values of the words in braces.
     words: [(&'static str, String); 5],
 }
 
@@ -214,8 +214,7 @@ impl Run<'_> {
         Ok(format!("{above}{}\n", shown.aligned()))
     }
 
-    /// What is compared, where and how it was measured, which rows are excluded, and what every
-    /// column means: the end of every page.
+    /// The end of every page: methods, excluded rows, the machine and how it was measured, columns.
     fn end(&self, page: &mut Page) {
         let measured = self.measured;
         glossary::chapter(page, measured);
@@ -391,7 +390,7 @@ fn capital(words: &str) -> String {
 /// `results.csv`: one record a row.
 ///
 /// # Errors
-/// Of names of columns.
+/// A column of this name does not exist.
 pub fn results(rows: &[Row], plan: &Plan, machine: &Machine, resolved: f64) -> Result<Table> {
     let context = Context {
         rows,

@@ -12,7 +12,7 @@ use revmap::scene::Offset;
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
 
-/// What one frame took.
+/// The times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Milliseconds between the device's own timestamps; `None` where it has none.
@@ -35,7 +35,7 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any
+    /// Look-ups of a frame. Pixels in which no look-up was made do not count: they are not covered by any
     /// box.
     #[must_use]
     pub fn of(frame: &Frame) -> Self {
@@ -54,7 +54,7 @@ impl Steps {
     }
 }
 
-/// What the two clocks say about each other.
+/// Agreement of the two clocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clocks {
     /// They agree.
@@ -106,7 +106,7 @@ pub struct Row {
     pub steps: Steps,
     /// Bytes of maps on the device.
     pub map_bytes: u64,
-    /// What frames took, in the passes and rounds in which they were drawn.
+    /// Times of frames, in the passes and rounds in which they were drawn.
     pub passes: Vec<Vec<Sample>>,
 }
 
@@ -159,7 +159,7 @@ impl Row {
         (self.settings.method != Method::Floor).then_some(&self.errors)
     }
 
-    /// Whether the time is known to within `most`, half the width of its interval over the value.
+    /// True if the time is known to within `most`, half the width of its interval over the value.
     #[must_use]
     pub fn resolved(&self, most: f64) -> bool {
         self.time().is_some_and(|t| t.relative() <= most)
@@ -191,7 +191,7 @@ impl Row {
         self.passes.iter().flatten().map(|s| s.frame_ms).collect()
     }
 
-    /// Whether the two clocks agree.
+    /// Agreement of the two clocks.
     #[must_use]
     pub fn clocks(&self) -> Clocks {
         let Some(gpu_ms) = self.typical(|s| s.gpu_ms) else {

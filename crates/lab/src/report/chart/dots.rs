@@ -11,7 +11,7 @@ use crate::report::stats::Interval;
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its value.
     pub value: Interval,
@@ -31,7 +31,7 @@ pub struct Block {
 /// A chart of values with intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DotChart {
-    /// What it shows.
+    /// Its title.
     pub title: String,
     /// The axis across.
     pub axis: Axis,

@@ -1,4 +1,4 @@
-//! What charts of every kind share: sizes, a sheet to draw on, titles, legends.
+//! Parts that charts of every kind share: sizes, a sheet to draw on, titles, legends.
 
 use super::letters::{width, wrap};
 use super::style::{Dash, GRID, INK, PAPER, Style};
@@ -13,7 +13,7 @@ const TITLE: f64 = 16.0;
 pub(super) const TEXT: f64 = 14.0;
 const MARKER: f64 = 9.5;
 
-/// What is before a name in a legend.
+/// The sign before a name in a legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Key {
     /// A marker, with or without its line.

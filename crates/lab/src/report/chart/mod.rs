@@ -18,14 +18,14 @@ pub mod xy;
 use letters::width;
 use style::Dash;
 
-/// Where a word stands to its point.
+/// The side of its point on which a word is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// To the right of it.
+    /// The right.
     Start,
     /// Centred on it.
     Middle,
-    /// To the left of it.
+    /// The left.
     End,
 }
 
@@ -67,15 +67,15 @@ pub enum Mark {
     Word {
         /// Its point, on the base line.
         at: (f64, f64),
-        /// What it says.
+        /// Its text.
         text: String,
         /// Height of the letters' body.
         size: f64,
-        /// Where it stands to its point.
+        /// The side of its point.
         anchor: Anchor,
         /// Colour, as `#rrggbb`.
         color: &'static str,
-        /// Whether it runs upwards.
+        /// True if it runs upwards.
         upwards: bool,
     },
 }
@@ -89,7 +89,7 @@ pub struct Figure {
     pub height: f64,
     /// Pixels of the title, above all else.
     pub top: f64,
-    /// What it shows, for those who cannot see it.
+    /// Its title, also for those who cannot see it.
     pub title: String,
     /// Its parts, those in front last.
     pub marks: Vec<Mark>,
@@ -152,7 +152,7 @@ impl Mark {
     }
 }
 
-/// Whether two rectangles have more than an edge in common.
+/// True if two rectangles have more than an edge in common.
 #[must_use]
 pub fn overlap(a: Bounds, b: Bounds) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]

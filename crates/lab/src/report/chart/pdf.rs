@@ -13,7 +13,7 @@ const COLUMN: f64 = 241.0;
 
 /// The font's name in the file.
 const FONT_NAME: Name = Name(b"DejaVuSans");
-/// What a page calls the font.
+/// The font's name on the page.
 const FONT_KEY: Name = Name(b"F");
 /// Codes of the text are the font's own glyphs.
 const GLYPHS: SystemInfo = SystemInfo {

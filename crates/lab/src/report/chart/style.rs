@@ -149,9 +149,9 @@ pub struct Style {
     pub marker: Marker,
     /// How its lines are broken.
     pub dash: Dash,
-    /// Whether it stands out: larger markers, thicker lines.
+    /// True if it is prominent: larger markers, thicker lines.
     pub heavy: bool,
-    /// Whether its markers are filled.
+    /// True if its markers are filled.
     pub filled: bool,
 }
 

@@ -31,7 +31,7 @@ pub struct Series {
     pub style: Style,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
-    /// Whether a line joins them.
+    /// True if a line joins them.
     pub joined: bool,
 }
 
@@ -66,7 +66,7 @@ impl Guide {
 /// A chart of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct XyChart {
-    /// What it shows.
+    /// Its title.
     pub title: String,
     /// Across.
     pub x: Axis,
@@ -78,7 +78,7 @@ pub struct XyChart {
     pub guides: Vec<Guide>,
 }
 
-/// What is drawn, and what words keep off.
+/// The marks so far, and the places that words keep off.
 #[derive(Default)]
 struct Drawing {
     sheet: Sheet,
@@ -124,7 +124,7 @@ impl XyChart {
             drawing.guide(&plot, guide);
         }
         drawing.series(&plot, &self.series);
-        // What is outside of the plot is not drawn, and not in the legend.
+        // A guide outside of the plot is not drawn, and not in the legend.
         let entries = self.legend(|guide| !plot.parts(guide).is_empty());
         let mut sheet = drawing.sheet;
         let bottom = sheet.legend(bounds[3] + 2.0 * TEXT + 32.0, &entries);

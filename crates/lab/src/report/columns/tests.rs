@@ -92,7 +92,7 @@ fn a_record_has_the_columns_of_the_contract() {
     ] {
         assert_eq!(at(&fine, column), wanted, "{column}");
     }
-    // Of several passes: the report's time and interval.
+    // Several passes give the report's time and interval.
     let passes = row(&[
         &[(Some(20.0), 21.0)],
         &[(Some(22.0), 23.0)],

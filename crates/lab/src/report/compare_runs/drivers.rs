@@ -34,7 +34,7 @@ fn place_of(technique: &str) -> usize {
     known.unwrap_or(TECHNIQUES.len())
 }
 
-/// What a cell is made of.
+/// The figures of a cell.
 #[derive(Default)]
 struct Cell {
     /// Logarithms of times over the RBM baseline's, by picture.
@@ -73,9 +73,9 @@ impl Cell {
 /// percentile in h/512, geometric mean), and its wrong pixels over those of the picture.
 ///
 /// # Errors
-/// Of reading the folders' files.
+/// A file of a folder cannot be read.
 pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
-    // By the technique's place, its name and tolerance, whether it is compute.
+    // The key: the technique's place, its name and tolerance, and true for compute.
     let mut rows: BTreeMap<(usize, String, bool), Vec<Cell>> = BTreeMap::new();
     let mut drivers = Vec::new();
     for (column, folder) in folders.iter().enumerate() {

@@ -26,11 +26,11 @@ use revmap::settings::DrawStage;
 pub struct Chart {
     /// Its file's name; `{scene}`, `{size}`, `{stage}` and `{part}` stand for what it is of.
     pub file: String,
-    /// What it shows; the same words may stand in it, and `{views}`.
+    /// Its title, with the same words, and `{views}`.
     pub title: String,
-    /// What stands below it.
+    /// The caption.
     pub caption: String,
-    /// What it draws.
+    /// The kind of its marks.
     #[serde(default)]
     pub kind: Kind,
     /// The column across.
@@ -41,27 +41,27 @@ pub struct Chart {
     pub y: String,
     /// Points are ways of drawing, their times put over these rows; else points are rows.
     pub over: Option<Over>,
-    /// What a line of its own is.
+    /// The rows that share a line.
     #[serde(default)]
     pub series: SeriesBy,
-    /// Whether it has the Pareto front.
+    /// True if it has the Pareto front.
     #[serde(default)]
     pub front: bool,
-    /// Whether power laws are fitted.
+    /// True if power laws are fitted.
     #[serde(default)]
     pub law: bool,
-    /// Whether ticks stand at the values across alone.
+    /// True if ticks are at the values across, and nowhere else.
     #[serde(default)]
     pub ticks: bool,
     /// A line to compare points with: `equal`, or `published N` of a published table.
     #[serde(default)]
     pub guide: String,
-    /// Whether the axes are even, not logarithmic: across, up.
+    /// True for an even axis, not a logarithmic one: across, up.
     #[serde(default)]
     pub linear: [bool; 2],
 }
 
-/// What a chart draws.
+/// Kinds of charts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
@@ -74,7 +74,7 @@ pub enum Kind {
     MapRows,
 }
 
-/// What a line of its own is.
+/// The rows that share a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeriesBy {
@@ -89,7 +89,7 @@ pub enum SeriesBy {
     Source,
 }
 
-/// What charts show beside rows.
+/// Figures in charts that are not rows.
 #[derive(Clone, Debug, Default)]
 pub struct Extra {
     /// Errors of maps alone.
@@ -105,7 +105,7 @@ struct Item {
     style: Style,
     point: Point,
     joined: bool,
-    /// Whether its time is resolved.
+    /// True if its time is resolved.
     resolved: bool,
 }
 
@@ -124,7 +124,7 @@ impl Chart {
     /// would be longer than a page.
     ///
     /// # Errors
-    /// Of names of columns.
+    /// A column of this name does not exist.
     pub fn figures(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Vec<Figure>> {
         match self.kind {
             Kind::Dots => Ok(self.dots(context, rows)),
@@ -550,7 +550,8 @@ impl Chart {
     }
 }
 
-/// What a marker is called: a mesh's tessellation, or what tells this way from others of its method.
+/// The word beside a marker: a mesh's tessellation, or the difference from other ways of the same
+/// method.
 fn label(context: &Context, s: &MethodSettings) -> Option<String> {
     if is_rbm_baseline(s) {
         return None;

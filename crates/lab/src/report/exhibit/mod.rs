@@ -1,5 +1,5 @@
 //! Tables and charts of a report, as TOML describes them: `exhibits.toml` holds the program's own, and
-//! a plan may add some. Each names columns; see [`columns`](super::columns).
+//! a plan may add some. Each names columns; see [`columns`].
 
 mod charts;
 mod tables;
@@ -23,7 +23,7 @@ pub struct Exhibit {
     /// Paragraphs before the tables and charts.
     #[serde(default)]
     pub text: Vec<String>,
-    /// What has tables and charts of its own.
+    /// The groups of rows that have tables and charts of their own.
     #[serde(default)]
     pub per: Per,
     /// Names of the plan's entries whose rows count; none: all.
@@ -40,7 +40,7 @@ pub struct Exhibit {
     pub table: Vec<Table>,
 }
 
-/// What has tables and charts of its own.
+/// The groups of rows that have tables and charts of their own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Per {

@@ -18,9 +18,9 @@ use revmap::error::{Error, ErrorKind, Result};
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Table {
-    /// What its records are.
+    /// The kind of its records.
     pub of: Records,
-    /// What stands above it.
+    /// The heading above it.
     pub heading: String,
     /// Columns, by their names. In tables of ways also `ratio R`, `interval R`, `range R` of the
     /// time over `R`, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
@@ -28,15 +28,15 @@ pub struct Table {
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
     pub over: Option<Over>,
-    /// The file that holds it besides.
+    /// The file that holds it, too.
     pub csv: Option<String>,
-    /// Whether it is printed besides.
+    /// True if it is printed, too.
     pub print: bool,
     /// In tables of growth, the column that grows; in published ones the number of the table.
     pub x: String,
 }
 
-/// What the records of a table are.
+/// Kinds of records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Records {
@@ -98,7 +98,7 @@ impl Table {
     /// The table over these rows, for a page.
     ///
     /// # Errors
-    /// Of names of columns.
+    /// A column of this name does not exist.
     pub fn shown(&self, context: &Context, rows: &[&Row]) -> Result<Text> {
         match self.of {
             Records::Rows => context.page(rows, &self.columns),
@@ -133,7 +133,7 @@ pub fn left(table: &Text) -> Vec<usize> {
 /// The table of ways of drawing over others.
 ///
 /// # Errors
-/// Of names of columns.
+/// A column of this name does not exist.
 pub fn ways_table(
     context: &Context,
     rows: &[Row],

@@ -78,7 +78,7 @@ pub(super) fn avenue(one: &View) -> View {
 /// Copies of a pawn, a rook and a king between 41 and 412 units away: 20 to 2 pixels high at 800x600.
 ///
 /// # Errors
-/// Of the solids that the program carries.
+/// A solid that the program carries cannot be read.
 pub fn distant() -> Result<View> {
     let mut objects = Vec::new();
     let mut scene = None;
@@ -112,7 +112,7 @@ pub fn distant() -> Result<View> {
 /// within, over the heads of the first.
 ///
 /// # Errors
-/// Of the solids that the program carries.
+/// A solid that the program carries cannot be read.
 pub fn army(count: u32) -> Result<View> {
     let views = suite::views(&Extent::All, &[25.0])?;
     let mut scene = views[0].scene.clone();

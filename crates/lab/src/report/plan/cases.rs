@@ -23,7 +23,7 @@ pub struct Case {
     pub sweeps: u64,
 }
 
-/// What pictures are compared with.
+/// The picture that others are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Truth {
     /// The double-precision reference.
@@ -35,18 +35,18 @@ pub enum Truth {
 /// All that is measured in one run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What is looked at.
+    /// The views.
     pub views: Vec<View>,
     /// The measurements, none twice.
     pub cases: Vec<Case>,
     /// Names of the entries, each once.
     pub sweeps: Vec<String>,
-    /// Whether views are compared with each other: then all views of one size are drawn in turn,
+    /// True if views are compared with each other: then all views of one size are drawn in turn,
     /// not each view by itself.
     pub mixed: bool,
-    /// What pictures are compared with.
+    /// The picture that others are compared with.
     pub truth: Truth,
-    /// Whether errors are measured in pixels too.
+    /// True if errors are measured in pixels too.
     pub pixel_errors: bool,
 }
 
@@ -221,7 +221,7 @@ pub(in crate::report) fn grouped<T: Clone>(
     groups
 }
 
-/// Whether two measurements show the same picture.
+/// True if two measurements show the same picture.
 #[must_use]
 pub fn same_picture(a: &Case, b: &Case) -> bool {
     let key = |c: &Case| (c.view, c.settings.width, c.settings.height);
@@ -271,7 +271,7 @@ pub fn variant(settings: &MethodSettings) -> MethodSettings {
     }
 }
 
-/// Whether settings are those of [`rbm_baseline`].
+/// True if settings are those of [`rbm_baseline`].
 #[must_use]
 pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
     s.method == CIRCLE

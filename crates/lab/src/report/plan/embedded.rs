@@ -38,7 +38,7 @@ pub fn text(name: &str) -> Result<&'static str> {
 /// A plan of the program.
 ///
 /// # Errors
-/// As [`text`].
+/// See [`text`].
 pub fn plan(name: &str) -> Result<PlanFile> {
     PlanFile::parse(text(name)?).map_err(|e| e.in_file(format!("{name}.toml")))
 }
@@ -46,7 +46,7 @@ pub fn plan(name: &str) -> Result<PlanFile> {
 /// Each plan's name and what it measures.
 ///
 /// # Errors
-/// As [`plan`].
+/// See [`plan`].
 pub fn list() -> Result<Vec<(&'static str, String)>> {
     let one = |(name, _): &(&'static str, &str)| Ok((*name, plan(name)?.about));
     ALL.iter().map(one).collect()

@@ -24,7 +24,7 @@ pub struct PlanFile {
     /// How long, and how often.
     #[serde(default)]
     pub time: TimeBudget,
-    /// What is looked at.
+    /// The views.
     pub views: Vec<Views>,
     /// How it is drawn: every combination of the lists of each entry.
     pub measure: Vec<Measure>,
@@ -38,22 +38,22 @@ pub struct PlanFile {
     /// Tables and charts of the plan's own.
     #[serde(default)]
     pub exhibit: Vec<Exhibit>,
-    /// Whether all views of one size are drawn in turn, not each view by itself.
+    /// True if all views of one size are drawn in turn, not each view by itself.
     #[serde(default)]
     pub mixed: bool,
     /// Rays per pixel of the picture that others are compared with; 1: the reference.
     #[serde(default = "one_ray")]
     pub truth_rays: u32,
-    /// Whether errors are measured in pixels too.
+    /// True if errors are measured in pixels too.
     #[serde(default)]
     pub pixel_errors: bool,
-    /// Whether times are those of the wall clock, also where the device has a clock.
+    /// True if times are those of the wall clock, also where the device has a clock.
     #[serde(default)]
     pub wall_clock: bool,
-    /// Whether heat maps are drawn of every way; else of the RBM baseline alone.
+    /// True if heat maps are drawn.
     #[serde(default)]
     pub heat_maps: bool,
-    /// What a quick look has in place of the keys above.
+    /// The values for a quick look, in place of the keys above.
     pub quick: Option<Quick>,
 }
 
@@ -61,17 +61,17 @@ fn one_ray() -> u32 {
     1
 }
 
-/// What a quick look has in place of the plan's own keys.
+/// The values of a quick look, in place of the plan's own.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Quick {
-    /// As [`PlanFile::time`].
+    /// See [`PlanFile::time`].
     pub time: Option<TimeBudget>,
-    /// As [`PlanFile::views`].
+    /// See [`PlanFile::views`].
     pub views: Option<Vec<Views>>,
-    /// As [`PlanFile::measure`].
+    /// See [`PlanFile::measure`].
     pub measure: Option<Vec<Measure>>,
-    /// As [`PlanFile::flights`].
+    /// See [`PlanFile::flights`].
     pub flights: Option<Vec<Flight>>,
 }
 
@@ -84,7 +84,7 @@ pub struct Measure {
     pub name: String,
     /// Names of the views that it draws; empty: all.
     pub views: Vec<String>,
-    /// Where rays are traced.
+    /// The stages in which rays are traced.
     #[serde(deserialize_with = "stages")]
     pub stages: Vec<DrawStage>,
     /// How the surface is found.
@@ -109,7 +109,7 @@ pub struct Measure {
     /// How edges are treated.
     #[serde(deserialize_with = "parsed")]
     pub edges: Vec<Edges>,
-    /// Whether methods that read neither a map nor a table are left out.
+    /// True if methods that read neither a map nor a table are left out.
     pub readers_only: bool,
 }
 
@@ -249,10 +249,10 @@ fn tenth() -> usize {
     10
 }
 
-/// What the command line changes in a plan.
+/// Changes that the command line makes in a plan.
 #[derive(Clone, Debug, Default)]
 pub struct Overrides {
-    /// Whether a quick look is enough.
+    /// True for a quick look.
     pub quick: bool,
     /// Scenes in place of the program's own solids.
     pub scenes: Vec<View>,
@@ -286,7 +286,7 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// Whether bounds on steps or maps are named.
+    /// True if bounds on steps or maps are named.
     fn combines(&self) -> bool {
         !(self.max_steps.is_empty()
             && self.map_rows.is_empty()
@@ -331,7 +331,7 @@ impl PlanFile {
     /// Reads the plan in a file.
     ///
     /// # Errors
-    /// As [`PlanFile::parse`], with the file; and when it cannot be read.
+    /// See [`PlanFile::parse`]; also when the file cannot be read.
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
             let message =
@@ -407,7 +407,7 @@ impl PlanFile {
     /// The measurements.
     ///
     /// # Errors
-    /// Of the solids that the program carries, and of baking maps.
+    /// A solid that the program carries cannot be read, or a map cannot be baked.
     pub fn plan(&self, given: &Overrides) -> Result<Plan> {
         let mut views = Vec::new();
         for group in &self.views {

@@ -3,7 +3,7 @@
 use super::cases::is_rbm_baseline;
 use crate::method::{Edges, Method, MethodSettings};
 
-/// What reports call the RBM baseline.
+/// The RBM baseline's name in reports.
 pub const RBM_BASELINE: &str = "RBM baseline";
 
 /// Names ways of drawing as briefly as tells them apart: what is the same in all of them is left
@@ -77,7 +77,7 @@ impl Labels {
     }
 }
 
-/// Whether settings are those of the RBM baseline, whatever rows its map has.
+/// True if settings are those of the RBM baseline, whatever rows its map has.
 fn is_baseline_of_any_rows(s: &MethodSettings) -> bool {
     is_rbm_baseline(&MethodSettings {
         map_rows: None,

@@ -1,4 +1,4 @@
-//! What a benchmark measures, and what it shows: a plan. Plans are TOML files ([`PlanFile`]); those
+//! A plan says what a benchmark measures and shows. Plans are TOML files ([`PlanFile`]); those
 //! of the program's own are embedded in it ([`embedded`]).
 
 mod arrange;

@@ -9,7 +9,7 @@ use revmap::profile::{Profile, ProfileAxis};
 use revmap::scene::{Camera, Object, Scene};
 use std::sync::Arc;
 
-/// What a solid is turned from.
+/// The source of a solid.
 enum Source {
     /// A drawing or an image, a whole silhouette.
     File(&'static [u8]),
@@ -100,7 +100,7 @@ impl TryFrom<Names> for Extent {
 /// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
 ///
 /// # Errors
-/// Of reading the profiles that the program carries.
+/// A profile that the program carries cannot be read.
 pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
     let wanted = |place: usize, name: &str| match extent {
         Extent::One => place < 1,

@@ -46,7 +46,7 @@ impl TimeBudget {
         Duration::try_from_secs_f64(self.seconds).unwrap_or(Duration::MAX)
     }
 
-    /// Whether another pass as long as the `last` would take too long after `gone`, however few the
+    /// True if another pass as long as the `last` would take too long after `gone`, however few the
     /// `passes` were. A number of passes that the command line names is kept.
     pub(in crate::report) fn would_overrun(
         &self,

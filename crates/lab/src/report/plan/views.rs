@@ -1,4 +1,4 @@
-//! What a plan looks at: solids, arrangements and forms of them.
+//! The views of a plan: solids, arrangements and forms of them.
 
 use super::arrange::{army, avenue, distant, field};
 use super::file::{Overrides, framings};
@@ -28,7 +28,7 @@ pub struct Views {
     pub copies: Vec<u32>,
     /// Forms of the surface; none: as the solid is.
     pub forms: Vec<Form>,
-    /// What results call the view, in place of the solid's name.
+    /// The view's name in results, in place of the solid's.
     pub call: Option<String>,
 }
 
@@ -67,20 +67,20 @@ pub enum Arrangement {
 #[derive(Clone, Debug, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Form {
-    /// What ends its views' names.
+    /// The ending of its views' names.
     pub name: String,
-    /// As scene files have it.
+    /// The same key as in scene files.
     pub extend: f64,
-    /// As scene files have it.
+    /// The same key as in scene files.
     pub bevel: f64,
-    /// As scene files have it.
+    /// The same key as in scene files.
     pub chamfer: f64,
-    /// Whether `extend` and `bevel` are fractions of the largest distance that the published
+    /// True if `extend` and `bevel` are fractions of the largest distance that the published
     /// method's map of the solid holds.
     pub relative: bool,
-    /// Whether the box cuts the solid.
+    /// True if the box cuts the solid.
     pub cut: bool,
-    /// Whether a chequered colour map covers it.
+    /// True if a chequered colour map covers it.
     pub textured: bool,
     /// The parameter that charts put it at.
     pub value: Option<f64>,
