@@ -285,9 +285,12 @@ fn findings(page: &mut Page, context: &Context) {
                 let time = super::columns::Cell::Known(r.time).shown();
                 let way = context.styles.way(&r.settings);
                 format!(
-                    "{way}, {} stage: {time} in {} pictures",
+                    "{way}, {} stage: {time} over {}",
                     r.settings.stage.name(),
-                    r.pairs.len()
+                    match r.pairs.len() {
+                        1 => "1 picture".to_owned(),
+                        count => format!("{count} pictures"),
+                    }
                 )
             })
             .collect();

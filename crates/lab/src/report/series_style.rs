@@ -130,18 +130,6 @@ impl SeriesStyles {
         self.labels.way(s)
     }
 
-    /// The names of all ways.
-    #[must_use]
-    pub fn labels(&self) -> &Labels {
-        &self.labels
-    }
-
-    /// The name of a way and its stage.
-    #[must_use]
-    pub fn name(&self, s: &MethodSettings) -> String {
-        format!("{}, {}", self.labels.way(s), s.stage.name())
-    }
-
     /// How it looks.
     #[must_use]
     pub fn style(&self, s: &MethodSettings) -> Style {

@@ -197,14 +197,7 @@ mod tests {
 
     #[test]
     fn what_lies_below_the_title_is_on_the_page_as_text() {
-        let word = |y: f64, text: &str| Mark::Word {
-            at: (10.0, y),
-            text: text.into(),
-            size: 10.0,
-            anchor: Anchor::Start,
-            color: INK,
-            upwards: false,
-        };
+        let word = |y, text| Mark::word((10.0, y), text, 10.0, Anchor::Start, INK);
         let line = Mark::Line {
             points: vec![(10.0, 50.0), (90.0, 70.0)],
             color: "#ff0000",

@@ -425,14 +425,14 @@ impl Chart {
         if self.ticks {
             x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
         }
-        for (_, rate) in self.published(series) {
+        for (_, rate) in self.published() {
             y = y.with(rate);
         }
         Ok((x, y))
     }
 
     /// The published line, in charts that have one.
-    fn published(&self, _: &[Series]) -> Vec<(f64, f64)> {
+    fn published(&self) -> Vec<(f64, f64)> {
         let mut words = self.guide.split(' ');
         let table = match (words.next(), words.next()) {
             (Some("published"), Some(number)) => published::table(number),
@@ -455,7 +455,7 @@ impl Chart {
                 .collect();
             all.push(Guide::dashed("the tolerance", points));
         }
-        let line = self.published(series);
+        let line = self.published();
         if !line.is_empty() {
             all.push(Guide::dashed("published, GeForce GT 630M", line));
         }

@@ -74,6 +74,7 @@ fn reference(name: &str) -> Result<Over> {
     let known = [
         ("baseline", Over::Baseline),
         ("exact", Over::Exact),
+        ("1-ray", Over::Exact),
         ("one", Over::One),
         ("mesh", Over::Mesh),
     ];
@@ -82,8 +83,9 @@ fn reference(name: &str) -> Result<Over> {
         .find(|(n, _)| *n == name)
         .map(|(_, over)| *over)
         .ok_or_else(|| {
-            let message =
-                format!("{name:?} is nothing to put times over; give baseline, exact, one or mesh");
+            let message = format!(
+                "{name:?} is nothing to put times over; give baseline, exact, 1-ray, one or mesh"
+            );
             Error::new(ErrorKind::Content, message)
         })
 }
@@ -159,7 +161,7 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
     Ok(match name.split_once(' ') {
         Some(("ratio" | "known", other)) => match other {
             "baseline" => "time / RBM baseline".to_owned(),
-            other => format!("time / {other}"),
+            other => format!("time / {}", other.replace('-', " ")),
         },
         Some(("interval", _)) => "95 % interval".to_owned(),
         Some(("range", _)) => "range over pictures".to_owned(),
