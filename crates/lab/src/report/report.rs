@@ -192,7 +192,10 @@ impl Run<'_> {
             _ => table.shown(context, &place.rows)?,
         };
         if shown.records.is_empty() {
-            return Ok(String::new());
+            let missing = table.print && table.over == Some(Over::Baseline);
+            let heading = place.heading.as_ref().filter(|_| missing);
+            let text = |h| format!("{h}\n\nno ratios: no usable row of the RBM baseline\n\n");
+            return Ok(heading.map(text).unwrap_or_default());
         }
         head(page);
         if !table.heading.is_empty() {
