@@ -4,7 +4,6 @@ use super::{check_column, tables};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
-use crate::report::chart::dots::{Block, DotChart, Line};
 use crate::report::chart::front::{WORTH, front, stairs};
 use crate::report::chart::style::{Marker, Style, color};
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
@@ -16,9 +15,7 @@ use crate::report::published;
 use crate::report::ratios::{Over, over};
 use crate::report::row::Row;
 use crate::report::series_style::{self, floor_line, of_source};
-use crate::report::stats::Interval;
 use revmap::error::Result;
-use revmap::settings::DrawStage;
 
 /// A chart.
 #[derive(Clone, Debug, serde::Deserialize)]
@@ -96,9 +93,6 @@ pub struct Extra {
     pub maps: Vec<MapError>,
 }
 
-/// Lines of dots on one page.
-const DOTS: usize = 44;
-
 /// A point before it is part of a line.
 struct Item {
     name: String,
@@ -131,76 +125,6 @@ impl Chart {
             Kind::MapRows => Ok(self.map_rows(context, rows, extra)?.into_iter().collect()),
             Kind::Points => Ok(self.points(context, rows)?.into_iter().collect()),
         }
-    }
-
-    fn dots(&self, context: &Context, rows: &[&Row]) -> Vec<Figure> {
-        let mut lines: Vec<(String, Line)> = Vec::new();
-        let mut add = |block: String, settings: &MethodSettings, value: Interval| {
-            let line = Line {
-                name: context.styles.way(settings),
-                value,
-                style: context.styles.style(settings),
-            };
-            lines.push((block, line));
-        };
-        if let Some(reference) = self.over {
-            let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
-            let ratios = over(&own, reference);
-            for stage in [DrawStage::Fragment, DrawStage::Compute] {
-                for ratio in ratios.iter().filter(|r| r.settings.stage == stage) {
-                    add(
-                        format!("{} stage", stage.name()),
-                        &ratio.settings,
-                        ratio.time,
-                    );
-                }
-            }
-        } else {
-            for row in rows {
-                let block = format!(
-                    "{}, {}, {} stage",
-                    row.scene,
-                    row.size(),
-                    row.settings.stage.name()
-                );
-                if let Some(time) = row.time() {
-                    add(block, &row.settings, time);
-                }
-            }
-        }
-        // A picture's lines stay together.
-        let picture = |line: &(String, Line)| line.0.rsplit_once(", ").map(|p| p.0.to_owned());
-        let mut pages: Vec<Vec<(String, Line)>> = Vec::new();
-        for group in lines.chunk_by(|a, b| picture(a) == picture(b)) {
-            match pages.last_mut() {
-                Some(page) if page.len() + group.len() <= DOTS => page.extend_from_slice(group),
-                _ => pages.push(group.to_vec()),
-            }
-        }
-        let axis = match self.over {
-            Some(_) => "time / time of the RBM baseline (left is faster)",
-            None => "time of a frame (ms)",
-        };
-        let figure = |page: Vec<(String, Line)>| {
-            let mut blocks: Vec<Block> = Vec::new();
-            for (name, line) in page {
-                match blocks.iter_mut().find(|b| b.name == name) {
-                    Some(block) => block.lines.push(line),
-                    None => blocks.push(Block {
-                        name,
-                        lines: vec![line],
-                    }),
-                }
-            }
-            let chart = DotChart {
-                title: self.title.clone(),
-                axis: Axis::log(axis),
-                mark: self.over.map(|_| 1.0),
-                blocks,
-            };
-            chart.figure()
-        };
-        pages.into_iter().map(figure).collect()
     }
 
     fn points(&self, context: &Context, rows: &[&Row]) -> Result<Option<Figure>> {
@@ -477,77 +401,6 @@ impl Chart {
         }
         Ok(all)
     }
-
-    /// The errors of maps alone beside what the most exact search draws from them.
-    fn map_rows(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Option<Figure>> {
-        let column = columns::named(&self.y)?;
-        let Some(method) = most_exact(rows) else {
-            return Ok(None);
-        };
-        let mut series: Vec<Series> = Vec::new();
-        let mut add = |name: String, style: Style, x: f64, y: f64| {
-            let point = Point {
-                x,
-                y,
-                spread: None,
-                label: None,
-            };
-            match series.iter_mut().find(|s| s.name == name) {
-                Some(known) => known.points.push(point),
-                None => series.push(Series {
-                    name,
-                    style,
-                    points: vec![point],
-                    joined: true,
-                }),
-            }
-        };
-        let own = rows
-            .iter()
-            .filter(|r| r.settings.method == method && !is_rbm_baseline(&r.settings));
-        for row in own {
-            let (Some(source), Some(count)) = (row.settings.map_source, row.settings.map_rows)
-            else {
-                continue;
-            };
-            if let Some(y) = (column.cell)(context, row).value() {
-                add(
-                    format!("{}, drawn", source.name()),
-                    of_source(source),
-                    count.into(),
-                    y,
-                );
-            }
-        }
-        let views: Vec<usize> = rows.iter().map(|r| r.view).collect();
-        for error in extra.maps.iter().filter(|e| views.contains(&e.view)) {
-            // Colours and normals of maps are not compared.
-            let y = error.errors.depth.filter(|_| self.y == "depth_p99_texels");
-            if let Some(depth) = y {
-                let style = Style {
-                    filled: false,
-                    ..of_source(error.source)
-                };
-                let name = format!("{}, the map by itself", error.source.name());
-                add(name, style, error.rows.into(), depth.p99);
-            }
-        }
-        for line in &mut series {
-            line.points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        }
-        if series.is_empty() {
-            return Ok(None);
-        }
-        let counts: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
-        let chart = XyChart {
-            title: self.title.clone(),
-            x: Axis::log("rows of the map").at(counts),
-            y: Axis::log(column.heading).from(column.floor),
-            series,
-            guides: Vec::new(),
-        };
-        Ok(Some(chart.figure()))
-    }
 }
 
 /// The word beside a marker: a mesh's tessellation, or the difference from other ways of the same
@@ -567,22 +420,4 @@ fn label(context: &Context, s: &MethodSettings) -> Option<String> {
         .or(rest.strip_suffix(" rows"))
         .unwrap_or(rest);
     (!rest.is_empty()).then(|| rest.to_owned())
-}
-
-/// The search whose drawn pictures are nearest to the truth: what is left of its error is the
-/// map's. Of those that read maps of every source.
-fn most_exact(rows: &[&Row]) -> Option<Method> {
-    let best = |method: Method| {
-        let own = rows
-            .iter()
-            .filter(|r| r.settings.method == method && r.settings.map_source.is_some());
-        let own = own.filter(|r| !is_rbm_baseline(&r.settings));
-        let least = own
-            .filter_map(|r| Some(r.errors.depth?.p99))
-            .reduce(f64::min);
-        least.map(|p99| (method, p99))
-    };
-    let all = Method::ALL.into_iter().filter_map(best);
-    all.min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(method, _)| method)
 }

@@ -2,6 +2,8 @@
 //! a plan may add some. Each names columns; see [`columns`].
 
 mod charts;
+mod dots;
+mod map_rows;
 mod tables;
 
 pub use charts::{Chart, Extra};

@@ -1,16 +1,15 @@
 //! The file of a plan: its keys, its faults, and what the command line changes in it.
 
 use super::cases::{Plan, Truth};
-use super::suite::Extent;
+use super::overrides::Overrides;
 use super::time_budget::TimeBudget;
+use super::values::{formats, parsed, sizes, sources, stages, tolerances};
 use super::views::Views;
 use crate::method::{Edges, Method};
 use crate::report::exhibit::{self, Exhibit};
-use crate::report::view::{Framing, View};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Tolerance};
-use serde::de::{Deserialize, Deserializer, Error as _};
 use std::path::Path;
 
 /// A plan as its file has it. `docs/benchmarks.md` explains the keys.
@@ -249,73 +248,6 @@ fn tenth() -> usize {
     10
 }
 
-/// Changes that the command line makes in a plan.
-#[derive(Clone, Debug, Default)]
-pub struct Overrides {
-    /// True for a quick look.
-    pub quick: bool,
-    /// Scenes in place of the program's own solids.
-    pub scenes: Vec<View>,
-    /// Which of the program's own solids.
-    pub solids: Option<Extent>,
-    /// Degrees above the horizon.
-    pub elevations: Vec<f64>,
-    /// Framings.
-    pub framings: Vec<Framing>,
-    /// Searches and meshes, in place of the plan's.
-    pub methods: Vec<Method>,
-    /// Lists that take the place of every entry's, where they are not empty.
-    pub lists: Lists,
-    /// How many passes.
-    pub passes: Option<usize>,
-    /// How many rounds.
-    pub rounds: Option<usize>,
-}
-
-/// Lists of an entry that the command line can replace.
-#[derive(Clone, Debug, Default)]
-#[allow(missing_docs)] // as in [`Measure`]
-pub struct Lists {
-    pub stages: Vec<DrawStage>,
-    pub sizes: Vec<(u32, u32)>,
-    pub max_steps: Vec<u32>,
-    pub map_rows: Vec<u32>,
-    pub map_sources: Vec<MapSource>,
-    pub map_formats: Vec<MapFormat>,
-    pub tolerances: Vec<Tolerance>,
-}
-
-impl Lists {
-    /// True if bounds on steps or maps are named.
-    fn combines(&self) -> bool {
-        !(self.max_steps.is_empty()
-            && self.map_rows.is_empty()
-            && self.map_sources.is_empty()
-            && self.map_formats.is_empty())
-    }
-
-    fn replace(&self, measure: &mut Measure) {
-        fn put<T: Clone>(given: &[T], own: &mut Vec<T>) {
-            if !given.is_empty() {
-                own.clear();
-                own.extend_from_slice(given);
-            }
-        }
-        put(&self.stages, &mut measure.stages);
-        put(&self.sizes, &mut measure.sizes);
-        // The RBM baseline and the floor are what they are.
-        let search = |pick: &Pick| !matches!(pick, Pick::Baseline | Pick::Method(Method::Floor));
-        if !measure.methods.iter().any(search) {
-            return;
-        }
-        put(&self.max_steps, &mut measure.max_steps);
-        put(&self.map_rows, &mut measure.map_rows);
-        put(&self.map_sources, &mut measure.map_sources);
-        put(&self.map_formats, &mut measure.map_formats);
-        put(&self.tolerances, &mut measure.tolerances);
-    }
-}
-
 impl PlanFile {
     /// Reads a plan.
     ///
@@ -453,81 +385,6 @@ fn fault(text: &str, error: &toml::de::Error) -> Error {
         format!("line {number}, {key}")
     };
     Error::new(ErrorKind::Content, error.message()).at_key(place)
-}
-
-fn parsed<'de, D, T>(from: D) -> std::result::Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: std::str::FromStr<Err = Error>,
-{
-    let words = Vec::<String>::deserialize(from)?;
-    let all = words
-        .iter()
-        .map(|w| w.parse().map_err(|e: Error| D::Error::custom(e.message)));
-    all.collect()
-}
-
-fn named<'de, D, T>(from: D, names: &[(&str, T)]) -> std::result::Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Copy,
-{
-    let find = |word: String| {
-        let found = names.iter().find(|(name, _)| *name == word);
-        found.map(|(_, value)| *value).ok_or_else(|| {
-            let all: Vec<&str> = names.iter().map(|n| n.0).collect();
-            D::Error::custom(format!(
-                "{word:?} is not known; give one of {}",
-                all.join(", ")
-            ))
-        })
-    };
-    Vec::<String>::deserialize(from)?
-        .into_iter()
-        .map(find)
-        .collect()
-}
-
-fn stages<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<DrawStage>, D::Error> {
-    named(from, &DrawStage::NAMES)
-}
-
-fn sources<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<MapSource>, D::Error> {
-    named(from, &MapSource::NAMES)
-}
-
-fn formats<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<MapFormat>, D::Error> {
-    named(from, &MapFormat::NAMES)
-}
-
-pub(super) fn framings<'de, D>(from: D) -> std::result::Result<Vec<Framing>, D::Error>
-where
-    D: Deserializer<'de>,
-{
-    named(from, &Framing::ALL.map(|f| (f.name(), f)))
-}
-
-fn tolerances<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<Tolerance>, D::Error> {
-    let pixels = Vec::<f64>::deserialize(from)?.into_iter();
-    let read = |p| Tolerance::new(p).map_err(|e| D::Error::custom(e.message));
-    pixels.map(read).collect()
-}
-
-fn sizes<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<(u32, u32)>, D::Error> {
-    let side = |text: &str| text.parse().ok().filter(|n| (1..=16384).contains(n));
-    let read = |word: String| {
-        let sides = word.split_once('x').map(|(w, h)| (side(w), side(h)));
-        match sides {
-            Some((Some(width), Some(height))) => Ok((width, height)),
-            _ => Err(D::Error::custom(format!(
-                "{word:?} is no size; give WIDTHxHEIGHT with sides from 1 to 16384 pixels, as 800x600"
-            ))),
-        }
-    };
-    Vec::<String>::deserialize(from)?
-        .into_iter()
-        .map(read)
-        .collect()
 }
 
 #[cfg(test)]

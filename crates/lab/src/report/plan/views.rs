@@ -1,8 +1,9 @@
 //! The views of a plan: solids, arrangements and forms of them.
 
 use super::arrange::{army, avenue, distant, field};
-use super::file::{Overrides, framings};
+use super::overrides::Overrides;
 use super::suite::{self, Extent};
+use super::values::framings;
 use crate::report::view::{Framing, View};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, ColorMap, MapSource, ShapeMap};

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
-use super::super::embedded;
+use super::super::{Lists, embedded};
 use super::*;
+use crate::report::view::Framing;
 use crate::report::view::tests::spindle;
 use revmap::settings::Solver;
 
