@@ -13,6 +13,7 @@ use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
+use revmap_lab::method::Edges;
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -135,7 +136,9 @@ impl Animate {
     ) -> Result<Vec<Row>> {
         let mut settings = self.drawing.settings(Planes::Color);
         // Silhouettes are smoothed only if pictures are written.
-        settings.antialias = self.samples.antialias(false) && self.output.is_some();
+        if self.samples.antialias(false) && self.output.is_some() {
+            settings.edges = Edges::Silhouettes;
+        }
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.prewarm()?;

@@ -8,264 +8,187 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
-use revmap::settings::DrawStage;
-use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::method::Method;
 use revmap_lab::renderer::MethodDevice;
+use revmap_lab::report::exhibit::Extra;
+use revmap_lab::report::flight::{self, FlightTimes};
 use revmap_lab::report::machine::Machine;
-use revmap_lab::report::measure::{Measured, Observer, RenderedCase, TimeBudget, measure};
+use revmap_lab::report::measure::{Measured, Observer, measure};
 use revmap_lab::report::pictures::Album;
-use revmap_lab::report::plan::{self, Axes, Labels, Plan, is_rbm_baseline};
-use revmap_lab::report::scaling::Ranges;
-use revmap_lab::report::suite::{self, Extent};
-use revmap_lab::report::view::View;
-use revmap_lab::report::{
-    DeviceBench, antialiasing, budget, compare_runs, crowds, folder, overview, papers, scaling,
-    text,
-};
+use revmap_lab::report::plan::{Labels, Plan, PlanFile, embedded};
+use revmap_lab::report::report::Run;
+use revmap_lab::report::sheet::Sheets;
+use revmap_lab::report::{DeviceBench, compare_runs, folder, map_error};
 use std::path::PathBuf;
 
-/// Makes views of other techniques.
-type Techniques = fn(&[View]) -> Result<Vec<View>>;
-
-const TECHNIQUES: [(&str, Techniques); 2] = [
-    ("usual", suite::techniques),
-    ("tables", papers::all_techniques),
-];
+/// Plans of other techniques.
+const TECHNIQUES: [(&str, &str); 2] = [("usual", "techniques"), ("tables", "techniques-tables")];
 
 /// Measures frame rates, step counts and errors; writes results.csv, report.html and pictures
+///
+/// A plan says what is measured and shown. Without one the program takes its own, named usual.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap bench --quick --out out/bench\n  \
     revmap bench assets/scenes/vase.toml --solver exact,live,mesh:64x128 --size 800x600,1920x1080\n  \
+    revmap bench --list scaling > mine.toml && revmap bench --plan mine.toml\n  \
     revmap bench --compare results/old results/new")]
 pub struct Bench {
     #[command(flatten)]
     lists: Lists,
-    /// A look within 20 seconds: one solid unless scenes are named
+    #[command(flatten)]
+    scale: Scale,
+    #[command(flatten)]
+    what: What,
+}
+
+/// How much is measured.
+#[derive(Args)]
+pub struct Scale {
+    /// A quick look: fewer solids, methods and values. Without another plan: one solid, within 20
+    /// seconds
     #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// The whole suite from three elevations at two sizes, every search, five meshes: takes about
-    /// an hour on two cores, above two with --framing whole,close
+    pub quick: bool,
+    /// The whole suite from three elevations, every search: takes above an hour on two cores
     #[arg(long)]
-    full: bool,
+    pub full: bool,
+}
+
+/// The task; one of these at a time
+#[derive(Args)]
+#[group(id = "what", multiple = false, conflicts_with = "full")]
+struct What {
+    /// The plan in a TOML file
+    #[arg(long, value_name = "FILE")]
+    plan: Option<PathBuf>,
+    /// Prints the program's plans, or the file of one of them; measures nothing
+    #[arg(long, value_name = "PLAN", num_args = 0..=1, default_missing_value = "")]
+    list: Option<String>,
     /// The published tables of frame rates: extended, beveled and chamfered solids at two sizes,
     /// rates beside the published ones
-    #[arg(long, conflicts_with_all = ["full", "scenes", "framing"])]
+    #[arg(long)]
     tables: bool,
     /// How time grows with pixels, with solids and with rows of the map
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "framing", "tables"])]
+    #[arg(long)]
     scaling: bool,
-    /// What a tolerance costs: errors and times of ten scenes at five tolerances
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling"])]
+    /// The cost of a tolerance: errors and times of ten scenes at five tolerances
+    #[arg(long)]
     budget: bool,
     /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget"])]
+    #[arg(long)]
     crowds: bool,
     /// Anti-aliasing: eight solids by one ray per pixel, with smoothed silhouettes and by several
     /// rays, against 64 rays
-    #[arg(long, conflicts_with_all = ["full", "scenes", "size", "solver", "tolerance", "framing", "tables", "scaling", "budget", "crowds"])]
+    #[arg(long)]
     antialiasing: bool,
     /// The solids by every technique. usual: plain, extended, beveled, chamfered, textured; tables:
     /// plain and by every value of the published tables, whole and cut by the box
-    #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "usual", value_parser = named(&TECHNIQUES), conflicts_with_all = ["full", "tables", "scaling", "budget", "crowds", "antialiasing"])]
-    techniques: Option<Techniques>,
+    #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "usual", value_parser = named(&TECHNIQUES))]
+    techniques: Option<&'static str>,
     /// Prints a table of the default search in the runs of these folders: a row for each technique,
     /// a column for each driver; measures nothing
-    #[arg(long, num_args = 1.., value_name = "DIR", conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing", "techniques", "compare"])]
+    #[arg(long, num_args = 1.., value_name = "DIR")]
     drivers: Vec<PathBuf>,
-    /// Holds the results in folder NEW against those in folder OLD; measures nothing
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"], conflicts_with_all = ["full", "quick", "scenes", "tables", "scaling", "budget", "crowds", "antialiasing"])]
+    /// Compares the results in folder NEW with those in folder OLD; measures nothing
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
     compare: Vec<PathBuf>,
 }
 
 impl Bench {
     pub fn run(self) -> Result<()> {
-        self.lists.check()?;
-        if let [old, new] = self.compare.as_slice() {
-            let found = compare_runs::compare(old, new)?;
-            print(&compare_runs::as_text(&found));
+        let what = &self.what;
+        if let [old, new] = what.compare.as_slice() {
+            print(&compare_runs::as_text(&compare_runs::compare(old, new)?));
             return Ok(());
         }
-        if !self.drivers.is_empty() {
-            print(&compare_runs::drivers::markdown(&self.drivers)?);
+        if !what.drivers.is_empty() {
+            print(&compare_runs::drivers::markdown(&what.drivers)?);
             return Ok(());
         }
-        if self.tables {
-            return self.tables();
+        if let Some(name) = &what.list {
+            return list(name);
         }
-        if self.scaling {
-            return self.scaling();
-        }
-        if self.budget {
-            return self.budget();
-        }
-        if self.crowds {
-            return self.crowds();
-        }
-        if self.antialiasing {
-            return self.antialiasing();
-        }
-        let (budget, extent, elevations, sizes): (_, _, &[f64], &[(u32, u32)]) = if self.quick {
-            (TimeBudget::QUICK, Extent::One, &[25.0], &[(800, 600)])
-        } else if self.full {
-            (
-                TimeBudget::FULL,
-                Extent::All,
-                &[0.0, 25.0, 60.0],
-                &papers::SIZES,
-            )
-        } else {
-            (TimeBudget::DEFAULT, Extent::Three, &[25.0], &[(800, 600)])
+        let file = match &what.plan {
+            Some(file) => PlanFile::load(file)?,
+            None => plan(self.name())?,
         };
-        let (methods, meshes): (&[Method], &[(u32, u32)]) = if self.quick {
-            (&plan::FEW, &plan::MESHES[..1])
-        } else if self.full {
-            (&Method::ALL, &plan::ALL_MESHES)
-        } else {
-            (&plan::USUAL, &plan::MESHES)
-        };
-        let mut views = self.lists.views(extent, elevations)?;
-        if let Some(techniques) = self.techniques {
-            views = techniques(&views)?;
-        }
-        let axes = self.axes(sizes, methods);
-        let mut plan = Plan::new(views, &axes.combinations());
-        if self.lists.solver.is_empty() {
-            plan.add_meshes(meshes);
-        }
-        plan.add_rbm_baseline();
-        plan.add_floors();
-        let (session, measured, album) =
-            self.measured(&plan, &budget, |s| s.method != Method::Floor, &mut |_| {})?;
-        overview::write(&session.out, &plan, &measured, &session.machine, &album)?;
-        print(&text::summary(&measured.rows));
-        session.finish(&plan, &measured)
+        run(file, &self.lists, self.scale.quick)
     }
 
-    fn axes(&self, sizes: &[(u32, u32)], methods: &[Method]) -> Axes {
-        self.lists.axes(&Axes {
-            sizes: sizes.to_vec(),
-            methods: methods.to_vec(),
-            ..Axes::default()
-        })
-    }
-
-    /// Of runs that are not the suite's.
-    fn limits(&self) -> TimeBudget {
-        if self.quick {
-            TimeBudget::QUICK
-        } else {
-            TimeBudget::CHART
-        }
-    }
-
-    /// Measures a plan, and keeps its rows.
-    fn measured(
-        &self,
-        plan: &Plan,
-        budget: &TimeBudget,
-        worth: fn(&MethodSettings) -> bool,
-        also: &mut dyn FnMut(&RenderedCase),
-    ) -> Result<(Session, Measured, Album)> {
-        let session = Session::open(&self.lists)?;
-        let budget = self.lists.time_budget(budget);
-        let (measured, album) = session.measure(plan, &budget, worth, also)?;
-        folder::write(&session.out, plan, &measured, &session.machine)?;
-        Ok((session, measured, album))
-    }
-
-    /// The published tables. The solid is one that the program carries: the articles do not name
-    /// theirs.
-    fn tables(&self) -> Result<()> {
-        let mut plan = Plan::new(
-            papers::views()?,
-            &self.axes(&papers::SIZES, &plan::USUAL).combinations(),
-        );
-        plan.add_rbm_baseline();
-        plan.add_floors();
-        plan.mixed = true;
-        let (session, measured, album) =
-            self.measured(&plan, &self.limits(), is_rbm_baseline, &mut |_| {})?;
-        papers::write(&session.out, &plan, &measured, &session.machine, &album)?;
-        print(&papers::as_text(&measured.rows));
-        session.finish(&plan, &measured)
-    }
-
-    fn budget(&self) -> Result<()> {
-        let stages = self.axes(&[], &[]).stages;
-        let plan = budget::plan(&stages, self.quick)?;
-        let mut errors = budget::Errors::default();
-        let (session, measured, _) =
-            self.measured(&plan, &self.limits(), |_| false, &mut |seen| {
-                errors.add(seen)
-            })?;
-        budget::write(&session.out, &plan, &measured, &errors, &session.machine)?;
-        print(&budget::as_text(&measured.rows, &errors));
-        session.finish(&plan, &measured)
-    }
-
-    fn crowds(&self) -> Result<()> {
-        let stages = self.axes(&[], &[]).stages;
-        let (numbers, flown) = if self.quick {
-            (crowds::QUICK, &crowds::FLOWN_QUICK[..])
-        } else {
-            (crowds::COPIES.len(), &crowds::FLOWN[..])
-        };
-        let plan = crowds::plan(&stages, numbers)?;
-        let (session, measured, _) =
-            self.measured(&plan, &self.limits(), |_| false, &mut |_| {})?;
-        let device = MethodDevice::new(session.device.clone())?;
-        let fly = |stage: DrawStage, (solids, frames)| {
-            crowds::fly(&device, &crowds::settings(stage), solids, frames, 10)
-        };
-        let all = flown
+    /// The name of the program's own plan.
+    fn name(&self) -> &'static str {
+        let what = &self.what;
+        let named = [
+            (what.tables, "tables"),
+            (what.scaling, "scaling"),
+            (what.budget, "budget"),
+            (what.crowds, "crowds"),
+            (what.antialiasing, "antialiasing"),
+            (self.scale.full, "full"),
+        ];
+        let found = named
             .iter()
-            .flat_map(|f| stages.iter().map(|s| fly(*s, *f)));
-        let flights: Vec<_> = all.collect::<Result<_>>()?;
-        crowds::write(&session.out, &plan, &measured, &flights, &session.machine)?;
-        print(&crowds::as_text(&measured.rows, &flights));
-        session.finish(&plan, &measured)
+            .find(|(given, _)| *given)
+            .map(|(_, name)| *name);
+        let usual = if self.scale.quick { "quick" } else { "usual" };
+        found.or(what.techniques).unwrap_or(usual)
     }
+}
 
-    fn antialiasing(&self) -> Result<()> {
-        let stages = self.axes(&[], &[]).stages;
-        let (extent, rounds) = if self.quick {
-            (Extent::One, 5)
-        } else {
-            (Extent::All, 25)
-        };
-        let rounds = self.lists.rounds.map_or(rounds, usize::from);
-        let session = Session::open(&self.lists)?;
-        let device = MethodDevice::new(session.device.clone())?;
-        let progress = Progress::start("measuring", session.quiet);
-        let say = |done, all| progress.report(done, all);
-        let (lines, sheets) = antialiasing::measure(&device, &stages, extent, rounds, &say)?;
-        drop(progress);
-        antialiasing::write(&session.out, &lines, &sheets, rounds, &session.machine)?;
-        print(&antialiasing::as_text(&lines));
-        let report = session.out.join("report.html");
-        output::result(&format!("{}: {} rows", report.display(), lines.len()));
-        Ok(())
-    }
+/// One of the program's own plans.
+pub fn plan(name: &str) -> Result<PlanFile> {
+    embedded::plan(name)
+}
 
-    fn scaling(&self) -> Result<()> {
-        let mut axes = self.axes(&[], &plan::USUAL);
-        if self.lists.solver.is_empty() {
-            let mesh = |(segments, rings)| Method::Mesh { segments, rings };
-            axes.methods.extend(scaling::MESHES.map(mesh));
-        }
-        let ranges = if self.quick {
-            Ranges::QUICK
-        } else {
-            Ranges::ALL
-        };
-        let plan = scaling::plan(&axes.stages, &axes.methods, ranges)?;
-        let (session, measured, _) =
-            self.measured(&plan, &self.limits(), |_| false, &mut |_| {})?;
-        scaling::write(&session.out, &plan, &measured, &session.machine)?;
-        print(&scaling::as_text(&measured.rows));
-        session.finish(&plan, &measured)
+fn list(name: &str) -> Result<()> {
+    if !name.is_empty() {
+        print(embedded::text(name)?);
+        return Ok(());
     }
+    for (name, about) in embedded::list()? {
+        output::result(&format!("{name:<18} {about}"));
+    }
+    Ok(())
+}
+
+/// Measures a plan with what the command line changes in it, and writes its report.
+pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
+    lists.check()?;
+    let given = lists.overrides(quick)?;
+    file.apply(&given);
+    let plan = file.plan(&given)?;
+    let session = Session::open(lists)?;
+    let (measured, mut album, truths) = session.measure(&file, &plan)?;
+    folder::write(
+        &session.out,
+        &plan,
+        &measured,
+        &session.machine,
+        file.time.resolved,
+    )?;
+    let flights = session.flights(&file, &given.lists.stages)?;
+    let maps = match measured.interrupted {
+        true => Vec::new(),
+        false => session.map_errors(&plan, &truths)?,
+    };
+    album
+        .shots
+        .retain(|_| file.show.iter().any(|name| name == "shots"));
+    let report = Run {
+        file: &file,
+        plan: &plan,
+        measured: &measured,
+        machine: &session.machine,
+        album: &album,
+        flights: &flights,
+        extra: Extra { maps },
+    };
+    print(report.write(&session.out)?.trim_end());
+    let summary = session.out.join("charts/summary-depth-error.png");
+    if summary.exists() {
+        output::result(&summary.display().to_string());
+    }
+    session.finish(&plan, &measured)
 }
 
 /// Results, line by line.
@@ -274,16 +197,16 @@ fn print(text: &str) {
 }
 
 /// A device, a folder and a note on the machine.
-pub struct Session {
-    pub device: Device,
-    pub machine: Machine,
-    pub out: PathBuf,
-    pub quiet: bool,
+struct Session {
+    device: Device,
+    machine: Machine,
+    out: PathBuf,
+    quiet: bool,
 }
 
 impl Session {
     /// Opens the device and makes the folder before any work.
-    pub fn open(lists: &Lists) -> Result<Self> {
+    fn open(lists: &Lists) -> Result<Self> {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
         let machine = Machine::here(&report.name, report.kind, &report.driver, &Lists::command());
@@ -302,23 +225,22 @@ impl Session {
         })
     }
 
-    /// Measures with a progress bar, with heat maps of the ways that are `worth` one; an interrupt
-    /// ends early and keeps what there is. `also` is shown every picture.
-    pub fn measure(
+    /// Measures with a progress bar; an interrupt ends early and keeps what there is.
+    fn measure(
         &self,
+        file: &PlanFile,
         plan: &Plan,
-        budget: &TimeBudget,
-        worth: fn(&MethodSettings) -> bool,
-        also: &mut dyn FnMut(&RenderedCase),
-    ) -> Result<(Measured, Album)> {
+    ) -> Result<(Measured, Album, map_error::Truths)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
-        let mut album = Album::new(&self.out, labels, worth)?;
+        let mut album = Album::new(&self.out, labels, file.heat_maps)?;
+        let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.out));
+        let mut truths = map_error::Truths::default();
         let progress = Progress::start("measuring", self.quiet);
-        let mut bench = DeviceBench::new(self.device.clone())?;
+        let mut bench = DeviceBench::new(self.device.clone(), !file.wall_clock)?;
         let measured = measure(
             plan,
             &mut bench,
-            budget,
+            &file.time,
             &mut Observer {
                 stop: interrupt::flag()?,
                 progress: &|what, gone, all| {
@@ -326,25 +248,82 @@ impl Session {
                     progress.report(gone as usize, all as usize);
                 },
                 picture: &mut |seen| {
-                    also(seen);
+                    if let Some(sheets) = &mut sheets {
+                        sheets.add(seen)?;
+                    }
+                    if seen.case.settings.map_rows.is_some() {
+                        truths.keep(seen.case.view, seen.truth);
+                    }
                     album.add(seen)
                 },
-                passed: &mut |rows| folder::write_rows(&self.out, rows, &self.machine),
+                passed: &mut |rows| {
+                    folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved)
+                },
             },
         )?;
-        Ok((measured, album))
+        if let Some(sheets) = &mut sheets {
+            sheets.finish()?;
+        }
+        Ok((measured, album, truths))
     }
 
-    /// Says where the results are. A run that was ended early has failed, though its results are
+    /// Flies through the plan's armies, in each stage, and writes the times of every frame.
+    fn flights(
+        &self,
+        file: &PlanFile,
+        stages: &[revmap::settings::DrawStage],
+    ) -> Result<Vec<FlightTimes>> {
+        use revmap::settings::DrawStage::{Compute, Fragment};
+        if file.flights.is_empty() {
+            return Ok(Vec::new());
+        }
+        let device = MethodDevice::new(self.device.clone())?;
+        let stages = if stages.is_empty() {
+            &[Fragment, Compute]
+        } else {
+            stages
+        };
+        let mut all = Vec::new();
+        for plan in &file.flights {
+            for &stage in stages {
+                let settings = flight::settings(stage);
+                let own = flight::fly(&device, &settings, plan.copies, plan.frames, plan.compared)?;
+                let name = format!("flight-{}-{}.csv", plan.copies, stage.name());
+                folder::write_text(&self.out.join(name), &own.table().csv())?;
+                all.push(own);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The errors of the maps that a plan sweeps over by themselves.
+    fn map_errors(
+        &self,
+        plan: &Plan,
+        truths: &map_error::Truths,
+    ) -> Result<Vec<map_error::MapError>> {
+        let swept = plan.cases.iter().map(|c| &c.settings);
+        let mut swept = swept.filter(|s| s.map_source.is_some() && s.map_rows.is_some());
+        let Some(first) = swept.find(|s| s.method != Method::Floor) else {
+            return Ok(Vec::new());
+        };
+        let progress = Progress::start("errors of the maps", self.quiet);
+        let size = (first.width, first.height);
+        map_error::measure(plan, size, truths, &mut |done, all| {
+            progress.report(done, all)
+        })
+    }
+
+    /// Prints where the results are. A run that was ended early has failed, though its results are
     /// kept.
-    pub fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
+    fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
         if !self.quiet {
+            let size = plan
+                .cases
+                .first()
+                .map(|c| (c.settings.width, c.settings.height));
+            let (width, height) = size.unwrap_or((800, 600));
             for view in &plan.views {
-                let size = plan
-                    .cases
-                    .first()
-                    .map(|c| (c.settings.width, c.settings.height));
-                let (width, height) = size.unwrap_or((800, 600));
                 for warning in view.scene.warnings(width, height) {
                     output::warn(&format!("{}: {warning}", view.name));
                 }

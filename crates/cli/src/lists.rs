@@ -5,27 +5,25 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::file::{self, SceneFile};
-use revmap::settings::{DrawStage, Tolerance, name_of};
+use revmap::settings::{Tolerance, name_of};
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
-use revmap_lab::report::measure::TimeBudget;
-use revmap_lab::report::plan::Axes;
-use revmap_lab::report::suite::{self, Extent};
-use revmap_lab::report::view::Framing;
-use revmap_lab::report::view::View;
+use revmap_lab::report::plan::suite::Extent;
+use revmap_lab::report::plan::{self, Overrides};
+use revmap_lab::report::view::{Framing, View};
 use std::path::{Path, PathBuf};
 
 /// Names of parts of the suite.
-const EXTENTS: [(&str, Extent); 3] = [
-    ("one", Extent::One),
-    ("three", Extent::Three),
-    ("all", Extent::All),
+const EXTENTS: [(&str, &Extent); 3] = [
+    ("one", &Extent::One),
+    ("three", &Extent::Three),
+    ("all", &Extent::All),
 ];
 
 /// Names of framings.
 const FRAMINGS: [(&str, Framing); 2] = [("whole", Framing::Whole), ("close", Framing::Close)];
 
-/// What to measure; lists are separated by commas
+/// Views and ways of drawing; lists are separated by commas
 #[derive(Args, Clone, Debug)]
 pub struct Lists {
     /// The scenes, TOML files [default: solids that the program carries]
@@ -34,7 +32,7 @@ pub struct Lists {
     /// Pixels across and down [default: 800x600]
     #[arg(long, value_name = "WIDTHxHEIGHT,...", value_delimiter = ',', value_parser = size)]
     pub size: Vec<(u32, u32)>,
-    /// Where rays are traced [default: fragment,compute]
+    /// Stages in which rays are traced [default: fragment,compute]
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<Tracing>,
     /// The searches, meshes among them [default: those worth choosing between; all with --full]
@@ -46,7 +44,7 @@ pub struct Lists {
     /// Rows of every shape map [default: each object's map_rows]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub map_rows: Vec<u32>,
-    /// Where distances come from [default: exact]
+    /// Sources of distances [default: exact]
     #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&MapSource::NAMES))]
     pub map_source: Vec<MapSource>,
     /// How distances are stored on the device [default: r32]
@@ -68,7 +66,7 @@ pub struct Lists {
     /// How many of the solids that the program carries: one, three or all eight [default: three;
     /// one with --quick, all with --full]
     #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
-    pub suite: Option<Extent>,
+    pub suite: Option<&'static Extent>,
     /// Passes over all pictures, each with everything made anew: intervals are Student's over them
     /// [default: as time allows, 4 or more, but 2 or more on drivers that compile slowly]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=100))]
@@ -95,66 +93,40 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// The lists as the library takes them; what is not named comes from `base`.
-    pub fn axes(&self, base: &Axes) -> Axes {
-        fn or<T: Clone>(given: &[T], other: &[T]) -> Vec<T> {
-            if given.is_empty() { other } else { given }.to_vec()
-        }
-        fn some<T: Copy>(given: &[T]) -> Vec<Option<T>> {
-            given.iter().copied().map(Some).collect()
-        }
-        let stages: Vec<DrawStage> = (self.stage.iter())
-            .filter_map(|tracing| match tracing {
-                Tracing::Device(stage) => Some(*stage),
-                Tracing::Reference => None, // refused by `check`
-            })
-            .collect();
-        Axes {
-            stages: or(&stages, &base.stages),
-            methods: or(&self.solver, &base.methods),
-            max_steps: or(&some(&self.max_steps), &base.max_steps),
-            sizes: or(&self.size, &base.sizes),
-            map_rows: or(&some(&self.map_rows), &base.map_rows),
-            sources: or(&some(&self.map_source), &base.sources),
-            formats: or(&self.map_format, &base.formats),
-            tolerances: or(&self.tolerance, &base.tolerances),
-        }
-    }
-
-    /// How often, as named; what is not comes from `base`.
-    pub fn time_budget(&self, base: &TimeBudget) -> TimeBudget {
-        let exactly =
-            |given: Option<u16>, other| given.map_or(other, |n| (usize::from(n), usize::from(n)));
-        TimeBudget {
-            passes: exactly(self.passes, base.passes),
-            rounds: exactly(self.rounds, base.rounds),
-            ..*base
-        }
-    }
-
-    /// The scenes named, or the suite's; from each elevation named, or `elevations` of the suite;
-    /// in each framing named.
+    /// The named values, for a plan to apply.
     ///
     /// # Errors
-    /// Of reading scenes.
-    pub fn views(&self, extent: Extent, elevations: &[f64]) -> Result<Vec<View>> {
-        let mut framings = Framing::ALL.to_vec();
-        framings.retain(|f| match self.framing.as_slice() {
-            [] => *f == Framing::Whole,
-            given => given.contains(f),
-        });
-        let framed = |view: View| {
-            let each = |framing: &Framing| view.clone().in_framing(*framing);
-            framings.iter().map(each).collect::<Vec<_>>()
+    /// A scene cannot be read.
+    pub fn overrides(&self, quick: bool) -> Result<Overrides> {
+        let device = |stage: &Tracing| match stage {
+            Tracing::Device(stage) => Some(*stage),
+            Tracing::Reference => None, // refused by `check`
         };
-        let seen = self.seen(extent, elevations)?;
-        Ok(seen.into_iter().flat_map(framed).collect())
+        Ok(Overrides {
+            quick,
+            scenes: self.views()?,
+            solids: self.suite.cloned(),
+            elevations: self.elevation.clone(),
+            framings: self.framing.clone(),
+            methods: self.solver.clone(),
+            lists: plan::Lists {
+                stages: self.stage.iter().filter_map(device).collect(),
+                sizes: self.size.clone(),
+                max_steps: self.max_steps.clone(),
+                map_rows: self.map_rows.clone(),
+                map_sources: self.map_source.clone(),
+                map_formats: self.map_format.clone(),
+                tolerances: self.tolerance.clone(),
+            },
+            passes: self.passes.map(usize::from),
+            rounds: self.rounds.map(usize::from),
+        })
     }
 
     /// The folder of results, or that of one made for them below `results/`.
     ///
     /// # Errors
-    /// As [`folder::claim`].
+    /// See [`folder::claim`].
     pub fn folder(&self, name: &str) -> Result<PathBuf> {
         let Some(out) = &self.out else {
             return folder::fresh(Path::new("results"), name);
@@ -169,16 +141,8 @@ impl Lists {
         Ok(out.clone())
     }
 
-    /// The views as cameras stand.
-    fn seen(&self, extent: Extent, elevations: &[f64]) -> Result<Vec<View>> {
-        if self.scenes.is_empty() {
-            let given = if self.elevation.is_empty() {
-                elevations
-            } else {
-                &self.elevation
-            };
-            return suite::views(self.suite.unwrap_or(extent), given);
-        }
+    /// The scenes named, as their cameras are.
+    fn views(&self) -> Result<Vec<View>> {
         let mut views = Vec::new();
         for file in &self.scenes {
             let scene = file::load(file, &self.set)?;
@@ -190,16 +154,7 @@ impl Lists {
             } else {
                 stem
             };
-            let view = View::new(name, scene);
-            if self.elevation.is_empty() {
-                views.push(view);
-            } else {
-                views.extend(
-                    self.elevation
-                        .iter()
-                        .map(|&degrees| view.clone().at_elevation(degrees)),
-                );
-            }
+            views.push(View::new(name, scene));
         }
         Ok(views)
     }

@@ -7,7 +7,7 @@ use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
-use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::method::{Edges, Method, MethodSettings};
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
@@ -108,7 +108,7 @@ impl Drawing {
             map_format: self.map_format,
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
-            antialias: false,
+            edges: Edges::OneRay,
         }
     }
 

@@ -12,7 +12,7 @@ use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
 use revmap::scene::file::SceneFile;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{Planes, Tolerance, name_of};
-use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::method::{Edges, Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodDrawn};
 use revmap_reference as reference;
 use serde_json::json;
@@ -88,7 +88,9 @@ impl Render {
             settings.tolerance = Tolerance::EXACT;
         }
         let reference = self.drawing.stage == Tracing::Reference;
-        settings.antialias = self.samples.antialias(floats || reference);
+        if self.samples.antialias(floats || reference) {
+            settings.edges = Edges::Silhouettes;
+        }
         let mut picture = match self.drawing.stage {
             Tracing::Reference => self.on_cpu(&scene, &settings)?,
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
@@ -153,7 +155,7 @@ impl Render {
         if let Some(file) = &self.levels {
             // Colours encode levels and are not mixed.
             let settings = MethodSettings {
-                antialias: false,
+                edges: Edges::OneRay,
                 ..*settings
             };
             let painted = levels::painted(scene, &costs);
@@ -183,7 +185,7 @@ impl Render {
         let frame = self.samples.draw(scene, |scene| {
             let mut frame =
                 reference::draw(scene, &drawn, &|done, total| progress.report(done, total))?;
-            if settings.antialias {
+            if settings.edges == Edges::Silhouettes {
                 antialias::silhouettes(scene, &mut frame)?;
             }
             Ok(frame)
@@ -324,7 +326,7 @@ impl Render {
             "stage": name_of(&options::STAGES, &self.drawing.stage),
             "solver": device.map(|_| settings.method.to_string()),
             "samples": self.samples.count,
-            "antialias": settings.antialias,
+            "antialias": settings.edges == Edges::Silhouettes,
             "device": device.map(|d| json!({ "name": d.name, "kind": d.kind, "driver": d.driver })),
             "gpu_ms": picture.times.gpu_ms,
             "frame_ms": picture.times.frame_ms,

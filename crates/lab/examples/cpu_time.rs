@@ -9,10 +9,10 @@ use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
-use revmap_lab::report::plan::{plain, rbm_baseline};
-use revmap_lab::report::suite::{Extent, views};
+use revmap_lab::report::flight;
+use revmap_lab::report::plan::suite::{Extent, views};
+use revmap_lab::report::plan::{army, distant, plain, rbm_baseline};
 use revmap_lab::report::view::View;
-use revmap_lab::report::{budget, crowds};
 use std::time::Instant;
 
 const ROUNDS: usize = 8;
@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--close" => close = true,
             "--count" => counted = Some(args.next().unwrap_or_default().parse::<u32>()?),
             "--view" => only.extend(args.next()),
-            "--crowd" => crowds.push(crowds::army(args.next().unwrap_or_default().parse()?)?),
-            "--distant" => crowds.extend(budget::distant()?),
+            "--crowd" => crowds.push(army(args.next().unwrap_or_default().parse()?)?),
+            "--distant" => crowds.push(distant()?),
             "--stage" if args.next().as_deref() == Some("compute") => stage = DrawStage::Compute,
             "--stage" => {}
             name => methods.push(name.parse::<Method>()?),
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let device = MethodDevice::new(device)?;
     let mut sums = vec![0.0; methods.len()];
     let mut views = if crowds.is_empty() {
-        views(Extent::All, &[25.0])?
+        views(&Extent::All, &[25.0])?
     } else {
         crowds
     };
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             view.scene.camera.fov_y *= 0.45;
         }
         let settings = if view.solids() > 1 {
-            crowds::settings(stage)
+            flight::settings(stage)
         } else {
             MethodSettings {
                 stage,

@@ -204,6 +204,47 @@ impl FromStr for Method {
     }
 }
 
+/// How the edges of a picture are treated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// One ray through the middle of each pixel.
+    OneRay,
+    /// One ray, and silhouettes smoothed.
+    Silhouettes,
+    /// So many rays in each pixel, a power of two.
+    Rays(u32),
+    /// One ray, in a pass of four samples.
+    Msaa,
+}
+
+impl Edges {
+    /// Its name in plans and results.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::OneRay => "1 ray".to_owned(),
+            Self::Silhouettes => "silhouettes".to_owned(),
+            Self::Rays(count) => format!("{count} rays"),
+            Self::Msaa => "MSAA 4".to_owned(),
+        }
+    }
+}
+
+/// The inverse of [`Edges::name`].
+impl FromStr for Edges {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let known = [Self::OneRay, Self::Silhouettes, Self::Msaa];
+        let rays = [4, 16, 64].map(Self::Rays);
+        let mut all = known.into_iter().chain(rays);
+        all.find(|edges| edges.name() == text).ok_or_else(|| {
+            let message = format!("{text:?} is no treatment of edges; give 1 ray, silhouettes, MSAA 4, 4 rays, 16 rays or 64 rays");
+            Error::new(ErrorKind::Usage, message)
+        })
+    }
+}
+
 /// How a picture is drawn: [`Settings`] with any method in place of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MethodSettings {
@@ -227,8 +268,8 @@ pub struct MethodSettings {
     pub planes: Planes,
     /// Allowed error of searches on patches.
     pub tolerance: Tolerance,
-    /// Whether silhouettes are smoothed.
-    pub antialias: bool,
+    /// How edges are treated.
+    pub edges: Edges,
 }
 
 impl Default for MethodSettings {
@@ -246,7 +287,7 @@ impl Default for MethodSettings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            antialias: settings.antialias,
+            edges: Edges::OneRay,
         }
     }
 }
@@ -266,7 +307,7 @@ impl From<&MethodSettings> for Settings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            antialias: settings.antialias,
+            antialias: settings.edges == Edges::Silhouettes,
             ..Self::default()
         }
     }

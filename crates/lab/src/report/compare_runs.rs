@@ -3,8 +3,8 @@
 pub mod drivers;
 mod run;
 
+use super::columns::results;
 use super::names::number;
-use super::row::COLUMNS;
 use super::stats::{self, Interval};
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
@@ -12,8 +12,8 @@ use run::Run;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The columns that tell what was measured: rows that agree in them are the same measurement.
-const KEY: &[&str] = COLUMNS.split_at(14).0;
+/// Number of columns that name the measurement, the first of all: rows that agree in them are the same measurement.
+const KEY: usize = 14;
 
 /// Errors may differ by this share before they count as changed.
 const ERROR_CHANGE: f64 = 0.05;
@@ -21,7 +21,7 @@ const ERROR_CHANGE: f64 = 0.05;
 /// One measurement that both folders hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// What was measured: the values of the columns that tell it.
+    /// The measurement: the values of the columns that name it.
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
@@ -29,16 +29,16 @@ pub struct Pair {
     /// run: what is left when one run had the slower machine. `None` where a run lacks that loop,
     /// and for the loop itself.
     pub relative: Option<Interval>,
-    /// What of the errors has grown.
+    /// The errors that have grown.
     pub worse: Vec<Change>,
-    /// What of the errors has shrunk.
+    /// The errors that have shrunk.
     pub better: Vec<Change>,
 }
 
 /// An error that differs: column, old, new.
 pub type Change = (&'static str, f64, f64);
 
-/// What became of a time.
+/// The change of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The interval lies above 1.
@@ -52,7 +52,7 @@ pub enum Verdict {
 }
 
 impl Pair {
-    /// What became of its time: in proportion to the RBM baseline where both runs have it.
+    /// The change of its time: in proportion to the RBM baseline where both runs have it.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match self.relative.or(self.time) {
@@ -67,7 +67,7 @@ impl Pair {
 /// Two runs side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
-    /// What both hold, in the order of the new run.
+    /// The measurements of both, in the order of the new run.
     pub pairs: Vec<Pair>,
     /// How many measurements only the old run has, and only the new one.
     pub alone: (usize, usize),
@@ -82,7 +82,7 @@ pub struct Against {
 /// [`ErrorKind::Content`] with nothing in common.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
-    let key = |record: &[String]| record[..KEY.len()].to_vec();
+    let key = |record: &[String]| record[..KEY].to_vec();
     let mut known: HashMap<Vec<String>, usize> = HashMap::new();
     for (number, record) in before.results.records.iter().enumerate() {
         known.entry(key(record)).or_insert(number);
@@ -138,7 +138,7 @@ fn errors(old: &[String], new: &[String]) -> (Vec<Change>, Vec<Change>) {
         "normal_rms_degrees",
         "flip",
     ] {
-        let Some(at) = COLUMNS.iter().position(|c| *c == name) else {
+        let Some(at) = results().position(|c| c == name) else {
             continue;
         };
         let (Ok(a), Ok(b)) = (old[at].parse::<f64>(), new[at].parse::<f64>()) else {
@@ -162,22 +162,15 @@ fn errors(old: &[String], new: &[String]) -> (Vec<Change>, Vec<Change>) {
 /// The comparison as text: all ratios, then what became slower, then what became less exact.
 #[must_use]
 pub fn as_text(against: &Against) -> String {
-    let mut out = format!(
-        "old: {}\nnew: {}\n\n",
-        against.devices[0], against.devices[1]
-    );
-    let columns: Vec<usize> = (0..KEY.len())
-        .filter(|&c| against.pairs.windows(2).any(|w| w[0].key[c] != w[1].key[c]))
-        .collect();
-    let columns = if columns.is_empty() {
-        vec![0, 5, 6]
-    } else {
-        columns
-    };
+    let pairs = &against.pairs;
+    let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
+    let mut columns: Vec<usize> = (0..KEY).filter(differs).collect();
+    if columns.is_empty() {
+        columns = vec![0, 5, 6];
+    }
     let name = |pair: &Pair| {
-        columns
-            .iter()
-            .map(|&c| pair.key[c].as_str())
+        let words = columns.iter().map(|&c| pair.key[c].as_str());
+        words
             .filter(|v| !v.is_empty())
             .collect::<Vec<_>>()
             .join(" ")
@@ -190,73 +183,68 @@ pub fn as_text(against: &Against) -> String {
         "95 % interval",
         "",
     ];
-    let mut table = Table::new(header, Vec::new());
-    let told = |i: Option<Interval>| match i {
-        Some(t) if t.high.is_finite() => [
-            number(t.value, 3),
-            format!("{} to {}", number(t.low, 3), number(t.high, 3)),
+    let fields = |i: Option<Interval>| match i.map(|t| (t.value, t.ends())) {
+        Some((value, Some((low, high)))) => [
+            number(value, 3),
+            format!("{} to {}", number(low, 3), number(high, 3)),
         ],
-        Some(t) => [number(t.value, 3), "unknown".to_owned()],
+        Some((value, None)) => [number(value, 3), "unknown".to_owned()],
         None => [String::new(), String::new()],
     };
-    for pair in &against.pairs {
+    let record = |pair: &Pair| {
         let verdict = match pair.verdict() {
             Verdict::Slower => "slower",
             Verdict::Faster => "faster",
             Verdict::Same => "",
             Verdict::Unknown => "clocks disagree",
         };
-        let [a, b] = told(pair.time);
-        let [c, d] = told(pair.relative);
-        table
-            .records
-            .push(vec![name(pair), a, b, c, d, verdict.to_owned()]);
-    }
-    out += &table.aligned();
-    let count = |v: Verdict| against.pairs.iter().filter(|p| p.verdict() == v).count();
-    let ratios: Vec<f64> = against
-        .pairs
-        .iter()
-        .filter_map(|p| p.time)
-        .map(|t| t.value)
-        .collect();
-    let mean = stats::geometric(&ratios)
-        .map(|i| number(i.value, 3))
-        .unwrap_or_default();
-    out += &format!(
-        "\n{} in common: {} slower, {} faster, {} within their intervals; geometric mean of new / old: {mean}; {} only in the old run, {} only in the new one\n",
-        against.pairs.len(),
+        let ([a, b], [c, d]) = (fields(pair.time), fields(pair.relative));
+        vec![name(pair), a, b, c, d, verdict.to_owned()]
+    };
+    let table = Table::new(header, pairs.iter().map(record).collect());
+    let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
+        let changed = pairs.iter().filter(|p| !of(p).is_empty());
+        let line = |pair: &Pair| {
+            let change = |(c, a, b): &Change| format!("{c} {} to {}", number(*a, 4), number(*b, 4));
+            let all: Vec<String> = of(pair).iter().map(change).collect();
+            format!("{what}: {}: {}\n", name(pair), all.join(", "))
+        };
+        changed.map(line).collect()
+    };
+    let [old, new] = &against.devices;
+    format!(
+        "old: {old}\nnew: {new}\n\n{}{}{}{}",
+        table.aligned(),
+        counts(against),
+        changes("less exact", |p| &p.worse),
+        changes("more exact", |p| &p.better)
+    )
+}
+
+/// How many became slower and faster, and whether the machine did.
+fn counts(against: &Against) -> String {
+    let pairs = &against.pairs;
+    let count = |v: Verdict| pairs.iter().filter(|p| p.verdict() == v).count();
+    let ratios: Vec<f64> = pairs.iter().filter_map(|p| Some(p.time?.value)).collect();
+    let mean = stats::geometric(&ratios).map(|i| number(i.value, 3));
+    let mut out = format!(
+        "\n{} in common: {} slower, {} faster, {} within their intervals; geometric mean of new / old: {}; {} only in the old run, {} only in the new one\n",
+        pairs.len(),
         count(Verdict::Slower),
         count(Verdict::Faster),
         count(Verdict::Same),
+        mean.unwrap_or_default(),
         against.alone.0,
         against.alone.1
     );
-    let loops: Vec<Interval> = against
-        .pairs
+    let mut loops = pairs
         .iter()
         .filter(|p| p.relative.is_none())
-        .filter_map(|p| p.time)
-        .collect();
-    if loops.iter().any(|t| t.low > 1.0 || t.high < 1.0)
-        && against.pairs.iter().any(|p| p.relative.is_some())
-    {
+        .filter_map(|p| p.time);
+    let compared = pairs.iter().any(|p| p.relative.is_some());
+    if compared && loops.any(|t| t.low > 1.0 || t.high < 1.0) {
         out += "the RBM baseline itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";
     }
-    let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
-        let changed = against.pairs.iter().filter(|p| !of(p).is_empty());
-        changed
-            .map(|pair| {
-                let changes: Vec<String> = of(pair)
-                    .iter()
-                    .map(|(c, a, b)| format!("{c} {} to {}", number(*a, 4), number(*b, 4)))
-                    .collect();
-                format!("{what}: {}: {}\n", name(pair), changes.join(", "))
-            })
-            .collect()
-    };
-    out += &changes("less exact", |p| &p.worse);
-    out += &changes("more exact", |p| &p.better);
     out
 }
 

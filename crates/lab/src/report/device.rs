@@ -1,42 +1,87 @@
-//! The real thing: measuring on a Vulkan device, against the double-precision reference.
+//! Measuring on a Vulkan device, against the double-precision reference.
 
 use super::measure::{Bench, TimedRenderer};
 use super::row::Sample;
 use super::view::View;
-use crate::method::MethodSettings;
+use crate::mesh::Multisampled;
+use crate::method::{Edges, MethodSettings};
 use crate::renderer::{MethodDevice, MethodRenderer};
+use crate::samples::averaged;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap_reference as reference;
+use std::time::Instant;
 
 /// A Vulkan device to measure on.
 pub struct DeviceBench {
     device: MethodDevice,
+    /// True if the device's clock counts, where it has one.
+    own_clock: bool,
 }
 
 impl DeviceBench {
-    /// Measures on this device.
+    /// Measures on this device; without its own clock by the wall clock alone.
     ///
     /// # Errors
-    /// Of Vulkan.
-    pub fn new(device: Device) -> Result<Self> {
+    /// Vulkan fails.
+    pub fn new(device: Device, own_clock: bool) -> Result<Self> {
         let device = MethodDevice::new(device)?;
-        Ok(Self { device })
+        Ok(Self { device, own_clock })
     }
 }
 
-struct Ready(MethodRenderer);
+/// A way to draw one frame.
+enum Drawer {
+    /// So many frames, one for each ray of a pixel.
+    Rays(MethodRenderer, u32),
+    /// A frame whose silhouettes are smoothed when it is read, and one without.
+    Smoothed([MethodRenderer; 2]),
+    /// A pass of four samples.
+    Multisampled(Box<Multisampled>),
+}
+
+struct Ready {
+    drawer: Drawer,
+    own_clock: bool,
+}
 
 impl TimedRenderer for Ready {
     fn sample(&mut self) -> Result<Sample> {
-        // One stage per submission: timestamps around both in one lie on some drivers.
-        let times = self.0.draw()?;
-        Ok(Sample {
-            gpu_ms: times.gpu_ms,
-            frame_ms: times.frame_ms,
-        })
+        let (mut gpu_ms, mut frame_ms) = (Some(0.0), 0.0);
+        match &mut self.drawer {
+            Drawer::Rays(renderer, count) => {
+                // One stage per submission: timestamps around both in one are wrong on some drivers.
+                for _ in 0..*count {
+                    let times = renderer.draw()?;
+                    gpu_ms = gpu_ms.zip(times.gpu_ms).map(|(sum, ms)| sum + ms);
+                    frame_ms += times.frame_ms;
+                }
+            }
+            Drawer::Smoothed([smoothed, plain]) => {
+                // Reading a picture takes the same for all but what smoothing adds, which is never
+                // less than nothing, whatever else the machine does.
+                plain.draw()?;
+                let usual = read_ms(plain)?;
+                frame_ms = smoothed.draw()?.frame_ms;
+                frame_ms += (read_ms(smoothed)? - usual).max(0.0);
+                gpu_ms = None;
+            }
+            Drawer::Multisampled(multisampled) => {
+                let times = multisampled.draw()?;
+                (gpu_ms, frame_ms) = (times.gpu_ms, times.frame_ms);
+            }
+        }
+        let gpu_ms = gpu_ms.filter(|_| self.own_clock);
+        Ok(Sample { gpu_ms, frame_ms })
     }
+}
+
+/// Milliseconds of reading a frame.
+fn read_ms(renderer: &mut MethodRenderer) -> Result<f64> {
+    let start = Instant::now();
+    renderer.read()?;
+    Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
 impl Bench for DeviceBench {
@@ -45,14 +90,42 @@ impl Bench for DeviceBench {
         view: &View,
         settings: &MethodSettings,
     ) -> Result<Box<dyn TimedRenderer>> {
-        let renderer = self.device.renderer(&view.scene, settings)?;
-        Ok(Box::new(Ready(renderer)))
+        let scene = &view.scene;
+        let drawer = match settings.edges {
+            Edges::OneRay => Drawer::Rays(self.device.renderer(scene, settings)?, 1),
+            Edges::Rays(count) => Drawer::Rays(self.device.renderer(scene, settings)?, count),
+            Edges::Msaa => {
+                Drawer::Multisampled(Box::new(self.device.multisampled(scene, settings)?))
+            }
+            Edges::Silhouettes => {
+                let plain = MethodSettings {
+                    edges: Edges::OneRay,
+                    ..*settings
+                };
+                let renderer = |settings| self.device.renderer(scene, settings);
+                Drawer::Smoothed([renderer(settings)?, renderer(&plain)?])
+            }
+        };
+        let own_clock = self.own_clock;
+        Ok(Box::new(Ready { drawer, own_clock }))
     }
 
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)> {
+        if settings.edges == Edges::Msaa {
+            let mut multisampled = self.device.multisampled(&view.scene, settings)?;
+            return Ok((multisampled.picture()?, 0));
+        }
+        let count = match settings.edges {
+            Edges::Rays(count) => count,
+            _ => 1,
+        };
         let mut renderer = self.device.renderer(&view.scene, settings)?;
-        renderer.draw()?;
-        Ok((renderer.read()?, renderer.map_bytes().iter().sum()))
+        let frame = averaged(count, &view.scene, |scene| {
+            renderer.update(scene)?;
+            renderer.draw()?;
+            renderer.read()
+        })?;
+        Ok((frame, renderer.map_bytes().iter().sum()))
     }
 
     fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame> {

@@ -9,8 +9,8 @@ use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
 use super::plan::Plan;
-use super::ratios::above_floor;
-use super::row::{CLOCKS_APART, COLUMNS, Clocks, Row};
+use super::report::results;
+use super::row::{CLOCKS_APART, Clocks, Row};
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Picture;
@@ -161,16 +161,6 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// `results.csv`: one record a row, with the columns of [`COLUMNS`].
-#[must_use]
-pub fn results(rows: &[Row], machine: &Machine) -> Table {
-    let record = |row: &Row| {
-        let above = above_floor(rows, row);
-        row.record(&machine.device, &machine.driver, above)
-    };
-    Table::new(COLUMNS, rows.iter().map(record).collect())
-}
-
 /// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds
 /// count from 1.
 #[must_use]
@@ -201,7 +191,7 @@ pub fn raw(rows: &[Row]) -> Table {
     table
 }
 
-/// What is in no summary and why: rows whose clocks disagree (`row` is their number in
+/// The rows in no summary, and why: those whose clocks disagree (`row` is their number in
 /// `results.csv`), and measurements that could not be made (`row` is empty).
 #[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
@@ -241,8 +231,15 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
 ///
 /// # Errors
 /// [`ErrorKind::File`], naming the file.
-pub fn write_rows(folder: &Path, rows: &[Row], machine: &Machine) -> Result<()> {
-    write_text(&folder.join("results.csv"), &results(rows, machine).csv())?;
+pub fn write_rows(
+    folder: &Path,
+    rows: &[Row],
+    plan: &Plan,
+    machine: &Machine,
+    resolved: f64,
+) -> Result<()> {
+    let results = results(rows, plan, machine, resolved)?;
+    write_text(&folder.join("results.csv"), &results.csv())?;
     write_text(&folder.join("raw.csv"), &raw(rows).csv())
 }
 
@@ -250,9 +247,15 @@ pub fn write_rows(folder: &Path, rows: &[Row], machine: &Machine) -> Result<()> 
 ///
 /// # Errors
 /// [`ErrorKind::File`], naming the file.
-pub fn write(folder: &Path, plan: &Plan, measured: &Measured, machine: &Machine) -> Result<()> {
+pub fn write(
+    folder: &Path,
+    plan: &Plan,
+    measured: &Measured,
+    machine: &Machine,
+    resolved: f64,
+) -> Result<()> {
     make(folder)?;
-    write_rows(folder, &measured.rows, machine)?;
+    write_rows(folder, &measured.rows, plan, machine, resolved)?;
     write_text(
         &folder.join("excluded.csv"),
         &excluded(plan, measured).csv(),

@@ -201,7 +201,7 @@ mod tests {
         let target = within.scene.camera.target;
         let close = within.in_framing(Framing::Close).scene.camera;
         assert_eq!((close.fov_y, close.target), (fov, target));
-        // What is near enough already is not moved away from.
+        // A solid that is near enough already is not moved away from.
         let mut near = spindle();
         near.scene.camera.fov_y = 5.0;
         assert_eq!(near.in_framing(Framing::Close).scene.camera.fov_y, 5.0);
@@ -213,10 +213,10 @@ mod tests {
         );
     }
 
-    /// What the framings are for: the share of pixels that hit.
+    /// The purpose of framings: the share of pixels that hit.
     #[test]
     fn close_up_most_pixels_hit() {
-        use super::super::suite::{Extent, views};
+        use super::super::plan::suite::{Extent, views};
         use crate::method::MethodSettings;
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
@@ -225,7 +225,7 @@ mod tests {
                 height,
                 ..MethodSettings::default()
             };
-            for view in views(Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
+            for view in views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
                 let share = |view: &View| {
                     let frame =
                         reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();

@@ -1,4 +1,4 @@
-//! What a map errs by itself: the surface of its bilinear distances, found on the CPU without any
+//! The error of a map by itself: the surface of its bilinear distances, found on the CPU without any
 //! search of the shaders, against the truth.
 //!
 //! Along a ray the map's `F = D - w` is read at points close enough to see every change of sign
@@ -72,7 +72,7 @@ impl Truths {
 /// normals are not compared. `progress` is told what is done and how much there is.
 ///
 /// # Errors
-/// Of baking and of the reference.
+/// Baking, or the reference, fails.
 pub fn measure(
     plan: &Plan,
     size: (u32, u32),
@@ -124,7 +124,7 @@ pub fn measure(
 /// Draws the distances (no colours, no normals) of the surface that the maps hold.
 ///
 /// # Errors
-/// Of baking, and of the camera.
+/// Baking fails, or the camera is wrong.
 pub fn draw(scene: &Scene, size: (u32, u32), source: MapSource, rows: u32) -> Result<Frame> {
     let mut maps = Vec::new();
     for object in &scene.objects {
@@ -311,7 +311,8 @@ mod tests {
             map_rows: Some(64),
             ..MethodSettings::default()
         };
-        let plan = Plan::new(vec![view], &[settings]);
+        let mut plan = Plan::new(vec![view]);
+        plan.add(0, settings, "");
         let wrong = |truths: &Truths| {
             measure(&plan, (40, 30), truths, &mut |_, _| {}).unwrap()[0]
                 .errors

@@ -5,12 +5,13 @@
 //! with everything built anew: what one placement in memory, or one bout of work beside ours, does
 //! to a time shows as spread between passes (see [`stats`](super::stats)).
 
-use super::plan::{Case, Plan, together};
+use super::plan::{Case, Plan, TimeBudget, Truth};
 use super::row::{Row, Sample, Steps};
-pub use super::time_budget::TimeBudget;
 use super::view::View;
-use crate::compare::{self, CompareOptions, Comparison};
-use crate::method::MethodSettings;
+use crate::compare::{
+    self, CompareOptions, Comparison, PIXELS_PER_DEGREE, PixelErrors, flip_map, pixel_errors,
+};
+use crate::method::{Edges, Method, MethodSettings};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::settings::Planes;
@@ -23,17 +24,17 @@ pub trait TimedRenderer {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Of drawing.
+    /// Drawing fails.
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// What makes renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
+/// A source of renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
 /// itself.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
     /// # Errors
-    /// Where this way of drawing does not apply to the view; a failure of the device itself is
+    /// This way of drawing does not apply to the view; a failure of the device itself is
     /// [`ErrorKind::DeviceLost`] and ends the run.
     fn timed_renderer(
         &mut self,
@@ -44,13 +45,13 @@ pub trait Bench {
     /// One frame with all planes, and the bytes of its maps.
     ///
     /// # Errors
-    /// As [`Bench::timed_renderer`].
+    /// See [`Bench::timed_renderer`].
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
-    /// What should be seen.
+    /// The truth.
     ///
     /// # Errors
-    /// Of the scene.
+    /// The scene is wrong.
     fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
 }
 
@@ -74,27 +75,32 @@ pub struct RenderedCase<'a> {
     pub case: &'a Case,
     /// The picture.
     pub frame: &'a Frame,
-    /// What should be seen.
+    /// The truth.
     pub truth: &'a Frame,
     /// How the two were compared.
     pub options: &'a CompareOptions,
 }
 
-/// What came out.
+/// The outcome of a run.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// Rows in the order of the plan's cases, without those left out.
     pub rows: Vec<Row>,
     /// Cases that could not be measured, and why.
     pub left_out: Vec<(Case, String)>,
-    /// Whether the run was ended early.
+    /// True if the run was ended early.
     pub interrupted: bool,
     /// How long it took.
     pub took: Duration,
 }
 
-/// A frame and how far it is from the reference.
-type Compared = (Frame, Result<Comparison>);
+/// A frame and how far it is from the truth.
+struct Compared {
+    frame: Frame,
+    errors: Result<Comparison>,
+    pixels: Option<Result<PixelErrors>>,
+    flip_own: Option<f64>,
+}
 
 /// Measures a plan.
 ///
@@ -125,10 +131,10 @@ pub fn measure(
                 break 'passes;
             }
             let begin = Instant::now();
-            let left = budget.time.saturating_sub(run.start.elapsed());
+            let left = budget.time().saturating_sub(run.start.elapsed());
             let share = left / u32::try_from(visits.max(1)).unwrap_or(u32::MAX);
             if pass == 0 {
-                for picture in run.pictures(group) {
+                for picture in plan.pictures(group) {
                     run.accuracy(&picture, observer)?;
                 }
             }
@@ -181,7 +187,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn tell(&self, observer: &Observer, what: &str) {
         let gone = self.start.elapsed();
-        let all = self.budget.time.max(gone);
+        let all = self.budget.time().max(gone);
         (observer.progress)(what, gone.as_millis() as u64, all.as_millis() as u64);
     }
 
@@ -202,21 +208,21 @@ impl Run<'_> {
         self.rows.iter().flatten().filter(timed).cloned().collect()
     }
 
-    /// A group's cases by the picture they show.
-    fn pictures(&self, group: &[usize]) -> Vec<Vec<usize>> {
-        let mut all: Vec<Vec<usize>> = Vec::new();
-        for &index in group {
-            let same = |known: &&mut Vec<usize>| {
-                known.first().is_some_and(|&first| {
-                    together(&self.plan.cases[first], &self.plan.cases[index])
-                })
-            };
-            match all.iter_mut().find(same) {
-                Some(known) => known.push(index),
-                None => all.push(vec![index]),
+    /// The picture that others are compared with; `of`: another method's than the default's.
+    fn truth(&mut self, case: Case, of: Option<Method>) -> Result<Frame> {
+        let view = &self.plan.views[case.view];
+        match self.plan.truth {
+            Truth::Reference => self.bench.truth(view, &case.settings),
+            Truth::Rays(count) => {
+                let settings = MethodSettings {
+                    method: of.unwrap_or(Method::DEFAULT),
+                    edges: Edges::Rays(count),
+                    planes: Planes::All,
+                    ..case.settings
+                };
+                Ok(self.bench.picture(view, &settings)?.0)
             }
         }
-        all
     }
 
     /// Draws each case that shows one picture once with all planes and compares it with the truth.
@@ -224,14 +230,17 @@ impl Run<'_> {
         let Some(&first) = group.first() else {
             return Ok(());
         };
-        let view = &self.plan.views[self.plan.cases[first].view];
+        let (plan, first) = (self.plan, self.plan.cases[first]);
+        let view = &plan.views[first.view];
         self.tell(observer, &format!("{}: the reference", view.name));
-        let truth = self.bench.truth(view, &self.plan.cases[first].settings)?;
+        let truth = self.truth(first, None)?;
+        let rays = plan.truth != Truth::Reference;
         let options = CompareOptions {
             texel: view.texel(),
             ..CompareOptions::default()
         };
         let reference = compare::Reference::new(&truth, &options)?;
+        let mut own: Option<(Method, Frame)> = None;
         // While a frame is compared the next is made ready: drivers compile on one thread. Nothing
         // is timed meanwhile.
         std::thread::scope(|scope| {
@@ -240,22 +249,32 @@ impl Run<'_> {
                 if observer.stop.load(Ordering::Relaxed) {
                     break;
                 }
-                let method = self.plan.cases[index].settings.method;
+                let case = plan.cases[index];
+                let method = case.settings.method;
                 self.tell(observer, &format!("{}: errors of {method}", view.name));
                 let settings = MethodSettings {
                     planes: Planes::All,
-                    ..self.plan.cases[index].settings
+                    ..case.settings
                 };
                 let drawn = self.bench.picture(view, &settings);
                 if let Some(one) = compared.take() {
                     self.keep(one, (&truth, &options), observer)?;
                 }
+                if rays && method != Method::DEFAULT && own.as_ref().is_none_or(|o| o.0 != method) {
+                    own = Some((method, self.truth(case, Some(method))?));
+                }
                 match drawn {
                     Ok((frame, map_bytes)) => {
                         let reference = &reference;
-                        let work = scope.spawn(move || {
-                            let comparison = reference.compare(&frame);
-                            (frame, comparison)
+                        let pixels = plan.pixel_errors && method != Method::Floor;
+                        let own = own.as_ref().filter(|o| o.0 == method).map(|o| &o.1);
+                        let flip_own = own.map(|own| mean_flip(own, &frame));
+                        let truth = &truth;
+                        let work = scope.spawn(move || Compared {
+                            errors: reference.compare(&frame),
+                            pixels: pixels.then(|| pixel_errors(&view.scene, truth, &frame)),
+                            flip_own,
+                            frame,
                         });
                         compared = Some((index, map_bytes, work));
                     }
@@ -269,28 +288,30 @@ impl Run<'_> {
         })
     }
 
-    /// Takes over a frame that was compared.
+    /// Makes the row of a frame that was compared.
     fn keep(
         &mut self,
         (index, map_bytes, work): (usize, u64, ScopedJoinHandle<Compared>),
         (truth, options): (&Frame, &CompareOptions),
         observer: &mut Observer,
     ) -> Result<()> {
-        let (frame, comparison) = work
+        let compared = work
             .join()
             .map_err(|_| Error::new(ErrorKind::Other, "a comparison was given up; report this"))?;
-        let comparison = comparison?;
+        let (frame, errors) = (&compared.frame, compared.errors?);
         let case = &self.plan.cases[index];
         (observer.picture)(&RenderedCase {
             plan: self.plan,
             case,
-            frame: &frame,
+            frame,
             truth,
             options,
         })?;
         let view = &self.plan.views[case.view];
-        let steps = Steps::of(&frame);
-        self.rows[index] = Some(Row::new(view, case, comparison, steps, map_bytes));
+        let mut row = Row::new(view, case, errors, Steps::of(frame), map_bytes);
+        row.pixel_errors = compared.pixels.transpose()?;
+        row.flip_own = compared.flip_own;
+        self.rows[index] = Some(row);
         Ok(())
     }
 
@@ -363,7 +384,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Whether every row's interval is narrow enough.
+    /// True if every row's interval is narrow enough.
     fn known(&self) -> bool {
         let narrow = |row: &Row| {
             row.time()
@@ -372,21 +393,27 @@ impl Run<'_> {
         self.rows.iter().flatten().all(narrow)
     }
 
-    /// Whether one more pass, as long as those before, would end too late.
+    /// True if one more pass, as long as those before, would end too late.
     fn late(&self, passes: usize) -> bool {
         let gone = self.start.elapsed();
-        gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time
+        gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time()
     }
 }
 
-/// Whether the median of these samples is known to within `precision`, by their median deviation.
+/// The mean of FLIP between two frames.
+fn mean_flip(truth: &Frame, frame: &Frame) -> f64 {
+    let map = flip_map(truth, frame, PIXELS_PER_DEGREE);
+    map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len().max(1) as f64
+}
+
+/// True if the median of these samples is known to within `precision`, by their median deviation.
 fn settled(samples: &[Sample], precision: f64) -> bool {
     let times: Vec<f64> = samples.iter().map(|s| s.frame_ms).collect();
     let Some(middle) = super::stats::median(&times) else {
         return false;
     };
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // Of a normal distribution the median's standard error is 1.25 sigma / sqrt n, sigma 1.48
+    // The standard error of a normal distribution's median is 1.25 sigma / sqrt n, sigma is 1.48
     // median deviations.
     let error =
         1.25 * 1.48 * super::stats::median(&off).unwrap_or(0.0) / (times.len() as f64).sqrt();

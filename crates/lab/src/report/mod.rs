@@ -3,39 +3,42 @@
 //! Every time stands beside the error of the picture that was drawn in it: a search that is fast
 //! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
 //! are taken, [`stats`] for what their intervals mean.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`plan`] | what is measured and shown, as TOML files |
+//! | [`measure`] | the engine: a plan becomes rows |
+//! | [`columns`] | the one description of columns, for files, tables and charts |
+//! | [`exhibit`] | tables and charts, as TOML files |
+//! | [`report`] | the page |
 
-pub mod antialiasing;
-pub mod budget;
-mod chapters;
 pub mod chart;
+pub mod columns;
 pub mod compare_runs;
-pub mod crowds;
-pub mod curves;
 mod device;
+pub mod exhibit;
+pub mod flight;
 pub mod folder;
 pub mod framing;
 pub mod glossary;
+pub mod growth;
 pub mod machine;
 pub mod map_error;
 pub mod measure;
 pub mod names;
-pub mod overview;
 pub mod page;
-pub mod papers;
 pub mod picture_groups;
 pub mod pictures;
 pub mod plan;
+pub mod published;
 pub mod ratios;
+#[allow(clippy::module_inception)]
+pub mod report;
 pub mod row;
-pub mod scaling;
 pub mod series_style;
+pub mod sheet;
 pub mod stats;
-pub mod suite;
-pub mod summary;
-pub mod sweep;
 pub mod table;
-pub mod text;
-pub mod time_budget;
 pub mod view;
 
 pub use device::DeviceBench;

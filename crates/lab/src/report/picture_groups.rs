@@ -3,8 +3,8 @@
 
 use super::names::number;
 use super::names::percent;
+use super::plan::grouped;
 use super::row::Row;
-use super::table::Table;
 use super::view::Framing;
 
 /// Rows of one framing, or of all.
@@ -17,7 +17,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// What it holds, in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are
+    /// Its content in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are
     /// hit`.
     #[must_use]
     pub fn title(&self) -> String {
@@ -43,7 +43,7 @@ impl Part {
         format!("{name}: {count}, of which {hit} of the pixels are hit")
     }
 
-    /// What its charts call its views.
+    /// The name of its views in charts.
     #[must_use]
     pub fn views(&self) -> &'static str {
         match self.framing {
@@ -53,18 +53,7 @@ impl Part {
         }
     }
 
-    /// What it holds, as a heading.
-    #[must_use]
-    pub fn heading(&self) -> String {
-        let title = self.title();
-        let mut letters = title.chars();
-        letters
-            .next()
-            .map(|first| first.to_uppercase().chain(letters).collect())
-            .unwrap_or_default()
-    }
-
-    /// What the names of its files end in: nothing for the part that holds all.
+    /// The ending of its files' names: nothing for the part that holds all.
     #[must_use]
     pub fn ending(&self, parts: &[Self]) -> String {
         match self.framing {
@@ -100,40 +89,8 @@ pub fn parts(rows: &[Row]) -> Vec<Part> {
 
 /// Rows put together by the picture they show.
 pub(super) fn pictures_of<'a>(rows: &[&'a Row]) -> Vec<Vec<&'a Row>> {
-    let mut groups: Vec<Vec<&Row>> = Vec::new();
-    for row in rows {
-        let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
-        match groups
-            .iter_mut()
-            .find(|g| g.first().is_some_and(|f| key(f) == key(row)))
-        {
-            Some(group) => group.push(row),
-            None => groups.push(vec![row]),
-        }
-    }
-    groups
-}
-
-/// Columns of the table of pictures.
-pub const PICTURES: [&str; 6] = ["picture", "framing", "size", "pixels hit", "solids", "form"];
-
-/// The pictures, in the order of the rows: a picture is a view at a size.
-#[must_use]
-pub fn pictures(rows: &[Row]) -> Table {
-    let all: Vec<&Row> = rows.iter().collect();
-    let record = |row: &Row| {
-        vec![
-            row.scene.clone(),
-            row.framing.name().to_owned(),
-            format!("{}x{}", row.settings.width, row.settings.height),
-            percent(row.covered()),
-            row.solids.to_string(),
-            row.technique.name().to_owned(),
-        ]
-    };
-    let all = pictures_of(&all);
-    let firsts = all.iter().filter_map(|p| p.first());
-    Table::new(PICTURES, firsts.map(|r| record(r)).collect())
+    let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
+    grouped(rows, |a, b| key(a) == key(b))
 }
 
 #[cfg(test)]
@@ -175,21 +132,5 @@ mod tests {
         // One framing needs no part of its own.
         assert_eq!(parts(&rows[..2]).len(), 1);
         assert!(parts(&[]).is_empty());
-    }
-
-    #[test]
-    fn every_picture_is_listed_once_with_its_share() {
-        let rows = [
-            seen(0, Framing::Whole, 21),
-            seen(0, Framing::Whole, 21),
-            seen(1, Framing::Close, 100),
-        ];
-        let records = pictures(&rows).records;
-        assert_eq!(records.len(), 2);
-        assert_eq!(
-            records[0],
-            ["s0", "whole", "800x600", "10.5 %", "1", "revolution"]
-        );
-        assert_eq!(records[1].len(), PICTURES.len());
     }
 }

@@ -3,9 +3,9 @@
 use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
-use super::plan::Labels;
+use super::plan::{Labels, is_rbm_baseline};
 use crate::compare::{Heat, heat_map, ramp};
-use crate::method::MethodSettings;
+use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::{Frame, Picture};
 use revmap::settings::DrawStage;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub struct Shot {
     /// Index of the view.
     pub view: usize,
-    /// What it shows.
+    /// Its title.
     pub caption: String,
     /// A PNG file's bytes.
     pub small: Vec<u8>,
@@ -30,7 +30,7 @@ pub const MOST_STEPS: f64 = 128.0;
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
-/// Of more views than this heat maps of the first alone are shown, and of each view a smaller
+/// Beyond so many views, heat maps are of the first alone, and each view has a smaller
 /// picture.
 const MANY_VIEWS: usize = 12;
 /// Pictures of many views are at most this wide.
@@ -40,25 +40,25 @@ const NARROW: u32 = 200;
 pub struct Album {
     folder: PathBuf,
     labels: Labels,
-    worth: fn(&MethodSettings) -> bool,
+    heat_maps: bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
-    /// What was collected.
+    /// The pictures.
     pub shots: Vec<Shot>,
 }
 
 impl Album {
-    /// An album in `folder/pictures`; heat maps are drawn of the ways that are `worth` one.
+    /// An album in `folder/pictures`, with heat maps or without.
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub fn new(folder: &Path, labels: Labels, worth: fn(&MethodSettings) -> bool) -> Result<Self> {
+    pub fn new(folder: &Path, labels: Labels, heat_maps: bool) -> Result<Self> {
         let folder = folder.join("pictures");
         make(&folder)?;
         Ok(Self {
             folder,
             labels,
-            worth,
+            heat_maps,
             stage: None,
             shown: Vec::new(),
             shots: Vec::new(),
@@ -101,7 +101,7 @@ impl Album {
         } else {
             HEATED_VIEWS
         };
-        if settings.stage != stage || place >= heated || !(self.worth)(settings) {
+        if settings.stage != stage || place >= heated || !(self.heat_maps && worth(settings)) {
             return Ok(());
         }
         let way = self.labels.way(settings);
@@ -146,7 +146,17 @@ impl Album {
     }
 }
 
-/// What the colours of heat maps mean.
+/// True if a way of drawing is worth a heat map: in a sweep only searches as they are drawn by
+/// default, and at one middling bound on steps.
+fn worth(s: &MethodSettings) -> bool {
+    let plain = s.map_rows.is_none()
+        && s.map_source.is_none()
+        && s.map_format == MethodSettings::default().map_format;
+    let usual = plain && matches!(s.max_steps, None | Some(64));
+    is_rbm_baseline(s) || (usual && s.method != Method::Floor)
+}
+
+/// The meaning of the colours of heat maps.
 #[must_use]
 pub fn heat_key() -> String {
     format!(

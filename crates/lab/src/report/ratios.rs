@@ -1,141 +1,167 @@
-//! Times in proportion to a rival's, over all views: the tables that say which search is faster,
-//! and how sure that is.
+//! Times in proportion to those of other rows, over all views: the tables that say which way of
+//! drawing is faster, and how sure that is.
 
 use super::plan::{is_rbm_baseline, variant};
 use super::row::Row;
 use super::stats::{self, Interval};
-use crate::method::{Method, MethodSettings};
+use crate::method::{Edges, Method, MethodSettings};
+use revmap::settings::{DrawStage, Tolerance};
 
-/// One way of drawing against a rival: the RBM baseline in the same stage, or a mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ratio {
+/// The row that others are put in proportion to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Over {
+    /// The RBM baseline in the same picture and stage.
+    Baseline,
+    /// The default search in the same picture and stage: exact, one ray per pixel.
+    Exact,
+    /// The plan's first view drawn in the same way; of the floor, the default search.
+    One,
+    /// The least value of the form's parameter drawn in the same way.
+    First,
+    /// A mesh of the same picture in the fragment stage.
+    Mesh,
+}
+
+impl Over {
+    /// The other row of a row. Of meshes the coarsest that errs no more in depth.
+    #[must_use]
+    pub fn of<'a>(self, rows: &'a [Row], row: &Row) -> Option<&'a Row> {
+        let stage = |r: &Row| same_picture(r, row) && r.settings.stage == row.settings.stage;
+        let find =
+            |wanted: &dyn Fn(&Row) -> bool| rows.iter().find(|r| wanted(r) && r.time().is_some());
+        match self {
+            Self::Baseline => find(&|r| is_rbm_baseline(&r.settings) && stage(r)),
+            Self::Exact => find(&|r| {
+                let s = &r.settings;
+                s.method == Method::DEFAULT
+                    && (s.tolerance, s.edges) == (Tolerance::EXACT, Edges::OneRay)
+                    && stage(r)
+            }),
+            Self::One => {
+                let mut like = row.settings;
+                if like.method == Method::Floor {
+                    like.method = Method::DEFAULT;
+                }
+                find(&|r| r.view == 0 && row.view > 0 && r.settings == like)
+            }
+            Self::First => {
+                let same = |r: &&Row| r.settings == row.settings && r.sweeps == row.sweeps;
+                let valued = rows.iter().filter(same).filter(|r| r.value.is_some());
+                valued.min_by(|a, b| {
+                    a.value
+                        .partial_cmp(&b.value)
+                        .unwrap_or(std::cmp::Ordering::Equal)
+                })
+            }
+            Self::Mesh => mesh_row(rows, row, None),
+        }
+    }
+}
+
+/// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no more.
+fn mesh_row<'a>(rows: &'a [Row], row: &Row, mesh: Option<Method>) -> Option<&'a Row> {
+    rows.iter()
+        .filter(|r| r.settings.method.is_mesh() && same_picture(r, row) && r.time().is_some())
+        .filter(|r| match mesh {
+            Some(mesh) => r.settings.method == mesh,
+            None => errs_no_more(r, row),
+        })
+        .min_by_key(|r| r.settings.method.quads())
+}
+
+/// A way of drawing over other rows: all pictures of which both have a usable row.
+#[derive(Clone, Debug)]
+pub struct Ratio<'a> {
     /// The way, without its size.
     pub settings: MethodSettings,
-    /// Time over the rival's: the geometric mean over views and sizes, with its 95 % interval.
+    /// The mesh that it is put over, in tables over meshes; `None`: in each picture the coarsest
+    /// that errs no more in depth.
+    pub mesh: Option<Method>,
+    /// Time over the other's: the geometric mean over views and sizes, with its 95 % interval.
     pub time: Interval,
     /// The least and the greatest ratio of a single view and size.
     pub range: (f64, f64),
-    /// How many views and sizes.
-    pub pictures: usize,
+    /// Each row and the other one.
+    pub pairs: Vec<(&'a Row, &'a Row)>,
+}
+
+impl Ratio<'_> {
     /// Missed and ghost pixels over the pixels hit, all pictures together.
-    pub wrong: f64,
-    /// The 99th percentile of the depth error, texels of a 512-row map: the geometric mean over the
-    /// pictures, of none less than [`LEAST_DEPTH`]; `None` where nothing was hit.
-    pub depth_p99: Option<f64>,
-    /// That of the worst picture.
-    pub depth_worst: Option<f64>,
-    /// The worst root mean square of the normals' angles, degrees.
-    pub normal_rms: Option<f64>,
-    /// Time above the floor over the rival's whole time: the mean over the pictures of which the
-    /// floor is known.
-    pub above_floor: Option<f64>,
+    #[must_use]
+    pub fn wrong(&self) -> f64 {
+        let sum = |f: fn(&Row) -> usize| self.pairs.iter().map(|(a, _)| f(a)).sum::<usize>() as f64;
+        sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0)
+    }
+
+    /// In how many of the pictures the other row errs no more in depth: only there a ratio of times
+    /// is one of equals.
+    #[must_use]
+    pub fn no_worse(&self) -> usize {
+        self.pairs
+            .iter()
+            .filter(|(row, other)| errs_no_more(other, row))
+            .count()
+    }
 }
 
-/// Every way's ratio to the RBM baseline, in the order in which the ways first appear. Rows whose
-/// clocks disagree count for nothing, and neither do pictures of which the rival has no usable row.
+/// Every way's ratio, those of the fragment stage first; over meshes those of the default
+/// search alone, for each mesh and then for the coarsest that errs no more. Rows whose clocks
+/// disagree count for nothing, and neither do pictures of which the other has no usable row.
 #[must_use]
-pub fn over_rbm_baseline(rows: &[Row]) -> Vec<Ratio> {
-    let pairs = |way: &MethodSettings| of_way(rows, way, |row| baseline_row(rows, row));
-    ways(rows).iter().filter_map(pairs).collect()
-}
-
-/// The default search against meshes, over the pictures of which both have a usable row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Duel {
-    /// The default search in one stage, its errors those in these pictures.
-    pub ours: Ratio,
-    /// The mesh; `None`: in each picture the coarsest of those measured that errs no more in depth,
-    /// pictures without one left out.
-    pub mesh: Option<Method>,
-    /// The 99th percentile of the mesh's depth error: as [`Ratio::depth_p99`].
-    pub mesh_p99: Option<f64>,
-    /// In how many of the pictures the mesh errs no more: only there a ratio of times is one of
-    /// equals.
-    pub no_worse: usize,
-}
-
-/// The time of the default search, in each stage, over that of meshes in the fragment stage: of
-/// each mesh, then of the coarsest that errs no more.
-#[must_use]
-pub fn over_meshes(rows: &[Row]) -> Vec<Duel> {
+pub fn over(rows: &[Row], over: Over) -> Vec<Ratio<'_>> {
     let all = ways(rows);
-    let meshes = || all.iter().map(|w| w.method).filter(|s| s.is_mesh());
+    if over != Over::Mesh {
+        let of = |way: &MethodSettings| of_way(rows, way, None, |row| over.of(rows, row));
+        return all.iter().filter_map(of).collect();
+    }
+    let meshes: Vec<Method> = all
+        .iter()
+        .map(|w| w.method)
+        .filter(|m| m.is_mesh())
+        .collect();
+    let none = (!meshes.is_empty()).then_some(None);
+    let rivals: Vec<Option<Method>> = meshes.into_iter().map(Some).chain(none).collect();
     let ours = all.iter().filter(|w| w.method == Method::DEFAULT);
-    ours.flat_map(|way| {
-        let rivals = meshes().map(Some).chain(meshes().next().map(|_| None));
-        rivals.filter_map(|mesh| duel(rows, way, mesh))
-    })
-    .collect()
-}
-
-fn duel(rows: &[Row], way: &MethodSettings, mesh: Option<Method>) -> Option<Duel> {
-    let rival = |row: &Row| {
-        rows.iter()
-            .filter(|r| r.settings.method.is_mesh() && same_picture(r, row) && r.time().is_some())
-            .filter(|r| match mesh {
-                Some(mesh) => r.settings.method == mesh,
-                None => errs_no_more(r, row),
-            })
-            .min_by_key(|r| r.settings.method.quads())
+    let of = |way| {
+        let against =
+            move |mesh: &Option<Method>| of_way(rows, way, *mesh, |row| mesh_row(rows, row, *mesh));
+        rivals.iter().filter_map(against).collect::<Vec<_>>()
     };
-    let ours = of_way(rows, way, rival)?;
-    let own = rows.iter().filter(|r| variant(&r.settings) == *way);
-    let pairs: Vec<(&Row, &Row)> = own
-        .filter(|r| r.time().is_some())
-        .filter_map(|r| Some((rival(r)?, r)))
-        .collect();
-    Some(Duel {
-        ours,
-        mesh,
-        mesh_p99: typical_depth(pairs.iter().map(|(m, _)| *m)),
-        no_worse: pairs.iter().filter(|(m, r)| errs_no_more(m, r)).count(),
-    })
+    ours.flat_map(of).collect()
 }
 
-/// What an error of depth counts for at least, texels: roundings of 32 bits.
-pub const LEAST_DEPTH: f64 = 1e-4;
-
-/// The geometric mean of the rows' depth errors.
-fn typical_depth<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<f64> {
-    let logs: Vec<f64> = rows
-        .filter_map(|r| Some(r.errors.depth?.p99.max(LEAST_DEPTH).ln()))
-        .collect();
-    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
-}
-
-/// Whether the depth error of `mesh` (99th percentile) is no more than that of `row`.
-fn errs_no_more(mesh: &Row, row: &Row) -> bool {
+/// True if the depth error of a row (99th percentile) is no more than that of another.
+fn errs_no_more(row: &Row, other: &Row) -> bool {
     let p99 = |r: &Row| r.errors.depth.map(|d| d.p99);
-    p99(mesh).zip(p99(row)).is_some_and(|(a, b)| a <= b)
+    p99(row).zip(p99(other)).is_some_and(|(a, b)| a <= b)
 }
 
 /// The ways of drawing, in the order in which they first appear.
-fn ways(rows: &[Row]) -> Vec<MethodSettings> {
+pub(super) fn ways(rows: &[Row]) -> Vec<MethodSettings> {
     let mut ways: Vec<MethodSettings> = Vec::new();
-    for row in rows {
-        let way = variant(&row.settings);
+    for way in rows.iter().map(|row| variant(&row.settings)) {
         if !ways.contains(&way) {
             ways.push(way);
         }
     }
+    // Those of the fragment stage first.
+    ways.sort_by_key(|way| way.stage == DrawStage::Compute);
     ways
 }
 
-/// A way over the rival that `rival` gives for each of its rows.
+/// A way over the row that `other` gives for each of its rows.
 fn of_way<'a>(
     rows: &'a [Row],
     way: &MethodSettings,
-    rival: impl Fn(&Row) -> Option<&'a Row>,
-) -> Option<Ratio> {
-    let mut pairs: Vec<(&Row, &Row)> = Vec::new();
-    for row in rows
+    mesh: Option<Method>,
+    other: impl Fn(&Row) -> Option<&'a Row>,
+) -> Option<Ratio<'a>> {
+    let own = rows
         .iter()
-        .filter(|r| variant(&r.settings) == *way && r.time().is_some())
-    {
-        pairs.extend(rival(row).map(|rival| (row, rival)));
-    }
-    let first = pairs.first()?;
-    let passes = first.0.passes.len();
+        .filter(|r| variant(&r.settings) == *way && r.time().is_some());
+    let pairs: Vec<(&Row, &Row)> = own.filter_map(|row| Some((row, other(row)?))).collect();
+    let passes = pairs.first()?.0.passes.len();
     let in_pass = |pass: usize| -> Vec<f64> {
         pairs
             .iter()
@@ -143,47 +169,17 @@ fn of_way<'a>(
             .collect()
     };
     // A pass that was ended early holds fewer pictures and would compare others.
-    let all: Vec<Vec<f64>> = (0..passes)
-        .map(in_pass)
-        .filter(|logs| logs.len() == pairs.len())
-        .collect();
-    let means: Vec<f64> = all
-        .iter()
-        .map(|logs| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
-        .collect();
-    let time = stats::geometric(&means)?;
-    let single: Vec<f64> = (0..pairs.len())
-        .map(|k| (all.iter().map(|logs| logs[k]).sum::<f64>() / all.len() as f64).exp())
-        .collect();
-    let sum = |f: fn(&Row) -> usize| pairs.iter().map(|(a, _)| f(a)).sum::<usize>() as f64;
-    let worst =
-        |f: fn(&Row) -> Option<f64>| pairs.iter().filter_map(|(a, _)| f(a)).reduce(f64::max);
+    let whole = |logs: &Vec<f64>| logs.len() == pairs.len();
+    let all: Vec<Vec<f64>> = (0..passes).map(in_pass).filter(whole).collect();
+    let mean = |logs: &Vec<f64>| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+    let time = stats::geometric(&all.iter().map(mean).collect::<Vec<_>>())?;
+    let single = (0..pairs.len()).map(|k| mean(&all.iter().map(|logs| logs[k]).collect()));
     Some(Ratio {
         settings: *way,
+        mesh,
         time,
-        range: single
-            .iter()
-            .fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(*v), h.max(*v))),
-        pictures: pairs.len(),
-        wrong: sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0),
-        depth_p99: typical_depth(pairs.iter().map(|(a, _)| *a)),
-        depth_worst: worst(|r| r.errors.depth.map(|d| d.p99)),
-        normal_rms: worst(|r| r.errors.normal.map(|n| n.rms)),
-        above_floor: mean(pairs.iter().filter_map(|(row, rival)| {
-            let above = above_floor(rows, row)?;
-            Some(above / rival.time()?.value)
-        })),
-    })
-}
-
-/// The RBM baseline that shows the same picture in the same stage.
-fn baseline_row<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
-    rows.iter().find(|r| {
-        is_rbm_baseline(&r.settings)
-            && r.view == row.view
-            && (r.settings.width, r.settings.height, r.settings.stage)
-                == (row.settings.width, row.settings.height, row.settings.stage)
-            && r.time().is_some()
+        range: single.fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(v), h.max(v))),
+        pairs,
     })
 }
 
@@ -204,12 +200,7 @@ pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
     (row.settings.method != Method::Floor).then_some(above)
 }
 
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let values: Vec<f64> = values.collect();
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-}
-
-/// Whether two rows show the same view at the same size.
+/// True if two rows show the same view at the same size.
 fn same_picture(a: &Row, b: &Row) -> bool {
     let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
     key(a) == key(b)
@@ -247,7 +238,6 @@ mod tests {
     use super::super::view::tests::spindle;
     use super::*;
     use crate::method::Method;
-    use revmap::settings::DrawStage;
 
     fn papers(mut row: Row) -> Row {
         row.settings = rbm_baseline(&spindle(), &row.settings);
@@ -262,7 +252,8 @@ mod tests {
             &[(None, 20.0), (None, 60.0)],
             &[(None, 40.0), (None, 22.0)],
         ]));
-        let ratios = over_rbm_baseline(&[ours, theirs]);
+        let rows = [ours, theirs];
+        let ratios = over(&rows, Over::Baseline);
         assert_eq!(ratios.len(), 2);
         let time = ratios[0].time;
         assert!(
@@ -281,34 +272,24 @@ mod tests {
             (a.view, b.view) = (view, view);
             rows.extend([a, b]);
         }
-        let ratio = &over_rbm_baseline(&rows)[0];
+        let ratio = &over(&rows, Over::Baseline)[0];
         assert!((ratio.time.value - 0.5).abs() < 1e-12);
         assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
-        assert_eq!(ratio.pictures, 2);
-        // So are depths, beside the worst.
-        for (row, p99) in rows.iter_mut().step_by(2).zip([0.01, 0.04]) {
-            row.errors.depth = Some(crate::compare::Spread {
-                rms: p99,
-                p99,
-                max: p99,
-            });
-        }
-        let ratio = &over_rbm_baseline(&rows)[0];
-        assert!(ratio.depth_p99.is_some_and(|p| (p - 0.02).abs() < 1e-12));
-        assert_eq!(ratio.depth_worst, Some(0.04));
+        assert_eq!(ratio.pairs.len(), 2);
     }
 
     #[test]
     fn what_cannot_be_trusted_counts_for_nothing() {
         let lies = row(&[&[(Some(0.04), 20.0)]]);
         let fine = papers(row(&[&[(Some(20.0), 20.0)]]));
-        let ratios = over_rbm_baseline(&[lies.clone(), fine.clone()]);
+        let rows = [lies.clone(), fine.clone()];
+        let ratios = over(&rows, Over::Baseline);
         assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
         // A rival that lies leaves nothing to compare with, and another stage or size is no rival.
-        assert!(over_rbm_baseline(&[row(&[&[(None, 20.0)]]), papers(lies)]).is_empty());
+        assert!(over(&[row(&[&[(None, 20.0)]]), papers(lies)], Over::Baseline).is_empty());
         let mut compute = row(&[&[(None, 20.0)]]);
         compute.settings.stage = DrawStage::Compute;
-        assert_eq!(over_rbm_baseline(&[compute, fine]).len(), 1);
+        assert_eq!(over(&[compute, fine], Over::Baseline).len(), 1);
     }
 
     /// 8 ms against 20 where 5 go without a search: 3 of the 20 are above the floor.
@@ -322,10 +303,6 @@ mod tests {
         let rows = [timed(8.0), floor, papers(timed(20.0)), compute];
         let above = |k: usize| above_floor(&rows, &rows[k]).map(|ms| ms.round());
         assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
-        let ratios = over_rbm_baseline(&rows);
-        let share = ratios[0].above_floor;
-        assert!(share.is_some_and(|s| (s - 0.15).abs() < 1e-12), "{share:?}");
-        assert_eq!(ratios[1].above_floor, None);
     }
 
     /// A run that was ended in its second pass: the picture that lacks the pass must not shift the
@@ -343,7 +320,7 @@ mod tests {
             (a.view, b.view) = (view, view);
             rows.extend([a, b]);
         }
-        let time = over_rbm_baseline(&rows)[0].time;
+        let time = over(&rows, Over::Baseline)[0].time;
         assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
     }
 
@@ -371,10 +348,10 @@ mod tests {
             timed(mesh(512), 36.0, 0.009),
             timed(mesh(256), 18.0, 0.01),
         ];
-        let duels = over_meshes(&rows);
+        let duels = over(&rows, Over::Mesh);
         let told: Vec<_> = duels
             .iter()
-            .map(|d| (d.mesh, (d.ours.time.value * 100.0).round(), d.no_worse))
+            .map(|d| (d.mesh, (d.time.value * 100.0).round(), d.no_worse()))
             .collect();
         assert_eq!(
             told,
@@ -385,10 +362,9 @@ mod tests {
                 (None, 50.0, 1)
             ]
         );
-        assert!(duels[0].mesh_p99.is_some_and(|p| (p - 0.5).abs() < 1e-12));
         // Without a mesh that errs no more there is no such ratio, and without the default search
         // none at all.
-        assert_eq!(over_meshes(&rows[..2]).len(), 1);
-        assert!(over_meshes(&rows[1..]).is_empty());
+        assert_eq!(over(&rows[..2], Over::Mesh).len(), 1);
+        assert!(over(&rows[1..], Over::Mesh).is_empty());
     }
 }

@@ -1,71 +1,18 @@
-//! One measurement with all that was found out about it, as a line of `results.csv`.
+//! One measurement with all that was found out about it.
 
-use super::names::number;
 use super::plan::Case;
 use super::stats::{self, Interval};
-use super::view::Framing;
-use super::view::{Technique, View};
-use crate::compare::Comparison;
-use crate::method::MethodSettings;
+use super::view::{Framing, Technique, View};
+use crate::compare::{Comparison, PixelErrors};
+use crate::method::{Method, MethodSettings};
 use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::Offset;
 
-/// Columns of `results.csv`, in their order. Medians are those of the report: geometric means of
-/// the passes' medians.
-pub const COLUMNS: [&str; 35] = [
-    "scene",
-    "technique",
-    "extend",
-    "bevel",
-    "chamfer",
-    "stage",
-    "solver",
-    "max_steps",
-    "width",
-    "height",
-    "map_rows",
-    "map_source",
-    "map_format",
-    "objects",
-    "gpu_ms_median",
-    "gpu_ms_p95",
-    "frame_ms_median",
-    "fps",
-    "steps_mean",
-    "steps_p99",
-    "steps_max",
-    "missed",
-    "ghost",
-    "depth_rms_texels",
-    "depth_p99_texels",
-    "depth_max_texels",
-    "normal_rms_degrees",
-    "silhouette_hausdorff_px",
-    "flip",
-    "device",
-    "driver",
-    "gpu_ms_low",
-    "gpu_ms_high",
-    "tolerance_px",
-    "above_floor_ms",
-];
-
-/// Those that every version writes, in this order before all others.
-pub(super) const CONTRACT: [&str; 31] = {
-    let mut first = [""; 31];
-    let mut i = 0;
-    while i < first.len() {
-        first[i] = COLUMNS[i];
-        i += 1;
-    }
-    first
-};
-
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
 
-/// What one frame took.
+/// The times of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Milliseconds between the device's own timestamps; `None` where it has none.
@@ -88,7 +35,7 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Of a frame. Pixels in which no look-up was made do not count: they are not covered by any
+    /// Look-ups of a frame. Pixels in which no look-up was made do not count: they are not covered by any
     /// box.
     #[must_use]
     pub fn of(frame: &Frame) -> Self {
@@ -107,7 +54,7 @@ impl Steps {
     }
 }
 
-/// What the two clocks say about each other.
+/// Agreement of the two clocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clocks {
     /// They agree.
@@ -145,13 +92,21 @@ pub struct Row {
     pub source: Option<MapSource>,
     /// Solids in the scene, copies counted.
     pub solids: usize,
+    /// The entries of the plan that it belongs to, as [`Case::sweeps`].
+    pub sweeps: u64,
+    /// The parameter of its view, in plans that vary one.
+    pub value: Option<f64>,
     /// How far the picture is from the truth.
     pub errors: Comparison,
+    /// The same in pixels, in plans that want it.
+    pub pixel_errors: Option<PixelErrors>,
+    /// FLIP against a picture of many rays by the same method, in plans that compare with one.
+    pub flip_own: Option<f64>,
     /// Look-ups.
     pub steps: Steps,
     /// Bytes of maps on the device.
     pub map_bytes: u64,
-    /// What frames took, in the passes and rounds in which they were drawn.
+    /// Times of frames, in the passes and rounds in which they were drawn.
     pub passes: Vec<Vec<Sample>>,
 }
 
@@ -175,7 +130,11 @@ impl Row {
                 .filter(|_| searched),
             source: searched.then(|| settings.map_source.unwrap_or_default()),
             solids: view.solids(),
+            sweeps: case.sweeps,
+            value: view.value,
             errors,
+            pixel_errors: None,
+            flip_own: None,
             steps,
             map_bytes,
             passes: Vec::new(),
@@ -186,6 +145,24 @@ impl Row {
     #[must_use]
     pub fn covered(&self) -> f64 {
         self.errors.hits as f64 / self.errors.pixels.max(1) as f64
+    }
+
+    /// Pixels across and down, as `800x600`.
+    #[must_use]
+    pub fn size(&self) -> String {
+        format!("{}x{}", self.settings.width, self.settings.height)
+    }
+
+    /// Errors of the surface; the floor's picture has none to err from.
+    #[must_use]
+    pub fn surface(&self) -> Option<&Comparison> {
+        (self.settings.method != Method::Floor).then_some(&self.errors)
+    }
+
+    /// True if the time is known to within `most`, half the width of its interval over the value.
+    #[must_use]
+    pub fn resolved(&self, most: f64) -> bool {
+        self.time().is_some_and(|t| t.relative() <= most)
     }
 
     /// The bound on steps.
@@ -214,7 +191,7 @@ impl Row {
         self.passes.iter().flatten().map(|s| s.frame_ms).collect()
     }
 
-    /// Whether the two clocks agree.
+    /// Agreement of the two clocks.
     #[must_use]
     pub fn clocks(&self) -> Clocks {
         let Some(gpu_ms) = self.typical(|s| s.gpu_ms) else {
@@ -241,7 +218,7 @@ impl Row {
     }
 
     /// The geometric mean of the passes' medians of one clock, ms.
-    fn typical(&self, of: impl Fn(&Sample) -> Option<f64>) -> Option<f64> {
+    pub(super) fn typical(&self, of: impl Fn(&Sample) -> Option<f64>) -> Option<f64> {
         stats::geometric(&self.medians(of)).map(|i| i.value)
     }
 
@@ -259,68 +236,6 @@ impl Row {
             Clocks::Disagree { .. } => None,
             Clocks::Agree | Clocks::Wall => stats::geometric(&self.pass_medians()),
         }
-    }
-
-    /// The record of `results.csv`. Where the clocks disagree the columns of the device's clock are
-    /// empty: a number there would be believed. `above_floor`: as
-    /// [`ratios::above_floor`](super::ratios::above_floor).
-    #[must_use]
-    pub fn record(&self, device: &str, driver: &str, above_floor: Option<f64>) -> Vec<String> {
-        let gpu = match self.clocks() {
-            Clocks::Agree => self.gpu_ms(),
-            Clocks::Wall | Clocks::Disagree { .. } => Vec::new(),
-        };
-        let time = self.time().filter(|_| !gpu.is_empty());
-        let frame = self.typical(|s| Some(s.frame_ms));
-        let num = |v: Option<f64>| v.map(|v| number(v, 6)).unwrap_or_default();
-        let offset = |f: fn(&Offset) -> f64| num(self.offset.as_ref().map(f));
-        let e = &self.errors;
-        let whole = |n: usize| n.to_string();
-        let s = &self.settings;
-        let follows = s.method.follows_tolerance();
-        // A mesh has no search, whose columns these are.
-        let search = |text: String| {
-            Some(text)
-                .filter(|_| !s.method.is_mesh())
-                .unwrap_or_default()
-        };
-        vec![
-            self.scene.clone(),
-            self.technique.name().into(),
-            offset(|o| o.extend),
-            offset(|o| o.bevel),
-            offset(|o| o.chamfer),
-            s.stage.name().into(),
-            s.method.to_string(),
-            search(self.max_steps().to_string()),
-            s.width.to_string(),
-            s.height.to_string(),
-            self.map_rows.map(|r| r.to_string()).unwrap_or_default(),
-            self.source.map(MapSource::name).unwrap_or_default().into(),
-            search(s.map_format.name().into()),
-            whole(self.solids),
-            num(time.map(|t| t.value)),
-            num(stats::quantile(&gpu, 0.95)),
-            num(frame),
-            num(frame.map(|ms| 1e3 / ms)),
-            search(num(Some(self.steps.mean))),
-            search(num(Some(self.steps.p99))),
-            search(num(Some(self.steps.max))),
-            whole(e.missed),
-            whole(e.ghost),
-            num(e.depth.map(|d| d.rms)),
-            num(e.depth.map(|d| d.p99)),
-            num(e.depth.map(|d| d.max)),
-            num(e.normal.map(|n| n.rms)),
-            num(Some(e.silhouette_hausdorff)),
-            num(e.flip),
-            device.into(),
-            driver.into(),
-            num(time.and_then(|t| t.ends()).map(|(low, _)| low)),
-            num(time.and_then(|t| t.ends()).map(|(_, high)| high)),
-            num(follows.then(|| s.tolerance.pixels())),
-            num(above_floor),
-        ]
     }
 }
 

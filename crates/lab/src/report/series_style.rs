@@ -10,22 +10,21 @@ use revmap::maps::MapSource;
 use revmap::settings::{DrawStage, Solver};
 
 /// How a method looks in the fragment stage, meshes of every fineness alike. The default stands
-/// out; equal steps, which nobody should choose, have the dark reds; both kinds of cones have one
-/// colour.
+/// out; searches of one family have one colour: equal steps, and cones.
 fn search(method: Method) -> Style {
     let (color, marker, dash) = match method {
         Method::Search(Solver::Other(search)) => match search.name {
-            "linear" => (color::RED, Marker::Left, Dash::Dots),
-            "relief" => (color::PURPLE, Marker::Right, Dash::Short),
-            "secant" => (color::WINE, Marker::Star, Dash::DashDot),
-            "circle" => (color::GREY, Marker::Plus, Dash::Dots),
-            "cone" => (color::TAN, Marker::Cross, Dash::Short),
-            "relaxed" => (color::TAN, Marker::Hexagram, Dash::Dots),
-            _ => (color::TAN, Marker::Diamond, Dash::Long),
+            "linear" => (color::GREY, Marker::Left, Dash::Dots),
+            "relief" => (color::GREY, Marker::Right, Dash::Short),
+            "secant" => (color::GREY, Marker::Star, Dash::DashDot),
+            "circle" => (color::ORANGE, Marker::Plus, Dash::Dots),
+            "cone" => (color::PURPLE, Marker::Cross, Dash::Short),
+            "relaxed" => (color::PURPLE, Marker::Hexagram, Dash::Dots),
+            _ => (color::PURPLE, Marker::Diamond, Dash::Long),
         },
-        Method::Search(Solver::Live) => (color::NAVY, Marker::Up, Dash::DashDot),
-        Method::Search(Solver::Quadric) => (color::VIOLET, Marker::Down, Dash::Long),
-        Method::Search(Solver::Exact) => (color::ORANGE, Marker::Disk, Dash::Solid),
+        Method::Search(Solver::Live) => (color::SKY, Marker::Up, Dash::DashDot),
+        Method::Search(Solver::Quadric) => (color::GREEN, Marker::Down, Dash::Long),
+        Method::Search(Solver::Exact) => (color::VERMILION, Marker::Disk, Dash::Solid),
         Method::MeshLevels => (color::BLUE, Marker::Cross, Dash::Long),
         Method::Mesh { .. } => (color::BLUE, Marker::Square, Dash::Solid),
         Method::Floor => (color::BLACK, Marker::Plus, Dash::Solid),
@@ -76,7 +75,7 @@ pub fn of_source(source: MapSource) -> Style {
     match source {
         MapSource::Binary => Style::new(color::BLACK, Marker::Square),
         MapSource::Coverage => Style::new(color::BLUE, Marker::Disk),
-        MapSource::Exact => Style::new(color::ORANGE, Marker::Up),
+        MapSource::Exact => Style::new(color::VERMILION, Marker::Up),
     }
 }
 
@@ -119,7 +118,8 @@ impl SeriesStyles {
     }
 
     /// The styles of the ways in which rows were drawn.
-    pub(super) fn of(rows: &[Row]) -> Self {
+    #[must_use]
+    pub fn of(rows: &[Row]) -> Self {
         let ways: Vec<MethodSettings> = rows.iter().map(|r| variant(&r.settings)).collect();
         Self::new(&ways)
     }
@@ -128,18 +128,6 @@ impl SeriesStyles {
     #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
         self.labels.way(s)
-    }
-
-    /// The names of all ways.
-    #[must_use]
-    pub fn labels(&self) -> &Labels {
-        &self.labels
-    }
-
-    /// The name of a way and its stage.
-    #[must_use]
-    pub fn name(&self, s: &MethodSettings) -> String {
-        format!("{}, {}", self.labels.way(s), s.stage.name())
     }
 
     /// How it looks.
@@ -158,7 +146,7 @@ impl SeriesStyles {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::plan::{ALL_MESHES, rbm_baseline};
+    use super::super::plan::rbm_baseline;
     use super::super::view::tests::spindle;
     use super::*;
     use revmap_searches::CIRCLE;
@@ -171,7 +159,8 @@ mod tests {
             .map(|&method| MethodSettings { method, ..base })
             .collect();
         ways.push(rbm_baseline(&spindle(), &base));
-        for (segments, rings) in ALL_MESHES.into_iter().chain([(16, 32), (1024, 2048)]) {
+        for segments in [16, 64, 512] {
+            let rings = 2 * segments;
             let method = Method::Mesh { segments, rings };
             ways.push(MethodSettings { method, ..base });
         }
@@ -179,22 +168,26 @@ mod tests {
     }
 
     #[test]
-    fn no_two_searches_share_a_marker_and_none_but_cones_a_colour() {
+    fn no_two_searches_share_a_marker_and_none_but_families_a_colour() {
         let ways = all();
         let searches = &ways[..=Method::ALL.len()];
-        for (i, a) in searches.iter().enumerate() {
-            for b in &searches[..i] {
-                // As many colours as there are searches cannot be told apart by all eyes.
-                let cones = a.method.reads_own_table() && b.method.reads_own_table();
-                let (a, b) = (style(a), style(b));
-                assert_eq!(a.color == b.color, cones, "{a:?} {b:?}");
+        let family = |s: &MethodSettings| match s.method.name() {
+            "linear" | "relief" | "secant" => "equal steps".to_owned(),
+            "cone" | "relaxed" => "cones".to_owned(),
+            name => format!("{name} {}", is_rbm_baseline(s)),
+        };
+        for (i, s) in searches.iter().enumerate() {
+            for other in &searches[..i] {
+                let alike = family(s) == family(other);
+                let (a, b) = (style(s), style(other));
+                assert_eq!(a.color == b.color, alike, "{a:?} {b:?}");
                 assert!(
-                    a.marker != b.marker && (!cones || a.dash != b.dash),
+                    a.marker != b.marker && (!alike || a.dash != b.dash),
                     "{a:?} {b:?}"
                 );
             }
-            assert!(color::ALL.contains(&style(a).color));
-            assert_eq!(style(a).heavy, a.method == Method::DEFAULT);
+            assert!(color::ALL.contains(&style(s).color));
+            assert_eq!(style(s).heavy, s.method == Method::DEFAULT);
         }
         for (i, a) in ways.iter().enumerate() {
             for b in &ways[..i] {
@@ -241,7 +234,7 @@ mod tests {
         let seen: Vec<Style> = ways.iter().map(|w| styles.style(w)).collect();
         for (i, a) in seen.iter().enumerate() {
             assert!(seen[..i].iter().all(|b| a.marker != b.marker));
-            assert_eq!(a.color, color::GREY);
+            assert_eq!(a.color, color::ORANGE);
         }
     }
 }

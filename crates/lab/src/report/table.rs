@@ -96,7 +96,7 @@ impl Table {
     /// Reads a file of comma-separated values.
     ///
     /// # Errors
-    /// As [`Table::parse`], with the file; and when it cannot be read.
+    /// See [`Table::parse`]; also when the file cannot be read.
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
             Error::new(

@@ -1,4 +1,4 @@
-//! What is looked at: a scene and its name, seen from one place.
+//! A scene and its name, seen from one place.
 
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
@@ -6,18 +6,22 @@ use revmap::scene::{Offset, Scene};
 /// A scene to be measured.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// What results call it.
+    /// Its name in results.
     pub name: String,
     /// The scene.
     pub scene: Scene,
     /// How much of the picture its solids take.
     pub framing: Framing,
+    /// The name of the plan's entry that it comes from.
+    pub group: String,
+    /// The parameter of its form, in plans that vary one.
+    pub value: Option<f64>,
 }
 
 /// How much of the picture is solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framing {
-    /// As the camera stands: of the program's own solids nine tenths of the picture's height, or of
+    /// The scene's own camera: for the program's own solids nine tenths of the picture's height, or of
     /// its width in a picture of 4:3.
     Whole,
     /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
@@ -55,7 +59,7 @@ pub enum Technique {
 }
 
 impl Technique {
-    /// Of one object's offset.
+    /// The technique of one object's offset.
     #[must_use]
     pub fn of(offset: &Offset) -> Self {
         match (
@@ -81,7 +85,7 @@ impl Technique {
         }
     }
 
-    /// Whether the offset changes with height, for which the papers take more iterations.
+    /// True if the offset changes with height, for which the papers take more iterations.
     #[must_use]
     pub fn is_beveled(self) -> bool {
         matches!(self, Self::Beveled | Self::Chamfered | Self::Mixed)
@@ -96,6 +100,8 @@ impl View {
             name: name.into(),
             scene,
             framing: Framing::Whole,
+            group: String::new(),
+            value: None,
         }
     }
 

@@ -2,31 +2,72 @@
 
 use revmap::gpu::Device;
 use revmap::settings::DrawStage;
-use revmap_lab::renderer::MethodDevice;
-use revmap_lab::report::antialiasing::{Way, measure};
-use revmap_lab::report::suite::Extent;
+use revmap_lab::method::Edges;
+use revmap_lab::report::DeviceBench;
+use revmap_lab::report::measure::{Observer, measure};
+use revmap_lab::report::plan::{Overrides, embedded};
+use revmap_lab::report::row::Row;
+use revmap_lab::report::sheet::Sheets;
+use std::sync::atomic::AtomicBool;
 
 #[test]
 fn four_samples_bring_meshes_closer_to_64_rays() {
     let device = Device::open_validated(None).unwrap();
-    let stages = [DrawStage::Fragment, DrawStage::Compute];
-    let methods = MethodDevice::new(device.clone()).unwrap();
-    let (lines, _) = measure(&methods, &stages, Extent::One, 1, &|_, _| {}).unwrap();
-    drop(methods);
+    let given = Overrides {
+        quick: true,
+        passes: Some(1),
+        rounds: Some(1),
+        ..Overrides::default()
+    };
+    let mut file = embedded::plan("antialiasing").unwrap();
+    file.apply(&given);
+    let plan = file.plan(&given).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut sheets = Sheets::new(folder.path());
+    let mut bench = DeviceBench::new(device.clone(), false).unwrap();
+    let mut observer = Observer {
+        stop: &AtomicBool::new(false),
+        progress: &|_, _, _| {},
+        picture: &mut |seen| sheets.add(seen),
+        passed: &mut |_| Ok(()),
+    };
+    let rows = measure(&plan, &mut bench, &file.time, &mut observer)
+        .unwrap()
+        .rows;
+    sheets.finish().unwrap();
+    drop(bench);
     device.check().unwrap();
-    for stage in stages {
-        let drawn = lines.iter().filter(|line| line.stage == stage);
-        let ways: Vec<Way> = drawn.map(|line| line.way).collect();
-        assert_eq!(ways, Way::of(stage));
+    let edges = |stage| -> Vec<String> {
+        let own = rows.iter().filter(|r| r.settings.stage == stage);
+        own.map(|r| r.settings.edges.name()).collect()
+    };
+    let search = ["1 ray", "silhouettes", "4 rays", "16 rays"];
+    assert_eq!(edges(DrawStage::Compute), search);
+    assert_eq!(
+        edges(DrawStage::Fragment),
+        [&search[..], &["MSAA 4", "1 ray", "MSAA 4"]].concat()
+    );
+    assert!(rows.iter().all(|r| r.time().is_some_and(|t| t.value > 0.0)));
+    for stage in ["fragment", "compute"] {
+        assert!(
+            folder
+                .path()
+                .join(format!("antialiasing-vase-{stage}.png"))
+                .exists()
+        );
     }
-    assert!(lines.iter().all(|line| line.ms > 0.0 && line.ratio > 0.0));
-    let found = |way| lines.iter().find(|line| line.way == way).unwrap();
-    let [one, four] = [Way::Mesh, Way::MeshMsaa].map(|way| found(way).own);
-    println!("mesh: {one}, four samples: {four}");
-    assert!(four < 0.8 * one, "{four} of {one}");
-    assert!(found(Way::MeshMsaa).flip < found(Way::Mesh).flip);
+    let found = |mesh, edges| -> &Row {
+        let own = |r: &&Row| r.settings.method.is_mesh() == mesh && r.settings.edges == edges;
+        rows.iter().find(own).unwrap()
+    };
+    let [one, four] = [Edges::OneRay, Edges::Msaa].map(|edges| found(true, edges));
+    let own = |row: &Row| row.flip_own.unwrap();
+    println!("mesh: {}, four samples: {}", own(one), own(four));
+    assert!(own(four) < 0.8 * own(one));
+    assert!(four.errors.flip < one.errors.flip);
     // Rays go through the middle of pixels all the same.
-    let [one, four] = [Way::Rays(1), Way::Msaa].map(|way| found(way).flip);
+    let flip = |edges| found(false, edges).errors.flip.unwrap();
+    let [one, four] = [Edges::OneRay, Edges::Msaa].map(flip);
     println!("one ray: {one}, four samples: {four}");
     assert!(four > 0.9 * one && four < 1.3 * one, "{four} of {one}");
 }

@@ -3,13 +3,13 @@
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::curves;
+use revmap_lab::report::exhibit::Extra;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
-use revmap_lab::report::overview;
 use revmap_lab::report::pictures::Album;
-use revmap_lab::report::plan::Labels;
+use revmap_lab::report::plan::{Labels, embedded};
+use revmap_lab::report::report::Run;
 use std::sync::atomic::AtomicBool;
 
 /// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour;
@@ -44,6 +44,7 @@ fn no_truth_is_drawn_twice() {
                     height: 24,
                     ..case.settings
                 },
+                "",
             );
         }
         plan.mixed = mixed;
@@ -90,7 +91,7 @@ fn a_runs_folder_is_whole() {
     let mut album = Album::new(
         folder.path(),
         Labels::new(plan.cases.iter().map(|c| &c.settings)),
-        |_| true,
+        true,
     )
     .unwrap();
     let outcome = measure(
@@ -103,13 +104,29 @@ fn a_runs_folder_is_whole() {
             picture: &mut |seen| album.add(seen),
             passed: &mut |rows| {
                 assert_eq!(rows.len(), 6, "after each pass every row is there");
-                folder::write_rows(folder.path(), rows, &machine)
+                folder::write_rows(folder.path(), rows, &plan, &machine, 0.25)
             },
         },
     )
     .unwrap();
-    folder::write(folder.path(), &plan, &outcome, &machine).unwrap();
-    overview::write(folder.path(), &plan, &outcome, &machine, &album).unwrap();
+    folder::write(folder.path(), &plan, &outcome, &machine, 0.25).unwrap();
+    // All tables and charts of both kinds of runs.
+    let mut file = embedded::plan("usual").unwrap();
+    file.show.extend(embedded::plan("chart").unwrap().show);
+    let report = Run {
+        file: &file,
+        plan: &plan,
+        measured: &outcome,
+        machine: &machine,
+        album: &album,
+        flights: &[],
+        extra: Extra::default(),
+    };
+    let text = report.write(folder.path()).unwrap();
+    assert!(
+        text.contains("RBM baseline") && text.contains("2 pictures"),
+        "{text}"
+    );
     for (file, records) in [("results.csv", 6), ("excluded.csv", 2)] {
         let table = revmap_lab::report::table::Table::load(&folder.path().join(file)).unwrap();
         assert_eq!(table.records.len(), records, "{file}");
@@ -130,12 +147,18 @@ fn a_runs_folder_is_whole() {
     for foreign in ["<script", "src=\"http", "href=\"http", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
-    curves::write(folder.path(), &plan, &outcome, &machine, &album, &[]).unwrap();
-    assert!(folder.path().join("side-48x36.html").exists());
-    assert!(
-        folder
-            .path()
-            .join("charts/summary-depth-error.png")
-            .exists()
-    );
+    let charts = [
+        "ratios",
+        "summary",
+        "error-side-48x36",
+        "times-side-48x36",
+        "summary-depth-error",
+        "side-48x36-FLIP",
+    ];
+    for name in charts {
+        for ending in ["svg", "pdf", "png"] {
+            let file = folder.path().join(format!("charts/{name}.{ending}"));
+            assert!(file.exists(), "{name}.{ending}");
+        }
+    }
 }

@@ -4,16 +4,16 @@ use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Tolerance};
 use revmap_lab::method::MethodSettings;
 use revmap_lab::renderer::MethodDevice;
-use revmap_lab::report::crowds::{self, Flight};
+use revmap_lab::report::flight::{self, FlightTimes};
 
-fn flight(device: &MethodDevice, stage: DrawStage, tolerance: f64) -> Flight {
+fn flight(device: &MethodDevice, stage: DrawStage, tolerance: f64) -> FlightTimes {
     let settings = MethodSettings {
         width: 160,
         height: 90,
         tolerance: Tolerance::new(tolerance).unwrap(),
-        ..crowds::settings(stage)
+        ..flight::settings(stage)
     };
-    crowds::fly(device, &settings, 1600, 6, 3).unwrap()
+    flight::fly(device, &settings, 1600, 6, 3).unwrap()
 }
 
 #[test]

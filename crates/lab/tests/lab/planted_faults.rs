@@ -3,14 +3,17 @@
 use crate::stand_in::{Fault, StandIn, measured, plan, run};
 use revmap::error::ErrorKind;
 use revmap::settings::Solver;
-use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::chart::front::front;
-use revmap_lab::report::curves::{self, Measure};
+use revmap_lab::method::Method;
+use revmap_lab::report::chart::{Mark, front::front};
+use revmap_lab::report::columns::Context;
+use revmap_lab::report::exhibit::{self, Extra};
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::plan::is_rbm_baseline;
-use revmap_lab::report::ratios::{Ratio, over_rbm_baseline};
+use revmap_lab::report::ratios::{Over, Ratio, over};
+use revmap_lab::report::report::results;
 use revmap_lab::report::row::{Clocks, Row};
+use revmap_lab::report::series_style::SeriesStyles;
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 
@@ -21,8 +24,8 @@ fn of(rows: &[Row], method: Method) -> Vec<&Row> {
 }
 
 /// The live search over the RBM baseline.
-fn live(rows: &[Row]) -> Ratio {
-    let mut ratios = over_rbm_baseline(rows).into_iter();
+fn live(rows: &[Row]) -> Ratio<'_> {
+    let mut ratios = over(rows, Over::Baseline).into_iter();
     ratios.find(|r| r.settings.method == Solver::Live).unwrap()
 }
 
@@ -34,7 +37,7 @@ fn on_front(rows: &[Row]) -> Vec<Method> {
         .map(|r| {
             (
                 r.time().map_or(f64::NAN, |t| t.value),
-                Measure::Depth.of(r).unwrap_or(f64::NAN),
+                r.errors.depth.map_or(f64::NAN, |d| d.p99),
             )
         })
         .collect();
@@ -57,10 +60,12 @@ fn without_a_fault_all_is_as_it_was_planted() {
     );
     let live = live(&outcome.rows);
     assert!(
-        (live.time.value - 0.5).abs() < 0.03 && live.pictures == 2,
+        (live.time.value - 0.5).abs() < 0.03 && live.pairs.len() == 2,
         "{live:?}"
     );
-    assert!(live.wrong == 0.0 && live.depth_p99.unwrap() < 0.01);
+    assert_eq!(live.wrong(), 0.0);
+    let p99 = |(row, _): &(&Row, &Row)| row.errors.depth.unwrap().p99;
+    assert!(live.pairs.iter().all(|pair| p99(pair) < 0.01));
     assert!(on_front(&outcome.rows).contains(&Method::Search(Solver::Live)));
 }
 
@@ -83,11 +88,26 @@ fn a_search_that_sleeps_is_charted_slower() {
     // In the chart its marker stands further right: marks in order of series, the markers of the
     // plot before those of the legend.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
-    let figure = curves::searches("t", &rows, Measure::Depth, &MethodSettings::default());
+    let machine = Machine::here("stand-in", "none", "none", "revmap bench");
+    let plan = plan();
+    let context = Context {
+        rows: &outcome.rows,
+        plan: &plan,
+        styles: SeriesStyles::of(&outcome.rows),
+        device: &machine.device,
+        driver: &machine.driver,
+        resolved: 0.25,
+    };
+    let charts = exhibit::all(&[]).unwrap();
+    let chart = &charts.iter().find(|e| e.name == "error").unwrap().chart[0];
+    let figure = chart
+        .figures(&context, &rows, &Extra::default())
+        .unwrap()
+        .remove(0);
     let lefts: Vec<f64> = figure
         .marks
         .iter()
-        .filter(|m| matches!(m, revmap_lab::report::chart::Mark::Shape { .. }))
+        .filter(|m| matches!(m, Mark::Shape { .. }))
         .map(|m| m.bounds()[0])
         .collect();
     assert!(lefts[0] > lefts[1] + 20.0, "{lefts:?}");
@@ -99,15 +119,14 @@ fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
     for row in of(&outcome.rows, Method::Search(Solver::Live)) {
         assert!(row.errors.ghost > 100, "{:?}", row.errors);
         assert!(row.errors.depth.unwrap().p99 > 10.0 && row.errors.normal.unwrap().rms > 10.0);
-        assert!(Measure::Wrong.of(row).unwrap() > 20.0);
+        assert!(row.errors.wrong() > 0.2);
     }
     assert_eq!(
         on_front(&outcome.rows),
         [Method::Search(CIRCLE)],
         "it must not stand on the front"
     );
-    let ratio = &over_rbm_baseline(&outcome.rows)[0];
-    assert!(ratio.wrong > 0.2 && ratio.depth_p99.unwrap() > 10.0);
+    assert!(over(&outcome.rows, Over::Baseline)[0].wrong() > 0.2);
 }
 
 #[test]
@@ -118,7 +137,7 @@ fn a_clock_that_lies_is_rejected() {
         assert_eq!(row.time(), None);
     }
     assert!(
-        over_rbm_baseline(&outcome.rows)
+        over(&outcome.rows, Over::Baseline)
             .iter()
             .all(|r| r.settings.method != Solver::Live)
     );
@@ -131,10 +150,8 @@ fn a_clock_that_lies_is_rejected() {
         marked.records[0]
     );
     // In results.csv the lie is not told.
-    let results = folder::results(
-        &outcome.rows,
-        &Machine::here("stand-in", "none", "none", "revmap bench"),
-    );
+    let machine = Machine::here("stand-in", "none", "none", "revmap bench");
+    let results = results(&outcome.rows, &plan(), &machine, 0.25).unwrap();
     let (method, gpu, frame) = (
         results.column("solver").unwrap(),
         results.column("gpu_ms_median").unwrap(),

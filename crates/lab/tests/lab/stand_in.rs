@@ -7,8 +7,8 @@ use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::measure::{Bench, Measured, Observer, TimeBudget, TimedRenderer, measure};
-use revmap_lab::report::plan::{Axes, Plan, is_rbm_baseline};
+use revmap_lab::report::measure::{Bench, Measured, Observer, TimedRenderer, measure};
+use revmap_lab::report::plan::{Measure, Pick, Plan, TimeBudget, is_rbm_baseline};
 use revmap_lab::report::row::Sample;
 use revmap_lab::report::view::View;
 use revmap_reference as reference;
@@ -17,7 +17,6 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 /// What is wrong with the stand-in's drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,24 +169,28 @@ fn views() -> Vec<View> {
 
 /// Two searches and the RBM baseline on both views, small.
 pub fn plan() -> Plan {
-    let axes = Axes {
+    let methods = [Method::Search(Solver::Live), Method::Search(CIRCLE)].map(Pick::Method);
+    let entry = Measure {
         stages: vec![DrawStage::Fragment],
-        methods: vec![Method::Search(Solver::Live), Method::Search(CIRCLE)],
+        methods: methods.into_iter().chain([Pick::Baseline]).collect(),
         sizes: vec![(48, 36)],
-        ..Axes::default()
+        ..Measure::default()
     };
-    let mut plan = Plan::new(views(), &axes.combinations());
-    plan.add_rbm_baseline();
+    let mut plan = Plan::new(views());
+    for view in 0..plan.views.len() {
+        plan.add_entry(view, &entry, &[]);
+    }
     plan
 }
 
 /// Four passes of a few rounds, however long they take.
 pub const LIMITS: TimeBudget = TimeBudget {
-    time: Duration::from_secs(60),
+    seconds: 60.0,
     passes: (4, 4),
     rounds: (3, 6),
     precision: 1e-9,
     warm_up: 1,
+    resolved: 0.25,
 };
 
 /// Measures the plan.

@@ -5,16 +5,16 @@ use super::super::names::number;
 /// An axis as a chart asks for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Its quantity and unit.
     pub label: String,
-    /// Whether equal ratios are equally far apart.
+    /// True if equal ratios are equally far apart.
     pub log: bool,
     /// On logarithmic axes: what lies below is drawn here, and the tick says so. Errors of zero
     /// have a place this way.
     pub floor: Option<f64>,
     /// Values that must be in sight.
     pub include: Vec<f64>,
-    /// Where ticks stand; empty: at round values.
+    /// Places of ticks; empty: round values.
     pub ticks: Vec<f64>,
 }
 

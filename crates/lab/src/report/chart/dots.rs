@@ -1,17 +1,17 @@
 //! Charts of one value a line, each a marker on its interval: times and ratios side by side.
 
 use super::axis::{Axis, Scale};
-use super::legend::{Key, TEXT, WIDTH, dot, legend, title, word};
+use super::legend::{EDGE, Sheet, TEXT, WIDTH, dot};
 use super::letters::width;
-use super::style::{Dash, GRID, INK, PALE, Style};
-use super::{Anchor, Figure, Mark};
+use super::style::{Dash, INK, PALE, Style};
+use super::{Anchor, Figure};
 use crate::report::names::number;
 use crate::report::stats::Interval;
 
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Its value.
     pub value: Interval,
@@ -31,7 +31,7 @@ pub struct Block {
 /// A chart of values with intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DotChart {
-    /// What it shows.
+    /// Its title.
     pub title: String,
     /// The axis across.
     pub axis: Axis,
@@ -39,11 +39,8 @@ pub struct DotChart {
     pub mark: Option<f64>,
     /// The lines.
     pub blocks: Vec<Block>,
-    /// What the markers mean.
-    pub legend: Vec<(String, Style)>,
 }
 
-const EDGE: f64 = 14.0;
 const STEP: f64 = 22.0;
 
 impl DotChart {
@@ -53,143 +50,77 @@ impl DotChart {
         let lines = || self.blocks.iter().flat_map(|b| &b.lines);
         // An interval without an end says nothing and must not stretch the axis.
         let ends = lines().flat_map(|l| {
-            let i = l.value;
-            if i.high.is_finite() {
-                [i.low, i.value, i.high]
-            } else {
-                [i.value; 3]
-            }
+            let (low, high) = l.value.ends().unwrap_or((l.value.value, l.value.value));
+            [low, l.value.value, high]
         });
         let scale = Scale::new(&self.axis, ends.chain(self.mark));
-        let mut marks = Vec::new();
-        let top = title(&mut marks, &self.title) + 6.0;
-        let names = lines().map(|l| width(&l.name, TEXT)).fold(0.0, f64::max);
-        let values = lines()
-            .map(|l| width(&number(l.value.value, 3), TEXT))
-            .fold(0.0, f64::max);
+        let mut sheet = Sheet::default();
+        let top = sheet.title(&self.title) + 6.0;
+        let widest = |of: &dyn Fn(&Line) -> f64| lines().map(of).fold(0.0, f64::max);
+        let names = widest(&|l| width(&l.name, TEXT));
+        let values = widest(&|l| width(&number(l.value.value, 3), TEXT));
         let left = (EDGE + names + 12.0).min(WIDTH * 0.55);
         let right = WIDTH - EDGE - values - 14.0;
         let at = |v: f64| Some(left + scale.place(v)? * (right - left));
-        let count = self
-            .blocks
-            .iter()
-            .map(|b| b.lines.len() + usize::from(!b.name.is_empty()))
-            .sum::<usize>();
-        let bottom = top + STEP * count as f64 + 6.0;
-        let straight = |points, color, width, dash| Mark::Line {
-            points,
-            color,
-            width,
-            dash,
-        };
-
+        let heads = self.blocks.iter().filter(|b| !b.name.is_empty()).count();
+        let bottom = top + STEP * (heads + lines().count()) as f64 + 6.0;
         let mut end = f64::NEG_INFINITY;
         for (value, text) in &scale.ticks {
-            let Some(x) = at(*value) else { continue };
-            marks.push(straight(
-                vec![(x, top), (x, bottom)],
-                GRID,
-                1.0,
-                Dash::Solid,
-            ));
-            let half = width(text, TEXT) / 2.0;
-            if x - half > end + 6.0 {
-                marks.push(word(
-                    (x, bottom + TEXT + 4.0),
-                    text,
-                    TEXT,
-                    Anchor::Middle,
-                    INK,
-                ));
-                end = x + half;
+            if let Some(x) = at(*value) {
+                sheet.tick(x, (top, bottom), text, &mut end);
             }
         }
         if let Some(x) = self.mark.and_then(at) {
-            marks.push(straight(
-                vec![(x, top), (x, bottom)],
-                PALE,
-                1.5,
-                Dash::Guide,
-            ));
+            sheet.line([(x, top), (x, bottom)], PALE, 1.5, Dash::Guide);
         }
-        marks.push(straight(
-            vec![(left, bottom), (right, bottom)],
-            INK,
-            1.0,
-            Dash::Solid,
-        ));
+        sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::Solid);
+        self.lines(&mut sheet, (top, left), at);
+        sheet.axis((left, right), bottom, &self.axis.label);
+        Figure {
+            width: WIDTH,
+            height: bottom + 2.0 * TEXT + 16.0 + EDGE,
+            top: top - 6.0,
+            title: self.title.clone(),
+            marks: sheet.0,
+        }
+    }
+
+    /// The lines below `top`, each with its name before `left`, its dot and its number.
+    fn lines(&self, sheet: &mut Sheet, (top, left): (f64, f64), at: impl Fn(f64) -> Option<f64>) {
         let mut y = top;
         for block in &self.blocks {
             if !block.name.is_empty() {
                 y += STEP;
-                marks.push(word(
-                    (EDGE, y - 5.0),
-                    &block.name,
-                    TEXT,
-                    Anchor::Start,
-                    PALE,
-                ));
+                sheet.word((EDGE, y - 5.0), &block.name, Anchor::Start, PALE);
             }
             for line in &block.lines {
                 y += STEP;
                 let level = y - STEP / 2.0 + 2.0;
-                marks.push(word(
-                    (left - 10.0, level + 0.35 * TEXT),
-                    &line.name,
-                    TEXT,
-                    Anchor::End,
-                    INK,
-                ));
-                marks.push(word(
-                    (WIDTH - EDGE, level + 0.35 * TEXT),
-                    &number(line.value.value, 3),
-                    TEXT,
-                    Anchor::End,
-                    INK,
-                ));
-                let i = line.value;
-                if let (true, Some(a), Some(b)) = (i.high.is_finite(), at(i.low), at(i.high)) {
-                    marks.push(straight(
-                        vec![(a, level), (b, level)],
+                let base = level + 0.35 * TEXT;
+                let value = number(line.value.value, 3);
+                sheet.word((left - 10.0, base), &line.name, Anchor::End, INK);
+                sheet.word((WIDTH - EDGE, base), &value, Anchor::End, INK);
+                let ends = line.value.ends();
+                if let Some((Some(a), Some(b))) = ends.map(|(low, high)| (at(low), at(high))) {
+                    let width = if line.style.heavy { 3.0 } else { 2.0 };
+                    sheet.line(
+                        [(a, level), (b, level)],
                         line.style.color,
-                        if line.style.heavy { 3.0 } else { 2.0 },
+                        width,
                         Dash::Solid,
-                    ));
+                    );
                 }
-                if let Some(x) = at(i.value) {
-                    marks.push(dot(line.style, (x, level)));
+                if let Some(x) = at(line.value.value) {
+                    sheet.0.push(dot(line.style, (x, level)));
                 }
             }
-        }
-        let half = width(&self.axis.label, TEXT) / 2.0;
-        let middle = ((left + right) / 2.0)
-            .min(WIDTH - EDGE - half)
-            .max(EDGE + half);
-        marks.push(word(
-            (middle, bottom + 2.0 * TEXT + 10.0),
-            &self.axis.label,
-            TEXT,
-            Anchor::Middle,
-            INK,
-        ));
-        let entries: Vec<_> = self
-            .legend
-            .iter()
-            .map(|(name, style)| (name.clone(), vec![Key::Dot(*style, false)]))
-            .collect();
-        let below = legend(&mut marks, bottom + 2.0 * TEXT + 30.0, &entries);
-        Figure {
-            width: WIDTH,
-            height: below + EDGE,
-            top: top - 6.0,
-            title: self.title.clone(),
-            marks,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Mark;
     use super::super::style::{Marker, color};
     use super::*;
 
@@ -219,16 +150,6 @@ mod tests {
                     name: String::new(),
                     lines: values.iter().enumerate().map(line).collect(),
                 },
-            ],
-            legend: vec![
-                ("fragment".into(), Style::new(color::BLUE, Marker::Disk)),
-                (
-                    "compute".into(),
-                    Style {
-                        filled: false,
-                        ..Style::new(color::BLUE, Marker::Disk)
-                    },
-                ),
             ],
         }
     }

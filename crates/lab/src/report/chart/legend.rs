@@ -1,22 +1,19 @@
-//! What charts of every kind share: sizes, titles, words, markers, legends.
+//! Parts that charts of every kind share: sizes, a sheet to draw on, titles, legends.
 
 use super::letters::{width, wrap};
-use super::style::{Dash, INK, PAPER, Style};
+use super::style::{Dash, GRID, INK, PAPER, Style};
 use super::{Anchor, Mark};
 
 /// Width of every chart, pixels: read well on a phone, where it is shown at four fifths of that.
 pub(super) const WIDTH: f64 = 460.0;
 pub(super) const PLOT: f64 = 330.0;
 pub(super) const EDGE: f64 = 14.0;
-/// Sizes of words.
-pub(super) const TITLE: f64 = 16.0;
-/// Of axes and legends.
+const TITLE: f64 = 16.0;
+/// Size of words at axes and in legends.
 pub(super) const TEXT: f64 = 14.0;
-/// Beside points.
-pub(super) const SMALL: f64 = 12.0;
-pub(super) const MARKER: f64 = 9.5;
+const MARKER: f64 = 9.5;
 
-/// What stands before a name in a legend.
+/// The sign before a name in a legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Key {
     /// A marker, with or without its line.
@@ -34,34 +31,7 @@ impl Key {
     }
 }
 
-/// The title, wrapped; gives the place below it.
-pub(super) fn title(marks: &mut Vec<Mark>, text: &str) -> f64 {
-    let mut bottom = EDGE;
-    for line in wrap(text, TITLE, WIDTH - 2.0 * EDGE) {
-        bottom += TITLE;
-        marks.push(word((EDGE, bottom), &line, TITLE, Anchor::Start, INK));
-        bottom += 5.0;
-    }
-    bottom
-}
-
-pub(super) fn word(
-    at: (f64, f64),
-    text: &str,
-    size: f64,
-    anchor: Anchor,
-    color: &'static str,
-) -> Mark {
-    Mark::Word {
-        at,
-        text: text.to_owned(),
-        size,
-        anchor,
-        color,
-        upwards: false,
-    }
-}
-
+/// The marker of a style at a place.
 pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
     let (fill, stroke) = if style.filled {
         (style.color, (PAPER, 0.8))
@@ -75,49 +45,96 @@ pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
     }
 }
 
-/// Names in lines as wide as the figure, each after its signs; gives the place below.
-pub(super) fn legend(marks: &mut Vec<Mark>, top: f64, entries: &[(String, Vec<Key>)]) -> f64 {
-    let (mut x, mut y) = (EDGE, top);
-    for (i, (name, keys)) in entries.iter().enumerate() {
-        let signs: f64 = keys.iter().map(|key| key.width()).sum();
-        let needed = signs + 4.0 + width(name, TEXT) + 14.0;
-        if i > 0 && x + needed > WIDTH {
-            x = EDGE;
-            y += TEXT + 8.0;
-        }
-        let level = y + TEXT * 0.1;
-        let mut left = x;
-        for key in keys {
-            let right = left + key.width();
-            let line = |color, width, dash| Mark::Line {
-                points: vec![(left, level), (right - 2.0, level)],
-                color,
-                width,
-                dash,
-            };
-            match key {
-                Key::Dot(style, joined) => {
-                    if *joined {
-                        marks.push(line(style.color, style.line(), style.dash));
-                    }
-                    marks.push(dot(*style, ((left + right) / 2.0 - 1.0, level)));
-                }
-                Key::Line(color, dash) => marks.push(line(color, 1.6, *dash)),
-            }
-            left = right;
-        }
-        marks.push(word(
-            (left + 4.0, y + TEXT * 0.45),
-            name,
-            TEXT,
-            Anchor::Start,
-            INK,
-        ));
-        x += needed;
+/// Marks in the making.
+#[derive(Default)]
+pub(super) struct Sheet(pub(super) Vec<Mark>);
+
+impl Sheet {
+    pub(super) fn line(
+        &mut self,
+        points: impl Into<Vec<(f64, f64)>>,
+        color: &'static str,
+        width: f64,
+        dash: Dash,
+    ) {
+        let points = points.into();
+        self.0.push(Mark::Line {
+            points,
+            color,
+            width,
+            dash,
+        });
     }
-    if entries.is_empty() {
-        top - TEXT
-    } else {
-        y + TEXT * 0.7
+
+    pub(super) fn word(&mut self, at: (f64, f64), text: &str, anchor: Anchor, color: &'static str) {
+        self.0.push(Mark::word(at, text, TEXT, anchor, color));
+    }
+
+    /// A line of the grid across a plot, and its value below; a word that would touch the last one,
+    /// which ends at `end`, or leave the figure, is left out.
+    pub(super) fn tick(&mut self, x: f64, (top, bottom): (f64, f64), text: &str, end: &mut f64) {
+        self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::Solid);
+        let half = width(text, TEXT) / 2.0;
+        if x - half > *end + 6.0 && x + half < WIDTH {
+            self.word((x, bottom + TEXT + 5.0), text, Anchor::Middle, INK);
+            *end = x + half;
+        }
+    }
+
+    /// The name of the axis across, below the middle of a plot; a long one is moved so that it stays
+    /// within the figure.
+    pub(super) fn axis(&mut self, (left, right): (f64, f64), bottom: f64, label: &str) {
+        let half = width(label, TEXT) / 2.0;
+        let middle = (left + right) / 2.0;
+        let x = middle.min(WIDTH - EDGE - half).max(EDGE + half);
+        self.word((x, bottom + 2.0 * TEXT + 12.0), label, Anchor::Middle, INK);
+    }
+
+    /// The title, wrapped; gives the place below it.
+    pub(super) fn title(&mut self, text: &str) -> f64 {
+        let mut bottom = EDGE;
+        for line in wrap(text, TITLE, WIDTH - 2.0 * EDGE) {
+            bottom += TITLE;
+            let word = Mark::word((EDGE, bottom), &line, TITLE, Anchor::Start, INK);
+            self.0.push(word);
+            bottom += 5.0;
+        }
+        bottom
+    }
+
+    /// Names in lines as wide as the figure, each after its signs; gives the place below.
+    pub(super) fn legend(&mut self, top: f64, entries: &[(String, Vec<Key>)]) -> f64 {
+        let (mut x, mut y) = (EDGE, top);
+        for (i, (name, keys)) in entries.iter().enumerate() {
+            let signs: f64 = keys.iter().map(|key| key.width()).sum();
+            let needed = signs + 4.0 + width(name, TEXT) + 14.0;
+            if i > 0 && x + needed > WIDTH {
+                x = EDGE;
+                y += TEXT + 8.0;
+            }
+            let level = y + TEXT * 0.1;
+            let mut left = x;
+            for key in keys {
+                let right = left + key.width();
+                let ends = [(left, level), (right - 2.0, level)];
+                match *key {
+                    Key::Dot(style, joined) => {
+                        if joined {
+                            self.line(ends, style.color, style.line(), style.dash);
+                        }
+                        self.0.push(dot(style, ((left + right) / 2.0 - 1.0, level)));
+                    }
+                    Key::Line(color, dash) => self.line(ends, color, 1.6, dash),
+                }
+                left = right;
+            }
+            self.word((left + 4.0, y + TEXT * 0.45), name, Anchor::Start, INK);
+            x += needed;
+        }
+        if entries.is_empty() {
+            top - TEXT
+        } else {
+            y + TEXT * 0.7
+        }
     }
 }

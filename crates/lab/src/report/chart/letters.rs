@@ -1,9 +1,9 @@
-//! The charts' letters: how wide words are, and their outlines where no program draws them for us.
+//! The charts' letters: how wide words are.
 //!
 //! The font travels with the program (and within each page), so that what is measured here is what
 //! is seen everywhere.
 
-use ttf_parser::{Face, OutlineBuilder};
+use ttf_parser::Face;
 
 /// The font's file: DejaVu Sans reduced to what charts need.
 pub const FONT: &[u8] = include_bytes!("../../../../../assets/fonts/DejaVuSans-subset.ttf");
@@ -14,7 +14,7 @@ pub const FAMILY: &str = "revmap DejaVu Sans";
 /// A width that serves where the font cannot be read: that of a wide letter.
 const WIDE: f64 = 0.7;
 
-fn face() -> Option<Face<'static>> {
+pub(super) fn face() -> Option<Face<'static>> {
     Face::parse(FONT, 0).ok()
 }
 
@@ -51,81 +51,6 @@ pub fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     lines
 }
 
-/// A part of a letter's outline, the word's start on the base line being the origin, `y` downwards.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stroke {
-    /// Begins a contour.
-    Move(f64, f64),
-    /// A straight line.
-    Line(f64, f64),
-    /// A quadratic curve: control point, end.
-    Curve(f64, f64, f64, f64),
-    /// Ends a contour.
-    Close,
-}
-
-/// The outlines of a word at a size.
-#[must_use]
-pub fn outline(text: &str, size: f64) -> Vec<Stroke> {
-    let Some(face) = face() else {
-        return Vec::new();
-    };
-    let mut pen = Pen {
-        strokes: Vec::new(),
-        left: 0.0,
-        scale: size / f64::from(face.units_per_em()),
-    };
-    for letter in text.chars() {
-        if let Some(glyph) = face.glyph_index(letter) {
-            face.outline_glyph(glyph, &mut pen);
-        }
-        pen.left += size * advance(&face, letter);
-    }
-    pen.strokes
-}
-
-struct Pen {
-    strokes: Vec<Stroke>,
-    left: f64,
-    scale: f64,
-}
-
-impl Pen {
-    fn place(&self, x: f32, y: f32) -> (f64, f64) {
-        (
-            self.left + f64::from(x) * self.scale,
-            -f64::from(y) * self.scale,
-        )
-    }
-}
-
-impl OutlineBuilder for Pen {
-    fn move_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.place(x, y);
-        self.strokes.push(Stroke::Move(x, y));
-    }
-
-    fn line_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.place(x, y);
-        self.strokes.push(Stroke::Line(x, y));
-    }
-
-    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        let (a, b) = self.place(x1, y1);
-        let (x, y) = self.place(x, y);
-        self.strokes.push(Stroke::Curve(a, b, x, y));
-    }
-
-    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        // TrueType has no cubic curves; the nearest quadratic one would do if it had.
-        self.quad_to((x1 + x2) / 2.0, (y1 + y2) / 2.0, x, y);
-    }
-
-    fn close(&mut self) {
-        self.strokes.push(Stroke::Close);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,21 +67,6 @@ mod tests {
                 face.as_ref().is_some_and(|f| f.glyph_index(sign).is_some()),
                 "{sign}"
             );
-        }
-    }
-
-    #[test]
-    fn outlines_stay_within_the_words_box() {
-        let strokes = outline("Apx", 100.0);
-        assert!(strokes.iter().filter(|s| **s == Stroke::Close).count() >= 5);
-        let limit = width("Apx", 100.0);
-        for stroke in strokes {
-            if let Stroke::Move(x, y) | Stroke::Line(x, y) | Stroke::Curve(_, _, x, y) = stroke {
-                assert!(
-                    (0.0..=limit).contains(&x) && (-76.0..=24.0).contains(&y),
-                    "{x} {y}"
-                );
-            }
         }
     }
 

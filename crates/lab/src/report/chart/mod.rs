@@ -1,8 +1,8 @@
 //! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
-//! papers, and as pixels for places that show neither.
+//! papers, and as PNG for places that show neither.
 //!
-//! Colours are such that people of every kind of colour vision tell them apart ([`style`]); each
-//! series has a marker of its own as well, so that a print in grey still reads.
+//! Colours are a published palette for every kind of colour vision ([`style`]). Each series has a
+//! marker of its own as well, so that a print in grey still reads.
 
 pub mod axis;
 pub mod dots;
@@ -13,21 +13,19 @@ pub mod pdf;
 pub mod raster;
 pub mod style;
 pub mod svg;
-#[cfg(test)]
-mod vision;
 pub mod xy;
 
 use letters::width;
 use style::Dash;
 
-/// Where a word stands to its point.
+/// The side of its point on which a word is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// To the right of it.
+    /// The right.
     Start,
     /// Centred on it.
     Middle,
-    /// To the left of it.
+    /// The left.
     End,
 }
 
@@ -69,15 +67,15 @@ pub enum Mark {
     Word {
         /// Its point, on the base line.
         at: (f64, f64),
-        /// What it says.
+        /// Its text.
         text: String,
         /// Height of the letters' body.
         size: f64,
-        /// Where it stands to its point.
+        /// The side of its point.
         anchor: Anchor,
         /// Colour, as `#rrggbb`.
         color: &'static str,
-        /// Whether it runs upwards.
+        /// True if it runs upwards.
         upwards: bool,
     },
 }
@@ -91,7 +89,7 @@ pub struct Figure {
     pub height: f64,
     /// Pixels of the title, above all else.
     pub top: f64,
-    /// What it shows, for those who cannot see it.
+    /// Its title, also for those who cannot see it.
     pub title: String,
     /// Its parts, those in front last.
     pub marks: Vec<Mark>,
@@ -101,6 +99,25 @@ pub struct Figure {
 pub type Bounds = [f64; 4];
 
 impl Mark {
+    /// A level word.
+    #[must_use]
+    pub fn word(
+        at: (f64, f64),
+        text: &str,
+        size: f64,
+        anchor: Anchor,
+        color: &'static str,
+    ) -> Self {
+        Self::Word {
+            at,
+            text: text.to_owned(),
+            size,
+            anchor,
+            color,
+            upwards: false,
+        }
+    }
+
     /// The rectangle that it covers.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
@@ -135,7 +152,7 @@ impl Mark {
     }
 }
 
-/// Whether two rectangles have more than an edge in common.
+/// True if two rectangles have more than an edge in common.
 #[must_use]
 pub fn overlap(a: Bounds, b: Bounds) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]

@@ -1,23 +1,36 @@
-//! Figures as PDF, for papers: curves stay curves, letters are outlines, so that no font is asked
-//! for. The title is left out; a paper's caption takes its place.
+//! Figures as PDF, for papers: as wide as a column, curves as curves, words as text of the charts'
+//! own font, so that a reader can search and copy them. The title is left out; a paper's caption
+//! takes its place.
 
-use super::letters::{Stroke, outline, width};
+use super::letters::{FONT, face, width};
 use super::style::Dash;
 use super::{Figure, Mark};
-use pdf_writer::types::LineJoinStyle;
-use pdf_writer::{Content, Finish, Pdf, Rect, Ref, TextStr};
+use pdf_writer::types::{CidFontType, FontFlags, LineJoinStyle, SystemInfo, UnicodeCmap};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
-/// Points of a CSS pixel.
-const POINTS: f64 = 0.75;
+/// Width of a page: a column of a paper of two columns, points.
+const COLUMN: f64 = 241.0;
 
-/// A figure as a PDF of one page of its size.
+/// The font's name in the file.
+const FONT_NAME: Name = Name(b"DejaVuSans");
+/// The font's name on the page.
+const FONT_KEY: Name = Name(b"F");
+/// Codes of the text are the font's own glyphs.
+const GLYPHS: SystemInfo = SystemInfo {
+    registry: Str(b"Adobe"),
+    ordering: Str(b"Identity"),
+    supplement: 0,
+};
+
+/// A figure as a PDF of one page.
 #[must_use]
 pub fn pdf(figure: &Figure) -> Vec<u8> {
-    let (width, height) = (figure.width, figure.height - figure.top);
+    let points = COLUMN / figure.width.max(1.0);
+    let height = figure.height - figure.top;
     let mut content = Content::new();
     // Pixels count downwards from the upper left corner, points upwards from the lower left one.
-    let scale = POINTS as f32;
-    let lowest = (figure.height * POINTS) as f32;
+    let scale = points as f32;
+    let lowest = (figure.height * points) as f32;
     content.transform([scale, 0.0, 0.0, -scale, 0.0, lowest]);
     content.set_line_join(LineJoinStyle::RoundJoin);
     for mark in &figure.marks {
@@ -25,20 +38,69 @@ pub fn pdf(figure: &Figure) -> Vec<u8> {
             draw(&mut content, mark);
         }
     }
-    let [catalog, pages, page, stream, info] = [1, 2, 3, 4, 5].map(Ref::new);
+    let [catalog, pages, page, stream, info, font] = [1, 2, 3, 4, 5, 6].map(Ref::new);
     let mut file = Pdf::new();
     file.catalog(catalog).pages(pages);
     file.document_info(info)
         .title(TextStr(&figure.title))
         .creator(TextStr("revmap"));
     file.pages(pages).kids([page]).count(1);
-    let corner = |v: f64| (v * POINTS) as f32;
     let mut sheet = file.page(page);
-    sheet.media_box(Rect::new(0.0, 0.0, corner(width), corner(height)));
-    sheet.parent(pages).contents(stream).resources();
+    sheet.media_box(Rect::new(0.0, 0.0, COLUMN as f32, (height * points) as f32));
+    sheet.parent(pages).contents(stream);
+    sheet.resources().fonts().pair(FONT_KEY, font);
     sheet.finish();
     file.stream(stream, &content.finish());
+    embed(&mut file, [6, 7, 8, 9, 10].map(Ref::new));
     file.finish()
+}
+
+/// Embeds the font: its glyphs, their widths, and the letters that they stand for.
+fn embed(file: &mut Pdf, [font, glyphs, descriptor, data, letters]: [Ref; 5]) {
+    let Some(face) = face() else { return };
+    file.type0_font(font)
+        .base_font(FONT_NAME)
+        .encoding_predefined(Name(b"Identity-H"))
+        .descendant_font(glyphs)
+        .to_unicode(letters);
+    let unit = 1000.0 / f32::from(face.units_per_em());
+    let advance = |glyph| {
+        let id = ttf_parser::GlyphId(glyph);
+        face.glyph_hor_advance(id)
+            .map_or(0.0, |a| unit * f32::from(a))
+    };
+    let mut own = file.cid_font(glyphs);
+    own.subtype(CidFontType::Type2).base_font(FONT_NAME);
+    own.system_info(GLYPHS).font_descriptor(descriptor);
+    own.cid_to_gid_map_predefined(Name(b"Identity"));
+    let all = (0..face.number_of_glyphs()).map(advance);
+    own.widths().consecutive(0, all);
+    own.finish();
+    let [left, low, right, high] = {
+        let b = face.global_bounding_box();
+        [b.x_min, b.y_min, b.x_max, b.y_max].map(|v| unit * f32::from(v))
+    };
+    file.font_descriptor(descriptor)
+        .name(FONT_NAME)
+        .flags(FontFlags::SYMBOLIC)
+        .bbox(Rect::new(left, low, right, high))
+        .italic_angle(0.0)
+        .ascent(unit * f32::from(face.ascender()))
+        .descent(unit * f32::from(face.descender()))
+        .cap_height(unit * f32::from(face.capital_height().unwrap_or(face.ascender())))
+        .stem_v(80.0)
+        .font_file2(data);
+    let packed = miniz_oxide::deflate::compress_to_vec_zlib(FONT, 6);
+    file.stream(data, &packed).filter(Filter::FlateDecode);
+    let mut map = UnicodeCmap::<u16>::new(Name(b"Letters"), GLYPHS);
+    // The planes in which the charts' signs are: Latin, punctuation, sub- and superscripts, arrows,
+    // mathematics.
+    for letter in (0x20..0x2300).filter_map(char::from_u32) {
+        if let Some(glyph) = face.glyph_index(letter) {
+            map.pair(glyph.0, letter);
+        }
+    }
+    file.cmap(letters, &map.finish());
 }
 
 fn draw(content: &mut Content, mark: &Mark) {
@@ -78,18 +140,27 @@ fn draw(content: &mut Content, mark: &Mark) {
             color,
             upwards,
         } => {
-            let back = anchor.back(width(text, *size));
-            let place = |x: f64, y: f64| {
-                let (x, y) = (x - back, y);
-                let (x, y) = if *upwards { (y, -x) } else { (x, y) };
-                ((at.0 + x) as f32, (at.1 + y) as f32)
+            let back = anchor.back(width(text, *size)) as f32;
+            let (x, y) = (at.0 as f32, at.1 as f32);
+            let matrix = if *upwards {
+                [0.0, -1.0, -1.0, 0.0, x, y + back]
+            } else {
+                [1.0, 0.0, 0.0, -1.0, x - back, y]
             };
             let [r, g, b] = rgb(color);
-            content.set_fill_rgb(r, g, b);
-            letters(content, &outline(text, *size), place);
-            content.fill_nonzero();
+            content.set_fill_rgb(r, g, b).begin_text();
+            content.set_font(FONT_KEY, *size as f32);
+            content.set_text_matrix(matrix);
+            content.show(Str(&codes(text))).end_text();
         }
     }
+}
+
+/// The glyphs of a word, two bytes each.
+fn codes(text: &str) -> Vec<u8> {
+    let glyph = |c| face()?.glyph_index(c);
+    let all = text.chars().map(|c| glyph(c).map_or(0, |g| g.0));
+    all.flat_map(u16::to_be_bytes).collect()
 }
 
 fn path(content: &mut Content, points: &[(f64, f64)]) {
@@ -99,36 +170,6 @@ fn path(content: &mut Content, points: &[(f64, f64)]) {
             content.move_to(x, y);
         } else {
             content.line_to(x, y);
-        }
-    }
-}
-
-/// PDF knows cubic curves alone.
-fn letters(content: &mut Content, strokes: &[Stroke], place: impl Fn(f64, f64) -> (f32, f32)) {
-    let mut pen = (0.0, 0.0);
-    for stroke in strokes {
-        match *stroke {
-            Stroke::Move(x, y) => {
-                let (px, py) = place(x, y);
-                content.move_to(px, py);
-                pen = (x, y);
-            }
-            Stroke::Line(x, y) => {
-                let (px, py) = place(x, y);
-                content.line_to(px, py);
-                pen = (x, y);
-            }
-            Stroke::Curve(a, b, x, y) => {
-                let towards = |from: f64, to: f64| from + 2.0 / 3.0 * (to - from);
-                let first = place(towards(pen.0, a), towards(pen.1, b));
-                let second = place(towards(x, a), towards(y, b));
-                let end = place(x, y);
-                content.cubic_to(first.0, first.1, second.0, second.1, end.0, end.1);
-                pen = (x, y);
-            }
-            Stroke::Close => {
-                content.close_path();
-            }
         }
     }
 }
@@ -155,15 +196,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_below_the_title_is_on_the_page() {
-        let word = |y: f64, text: &str| Mark::Word {
-            at: (10.0, y),
-            text: text.into(),
-            size: 10.0,
-            anchor: Anchor::Start,
-            color: INK,
-            upwards: false,
-        };
+    fn what_lies_below_the_title_is_on_the_page_as_text() {
+        let word = |y, text| Mark::word((10.0, y), text, 10.0, Anchor::Start, INK);
         let line = Mark::Line {
             points: vec![(10.0, 50.0), (90.0, 70.0)],
             color: "#ff0000",
@@ -171,25 +205,27 @@ mod tests {
             dash: Dash::Guide,
         };
         let figure = Figure {
-            width: 100.0,
+            width: 482.0,
             height: 80.0,
             top: 20.0,
             title: "A title".into(),
             marks: vec![word(12.0, "title"), word(40.0, "I"), line],
         };
-        let file = String::from_utf8_lossy(&pdf(&figure)).into_owned();
+        let bytes = pdf(&figure);
+        let file = String::from_utf8_lossy(&bytes).into_owned();
         assert!(
             file.starts_with("%PDF-1.") && file.ends_with("%%EOF"),
             "{file}"
         );
-        assert!(file.contains("/MediaBox [0 0 75 45]"), "{file}");
+        assert!(file.contains("/MediaBox [0 0 241 30]"), "{file}");
         assert!(
             file.contains("1 0 0 RG") && file.contains("[5 4] 0 d"),
             "{file}"
         );
         assert!(file.contains("10 50 m\n90 70 l\nS"), "{file}");
-        // One letter of two stems and four serifs is one contour; the title's five letters are not
-        // there.
-        assert_eq!(file.matches("\nh\n").count(), 1, "{file}");
+        // One word is shown, as text; the title is not.
+        assert_eq!(file.matches("Tj").count(), 1);
+        assert!(file.contains("/FontFile2") && file.contains("/ToUnicode"));
+        assert!(bytes.len() < 60_000, "{}", bytes.len());
     }
 }

@@ -1,10 +1,13 @@
 //! Charts of points over two axes: series joined by lines, fronts, fitted laws.
 
 use super::axis::{Axis, Scale};
-use super::legend::{EDGE, Key, PLOT, SMALL, TEXT, WIDTH, dot, legend, title, word};
+use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, WIDTH, dot};
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
 use super::{Anchor, Bounds, Figure, Mark, overlap};
+
+/// Size of words beside points.
+const SMALL: f64 = 12.0;
 
 /// A point of a series.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +31,7 @@ pub struct Series {
     pub style: Style,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
-    /// Whether a line joins them.
+    /// True if a line joins them.
     pub joined: bool,
 }
 
@@ -63,7 +66,7 @@ impl Guide {
 /// A chart of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct XyChart {
-    /// What it shows.
+    /// Its title.
     pub title: String,
     /// Across.
     pub x: Axis,
@@ -75,6 +78,34 @@ pub struct XyChart {
     pub guides: Vec<Guide>,
 }
 
+/// The marks so far, and the places that words keep off.
+#[derive(Default)]
+struct Drawing {
+    sheet: Sheet,
+    taken: Vec<Bounds>,
+}
+
+/// A plot and its scales.
+struct Plot {
+    bounds: Bounds,
+    x: Scale,
+    y: Scale,
+}
+
+impl Plot {
+    fn at(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+        let [left, top, right, bottom] = self.bounds;
+        let (x, y) = (self.x.place(x)?, self.y.place(y)?);
+        Some((left + x * (right - left), bottom - y * (bottom - top)))
+    }
+
+    /// The parts of a guide within the plot.
+    fn parts(&self, guide: &Guide) -> Vec<Vec<(f64, f64)>> {
+        let points = guide.points.iter().filter_map(|p| self.at(p.0, p.1));
+        clip(&points.collect::<Vec<_>>(), self.bounds)
+    }
+}
+
 impl XyChart {
     /// Lays the chart out.
     #[must_use]
@@ -82,109 +113,27 @@ impl XyChart {
         let points = || self.series.iter().flat_map(|s| &s.points);
         let x = Scale::new(&self.x, points().map(|p| p.x));
         let y = Scale::new(&self.y, points().map(|p| p.y));
-        let mut marks = Vec::new();
-        let top = title(&mut marks, &self.title) + 8.0;
-        let widest = y
-            .ticks
-            .iter()
-            .map(|(_, w)| width(w, TEXT))
-            .fold(0.0, f64::max);
-        let left = EDGE + TEXT + 10.0 + widest + 8.0;
-        let plot = [left, top, WIDTH - EDGE, top + PLOT];
-        let at = |px: f64, py: f64| -> Option<(f64, f64)> {
-            Some((
-                plot[0] + x.place(px)? * (plot[2] - plot[0]),
-                plot[3] - y.place(py)? * (plot[3] - plot[1]),
-            ))
-        };
-        axes(&mut marks, plot, (&self.x.label, &x), (&self.y.label, &y));
-
-        // Words keep off markers, each other, and level or upright lines.
-        let mut taken: Vec<Bounds> = Vec::new();
+        let mut drawing = Drawing::default();
+        let top = drawing.sheet.title(&self.title) + 8.0;
+        let words = y.ticks.iter().map(|(_, w)| width(w, TEXT));
+        let left = EDGE + TEXT + 10.0 + words.fold(0.0, f64::max) + 8.0;
+        let bounds = [left, top, WIDTH - EDGE, top + PLOT];
+        let plot = Plot { bounds, x, y };
+        axes(&mut drawing.sheet, &plot, &self.x.label, &self.y.label);
         for guide in &self.guides {
-            let points: Vec<_> = guide.points.iter().filter_map(|p| at(p.0, p.1)).collect();
-            let straight = points
-                .windows(2)
-                .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1);
-            taken.extend(straight.map(|w| {
-                [
-                    w[0].0.min(w[1].0) - 1.0,
-                    w[0].1.min(w[1].1) - 1.0,
-                    w[0].0.max(w[1].0) + 1.0,
-                    w[0].1.max(w[1].1) + 1.0,
-                ]
-            }));
-            for points in clip(&points, plot) {
-                marks.push(Mark::Line {
-                    points,
-                    color: guide.color,
-                    width: guide.width,
-                    dash: guide.dash,
-                });
-            }
+            drawing.guide(&plot, guide);
         }
-        let mut labels = Vec::new();
-        let mut dots = Vec::new();
-        for series in &self.series {
-            let places: Vec<_> = series
-                .points
-                .iter()
-                .filter_map(|p| Some((at(p.x, p.y)?, p)))
-                .collect();
-            if series.joined && places.len() > 1 {
-                let points = places.iter().map(|(place, _)| *place).collect();
-                marks.push(Mark::Line {
-                    points,
-                    color: series.style.color,
-                    width: series.style.line(),
-                    dash: series.style.dash,
-                });
-            }
-            for (place, point) in places {
-                let ends = point.spread.and_then(|(a, b)| {
-                    let level = |x: f64| Some((at(x, point.y)?.0.clamp(plot[0], plot[2]), place.1));
-                    Some(vec![level(a)?, level(b)?])
-                });
-                if let Some(points) = ends {
-                    taken.push([points[0].0, place.1 - 1.0, points[1].0, place.1 + 1.0]);
-                    marks.push(Mark::Line {
-                        points,
-                        color: series.style.color,
-                        width: 1.2,
-                        dash: Dash::Solid,
-                    });
-                }
-                let dot = dot(series.style, place);
-                taken.push(dot.bounds());
-                dots.push(((series.style.filled, !series.style.heavy), dot));
-                if let Some(label) = &point.label {
-                    labels.push((place, label));
-                }
-            }
-        }
-        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what
-        // is near.
-        dots.sort_by_key(|(order, _)| *order);
-        marks.extend(dots.into_iter().map(|(_, dot)| dot));
-        for (place, label) in labels {
-            if let Some(word) = beside(place, label, plot, &taken) {
-                taken.push(word.bounds());
-                marks.push(word);
-            }
-        }
-        // What lies outside of the plot is not drawn, and not told.
-        let drawn = |g: &Guide| {
-            let points: Vec<_> = g.points.iter().filter_map(|p| at(p.0, p.1)).collect();
-            !clip(&points, plot).is_empty()
-        };
-        let entries = self.legend(drawn);
-        let bottom = legend(&mut marks, plot[3] + 2.0 * TEXT + 32.0, &entries);
+        drawing.series(&plot, &self.series);
+        // A guide outside of the plot is not drawn, and not in the legend.
+        let entries = self.legend(|guide| !plot.parts(guide).is_empty());
+        let mut sheet = drawing.sheet;
+        let bottom = sheet.legend(bounds[3] + 2.0 * TEXT + 32.0, &entries);
         Figure {
             width: WIDTH,
             height: bottom + EDGE,
             top: top - 8.0,
             title: self.title.clone(),
-            marks,
+            marks: sheet.0,
         }
     }
 
@@ -212,74 +161,93 @@ impl XyChart {
     }
 }
 
+impl Drawing {
+    /// Words keep off level and upright lines.
+    fn guide(&mut self, plot: &Plot, guide: &Guide) {
+        for points in plot.parts(guide) {
+            let straight = points
+                .windows(2)
+                .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1);
+            self.taken.extend(straight.map(|w| {
+                let (low, high) = (w[0].0.min(w[1].0), w[0].0.max(w[1].0));
+                let (upper, lower) = (w[0].1.min(w[1].1), w[0].1.max(w[1].1));
+                [low - 1.0, upper - 1.0, high + 1.0, lower + 1.0]
+            }));
+            self.sheet
+                .line(points, guide.color, guide.width, guide.dash);
+        }
+    }
+
+    fn series(&mut self, plot: &Plot, all: &[Series]) {
+        let (mut labels, mut dots) = (Vec::new(), Vec::new());
+        for series in all {
+            let style = series.style;
+            let points = series.points.iter();
+            let places: Vec<_> = points
+                .filter_map(|p| Some((plot.at(p.x, p.y)?, p)))
+                .collect();
+            if series.joined && places.len() > 1 {
+                let points: Vec<_> = places.iter().map(|(place, _)| *place).collect();
+                self.sheet
+                    .line(points, style.color, style.line(), style.dash);
+            }
+            for ((x, y), point) in places {
+                let [left, _, right, _] = plot.bounds;
+                let end = |x: f64| Some(plot.at(x, point.y)?.0.clamp(left, right));
+                if let Some((Some(a), Some(b))) = point.spread.map(|(a, b)| (end(a), end(b))) {
+                    self.taken.push([a, y - 1.0, b, y + 1.0]);
+                    self.sheet
+                        .line([(a, y), (b, y)], style.color, 1.2, Dash::Solid);
+                }
+                let dot = dot(style, (x, y));
+                self.taken.push(dot.bounds());
+                dots.push(((style.filled, !style.heavy), dot));
+                labels.extend(point.label.as_ref().map(|label| ((x, y), label)));
+            }
+        }
+        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what
+        // is near.
+        dots.sort_by_key(|(order, _)| *order);
+        self.sheet.0.extend(dots.into_iter().map(|(_, dot)| dot));
+        for (place, label) in labels {
+            if let Some(word) = beside(place, label, plot.bounds, &self.taken) {
+                self.taken.push(word.bounds());
+                self.sheet.0.push(word);
+            }
+        }
+    }
+}
+
 /// Grid, frame, ticks and names of both axes.
-fn axes(
-    marks: &mut Vec<Mark>,
-    plot: Bounds,
-    (x_label, x): (&str, &Scale),
-    (y_label, y): (&str, &Scale),
-) {
-    let line = |points, color| Mark::Line {
-        points,
-        color,
-        width: 1.0,
-        dash: Dash::Solid,
-    };
+fn axes(sheet: &mut Sheet, plot: &Plot, x_label: &str, y_label: &str) {
+    let [left, top, right, bottom] = plot.bounds;
     let mut end = f64::NEG_INFINITY;
-    for (value, text) in &x.ticks {
-        let Some(place) = x.place(*value) else {
-            continue;
-        };
-        let px = plot[0] + place * (plot[2] - plot[0]);
-        marks.push(line(vec![(px, plot[1]), (px, plot[3])], GRID));
-        // A word that would touch the last one, or leave the figure, is left out; its line stays.
-        let half = width(text, TEXT) / 2.0;
-        if px - half > end + 6.0 && px + half < WIDTH {
-            marks.push(word(
-                (px, plot[3] + TEXT + 5.0),
-                text,
-                TEXT,
-                Anchor::Middle,
-                INK,
-            ));
-            end = px + half;
+    for (value, text) in &plot.x.ticks {
+        if let Some(place) = plot.x.place(*value) {
+            sheet.tick(left + place * (right - left), (top, bottom), text, &mut end);
         }
     }
     let mut end = f64::INFINITY;
-    for (value, text) in &y.ticks {
-        let Some(place) = y.place(*value) else {
+    for (value, text) in &plot.y.ticks {
+        let Some(place) = plot.y.place(*value) else {
             continue;
         };
-        let py = plot[3] - place * (plot[3] - plot[1]);
-        marks.push(line(vec![(plot[0], py), (plot[2], py)], GRID));
-        if py + TEXT * 0.6 < end {
-            marks.push(word(
-                (plot[0] - 7.0, py + TEXT * 0.35),
-                text,
-                TEXT,
-                Anchor::End,
-                INK,
-            ));
-            end = py - TEXT * 0.6;
+        let y = bottom - place * (bottom - top);
+        sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::Solid);
+        if y + TEXT * 0.6 < end {
+            sheet.word((left - 7.0, y + TEXT * 0.35), text, Anchor::End, INK);
+            end = y - TEXT * 0.6;
         }
     }
-    marks.push(line(
-        vec![(plot[0], plot[1]), (plot[0], plot[3]), (plot[2], plot[3])],
+    sheet.line(
+        [(left, top), (left, bottom), (right, bottom)],
         INK,
-    ));
-    let middle = (plot[0] + plot[2]) / 2.0;
-    // A long name is moved so that it stays within the figure.
-    let half = width(x_label, TEXT) / 2.0;
-    let at = middle.min(WIDTH - EDGE - half).max(EDGE + half);
-    marks.push(word(
-        (at, plot[3] + 2.0 * TEXT + 12.0),
-        x_label,
-        TEXT,
-        Anchor::Middle,
-        INK,
-    ));
-    marks.push(Mark::Word {
-        at: (EDGE + TEXT * 0.8, (plot[1] + plot[3]) / 2.0),
+        1.0,
+        Dash::Solid,
+    );
+    sheet.axis((left, right), bottom, x_label);
+    sheet.0.push(Mark::Word {
+        at: (EDGE + TEXT * 0.8, (top + bottom) / 2.0),
         text: y_label.to_owned(),
         size: TEXT,
         anchor: Anchor::Middle,
@@ -304,14 +272,15 @@ fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Opt
     ];
     places
         .into_iter()
-        .map(|(dx, dy, anchor)| word((x + dx, y + dy), text, SMALL, anchor, PALE))
+        .map(|(dx, dy, anchor)| Mark::word((x + dx, y + dy), text, SMALL, anchor, PALE))
         .find(|mark| {
             let b = mark.bounds();
             b[0] > plot[0]
                 && b[1] > plot[1]
                 && b[2] < plot[2]
                 && b[3] < plot[3]
-                && !taken.iter().any(|t| overlap(*t, b))
+                // Two numbers side by side must not read as one.
+                && !taken.iter().any(|t| overlap(*t, [b[0] - 4.0, b[1], b[2] + 4.0, b[3]]))
         })
 }
 

@@ -4,12 +4,37 @@ use super::run::Run;
 use crate::method::Method;
 use crate::report::names::{number, percent};
 use crate::report::stats;
-use crate::report::suite::{place_of, technique_of};
 use revmap::error::Result;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What a cell is made of.
+/// Techniques in the order of the table's rows.
+const TECHNIQUES: [&str; 5] = ["revolution", "extended", "beveled", "chamfered", TEXTURED];
+/// The technique that no offset shows.
+const TEXTURED: &str = "textured";
+
+/// The technique of a record: what its view is named after, else that of its offset; whether the box
+/// cuts it.
+fn technique_of(scene: &str, technique: &str) -> String {
+    let scene = scene.trim_end_matches(":close");
+    if scene.ends_with(TEXTURED) {
+        TEXTURED.to_owned()
+    } else if scene.ends_with("-box") {
+        format!("{technique}, cut by the box")
+    } else {
+        technique.to_owned()
+    }
+}
+
+/// The place of a technique's row; one that is not known is last.
+fn place_of(technique: &str) -> usize {
+    let known = TECHNIQUES
+        .iter()
+        .position(|name| technique.starts_with(name));
+    known.unwrap_or(TECHNIQUES.len())
+}
+
+/// The figures of a cell.
 #[derive(Default)]
 struct Cell {
     /// Logarithms of times over the RBM baseline's, by picture.
@@ -48,9 +73,9 @@ impl Cell {
 /// percentile in h/512, geometric mean), and its wrong pixels over those of the picture.
 ///
 /// # Errors
-/// Of reading the folders' files.
+/// A file of a folder cannot be read.
 pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
-    // By the technique's place, its name and tolerance, whether it is compute.
+    // The key: the technique's place, its name and tolerance, and true for compute.
     let mut rows: BTreeMap<(usize, String, bool), Vec<Cell>> = BTreeMap::new();
     let mut drivers = Vec::new();
     for (column, folder) in folders.iter().enumerate() {
@@ -98,8 +123,8 @@ pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::report::folder::{raw, results, write_text};
-    use crate::report::machine::Machine;
+    use crate::report::columns::tests::csv_of;
+    use crate::report::folder::{raw, write_text};
     use crate::report::plan::rbm_baseline;
     use crate::report::row::Row;
     use crate::report::row::tests::row;
@@ -122,11 +147,11 @@ mod tests {
             rows.extend([ours, papers]);
         }
         let folder = tempfile::tempdir().unwrap();
-        let machine = Machine::here("device", "cpu", driver, "revmap bench");
-        for (file, table) in [
-            ("results.csv", results(&rows, &machine)),
+        let files = [
+            ("results.csv", csv_of(&rows, "device", driver)),
             ("raw.csv", raw(&rows)),
-        ] {
+        ];
+        for (file, table) in files {
             write_text(&folder.path().join(file), &table.csv()).unwrap();
         }
         folder

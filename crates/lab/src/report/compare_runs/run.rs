@@ -1,6 +1,6 @@
 //! A run read back from its folder.
 
-use crate::report::row::{COLUMNS, CONTRACT};
+use crate::report::columns::{CONTRACT, results as columns};
 use crate::report::stats;
 use crate::report::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
@@ -29,7 +29,11 @@ impl Run {
     pub(super) fn load(folder: &Path) -> Result<Self> {
         let mut results = Table::load(&folder.join("results.csv"))?;
         // Later versions may add columns.
-        if !results.header.starts_with(&CONTRACT.map(str::to_owned)) {
+        let mut header = results.header.iter().map(String::as_str).take(CONTRACT);
+        if !columns()
+            .take(CONTRACT)
+            .all(|name| header.next() == Some(name))
+        {
             return Err(Error::new(
                 ErrorKind::File,
                 "has other columns than this version writes; measure again",
@@ -101,7 +105,7 @@ impl Run {
     /// The passes' medians of a row (counted from 1), each over that of the RBM baseline which
     /// shows the same picture in the same stage.
     pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
-        let at = |name: &str| COLUMNS.iter().position(|c| *c == name);
+        let at = |name: &str| columns().position(|c| c == name);
         let record = self.results.records.get(row.checked_sub(1)?)?;
         let is_baseline = |r: &[String]| {
             BASELINE

@@ -8,7 +8,7 @@ fn crowded() -> XyChart {
         style: Style {
             filled: index.is_multiple_of(2),
             heavy: index == 3,
-            ..Style::new(color::ALL[index], Marker::ALL[index])
+            ..Style::new(color::ALL[index % color::ALL.len()], Marker::ALL[index])
         },
         points: (0..7)
             .map(|k| Point {
@@ -51,12 +51,20 @@ fn no_words_cover_each_other_however_crowded() {
     }
     // The check itself finds what is planted.
     let mut figure = crowded().figure();
-    figure
-        .marks
-        .push(word((20.0, 30.0), "planted", 14.0, Anchor::Start, INK));
-    figure
-        .marks
-        .push(word((-20.0, 300.0), "outside", 14.0, Anchor::Start, INK));
+    figure.marks.push(Mark::word(
+        (20.0, 30.0),
+        "planted",
+        14.0,
+        Anchor::Start,
+        INK,
+    ));
+    figure.marks.push(Mark::word(
+        (-20.0, 300.0),
+        "outside",
+        14.0,
+        Anchor::Start,
+        INK,
+    ));
     assert!(figure.faults().len() >= 2);
 }
 

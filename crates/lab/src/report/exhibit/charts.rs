@@ -1,0 +1,423 @@
+//! Charts of a report.
+
+use super::{check_column, tables};
+use crate::method::{Method, MethodSettings};
+use crate::report::chart::Figure;
+use crate::report::chart::axis::Axis;
+use crate::report::chart::front::{WORTH, front, stairs};
+use crate::report::chart::style::{Marker, Style, color};
+use crate::report::chart::xy::{Guide, Point, Series, XyChart};
+use crate::report::columns::{self, Cell, Context};
+use crate::report::growth::{growing, growth};
+use crate::report::map_error::MapError;
+use crate::report::plan::is_rbm_baseline;
+use crate::report::published;
+use crate::report::ratios::{Over, over};
+use crate::report::row::Row;
+use crate::report::series_style::{self, floor_line, of_source};
+use revmap::error::Result;
+
+/// A chart.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chart {
+    /// Its file's name; `{scene}`, `{size}`, `{stage}` and `{part}` stand for what it is of.
+    pub file: String,
+    /// Its title, with the same words, and `{views}`.
+    pub title: String,
+    /// The caption.
+    pub caption: String,
+    /// The kind of its marks.
+    #[serde(default)]
+    pub kind: Kind,
+    /// The column across.
+    #[serde(default)]
+    pub x: String,
+    /// The column up; of ways of drawing as in tables of ways.
+    #[serde(default)]
+    pub y: String,
+    /// Points are ways of drawing, their times put over these rows; else points are rows.
+    pub over: Option<Over>,
+    /// The rows that share a line.
+    #[serde(default)]
+    pub series: SeriesBy,
+    /// True if it has the Pareto front.
+    #[serde(default)]
+    pub front: bool,
+    /// True if power laws are fitted.
+    #[serde(default)]
+    pub law: bool,
+    /// True if ticks are at the values across, and nowhere else.
+    #[serde(default)]
+    pub ticks: bool,
+    /// A line to compare points with: `equal`, or `published N` of a published table.
+    #[serde(default)]
+    pub guide: String,
+    /// True for an even axis, not a logarithmic one: across, up.
+    #[serde(default)]
+    pub linear: [bool; 2],
+}
+
+/// Kinds of charts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Points over two axes.
+    #[default]
+    Points,
+    /// A line for each row or way of drawing, its time as a dot.
+    Dots,
+    /// The errors of maps alone beside those of the most exact search, over the rows of the map.
+    MapRows,
+}
+
+/// The rows that share a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SeriesBy {
+    /// A method in a stage.
+    #[default]
+    Method,
+    /// A way of drawing, whatever rows its map has.
+    Way,
+    /// A scene.
+    Scene,
+    /// A source of distances.
+    Source,
+}
+
+/// Figures in charts that are not rows.
+#[derive(Clone, Debug, Default)]
+pub struct Extra {
+    /// Errors of maps alone.
+    pub maps: Vec<MapError>,
+}
+
+/// A point before it is part of a line.
+struct Item {
+    name: String,
+    style: Style,
+    point: Point,
+    joined: bool,
+    /// True if its time is resolved.
+    resolved: bool,
+}
+
+impl Chart {
+    pub(super) fn check(&self) -> Result<()> {
+        if self.kind == Kind::Points {
+            check_column(&self.y, self.over)?;
+            if self.over.is_none() {
+                check_column(&self.x, None)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws the chart over these rows: none where there is nothing to show, several where one
+    /// would be longer than a page.
+    ///
+    /// # Errors
+    /// A column of this name does not exist.
+    pub fn figures(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Vec<Figure>> {
+        match self.kind {
+            Kind::Dots => Ok(self.dots(context, rows)),
+            Kind::MapRows => Ok(self.map_rows(context, rows, extra)?.into_iter().collect()),
+            Kind::Points => Ok(self.points(context, rows)?.into_iter().collect()),
+        }
+    }
+
+    fn points(&self, context: &Context, rows: &[&Row]) -> Result<Option<Figure>> {
+        let mut rows = rows.to_vec();
+        // Meshes from coarse to fine.
+        rows.sort_by_key(|r| r.settings.method.quads());
+        let (items, floors) = match self.over {
+            Some(reference) => self.of_ways(context, &rows, reference)?,
+            None => self.of_rows(context, &rows)?,
+        };
+        if items.is_empty() {
+            return Ok(None);
+        }
+        let known = items.iter().filter(|i| i.resolved);
+        let places: Vec<(f64, f64)> = known.map(|i| (i.point.x, i.point.y)).collect();
+        let best: Vec<_> = front(&places, WORTH)
+            .into_iter()
+            .map(|i| places[i])
+            .collect();
+        let mut series: Vec<Series> = Vec::new();
+        for item in items {
+            let same = |s: &&mut Series| s.name == item.name && s.style.filled == item.style.filled;
+            match series.iter_mut().find(same) {
+                Some(known) => known.points.push(item.point),
+                None => series.push(Series {
+                    name: item.name,
+                    style: item.style,
+                    points: vec![item.point],
+                    joined: item.joined,
+                }),
+            }
+        }
+        self.thin_labels(&mut series, &best);
+        let (x, y) = self.axes(&series, &floors)?;
+        let mut guides = Vec::new();
+        if self.front {
+            guides.push(Guide::dashed("Pareto front", stairs(&best)));
+            guides.extend(floors);
+        }
+        guides.extend(self.guides(context, &rows, &series)?);
+        let chart = XyChart {
+            title: self.title.clone(),
+            x,
+            y,
+            series,
+            guides,
+        };
+        Ok(Some(chart.figure()))
+    }
+
+    /// Points that are rows, and the lines of floors.
+    fn of_rows(&self, context: &Context, rows: &[&Row]) -> Result<(Vec<Item>, Vec<Guide>)> {
+        let (x, y) = (columns::named(&self.x)?, columns::named(&self.y)?);
+        let (mut items, mut floors) = (Vec::new(), Vec::new());
+        for row in rows {
+            let (across, up) = ((x.cell)(context, row), (y.cell)(context, row));
+            let s = &row.settings;
+            if s.method == Method::Floor {
+                floors.extend(row.time().map(|time| floor_line(s, time.value)));
+                continue;
+            }
+            let (Some(x), Some(y)) = (across.value(), up.value()) else {
+                continue;
+            };
+            let Some((name, style, joined)) = self.line(context, row) else {
+                continue;
+            };
+            // Zero has no place on a logarithmic axis without a floor.
+            let [even_x, even_y] = self.linear;
+            let y_floor = columns::named(&self.y)?.floor;
+            if (x <= 0.0 && !even_x) || (y <= 0.0 && !even_y && y_floor == 0.0) {
+                continue;
+            }
+            let timed = self.x == "time_ms";
+            let resolved = !timed || row.resolved(context.resolved);
+            let label = match self.series {
+                SeriesBy::Source => {
+                    Some(format!("{} {}", s.method.name(), row.map_rows.unwrap_or(0)))
+                }
+                SeriesBy::Method => label(context, s),
+                SeriesBy::Way => s.method.is_mesh().then(|| label(context, s)).flatten(),
+                SeriesBy::Scene => None,
+            };
+            let unresolved = || Some("not resolved".to_owned());
+            let spread = match (timed, &across) {
+                (true, _) => row.time().and_then(|t| t.ends()),
+                (false, Cell::Known(interval)) => interval.ends(),
+                _ => None,
+            };
+            items.push(Item {
+                name,
+                style,
+                joined,
+                resolved,
+                point: Point {
+                    x,
+                    y,
+                    spread,
+                    label: if resolved { label } else { unresolved() },
+                },
+            });
+        }
+        Ok((items, floors))
+    }
+
+    /// Points that are ways of drawing over others, and the lines of floors.
+    fn of_ways(
+        &self,
+        context: &Context,
+        rows: &[&Row],
+        reference: Over,
+    ) -> Result<(Vec<Item>, Vec<Guide>)> {
+        let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
+        let (mut items, mut floors) = (Vec::new(), Vec::new());
+        for ratio in over(&own, reference) {
+            let s = &ratio.settings;
+            if s.method == Method::Floor {
+                floors.push(floor_line(s, ratio.time.value));
+                continue;
+            }
+            let up = tables::cell(context, &own, (reference, &ratio), &self.y)?;
+            let Some(y) = up.value() else { continue };
+            items.push(Item {
+                name: context.line(s),
+                style: series_style::style(s),
+                joined: true,
+                resolved: ratio.time.relative() <= context.resolved,
+                point: Point {
+                    x: ratio.time.value,
+                    y,
+                    spread: ratio.time.ends(),
+                    label: label(context, s),
+                },
+            });
+        }
+        Ok((items, floors))
+    }
+
+    /// The name and look of a row's line, and whether its points are joined.
+    fn line(&self, context: &Context, row: &Row) -> Option<(String, Style, bool)> {
+        let s = &row.settings;
+        Some(match self.series {
+            SeriesBy::Method => (context.line(s), series_style::style(s), true),
+            SeriesBy::Way => {
+                let way = growing(s);
+                (
+                    context.styles.way(&way),
+                    context.styles.style(&way),
+                    !self.law,
+                )
+            }
+            SeriesBy::Source => (
+                s.map_source?.name().to_owned(),
+                of_source(s.map_source?),
+                false,
+            ),
+            SeriesBy::Scene => {
+                let mut scenes: Vec<&str> = Vec::new();
+                for other in context.rows {
+                    if !scenes.contains(&other.scene.as_str()) {
+                        scenes.push(&other.scene);
+                    }
+                }
+                let k = scenes.iter().position(|s| *s == row.scene).unwrap_or(0);
+                let paint = color::ALL[k % color::ALL.len()];
+                let style = Style::new(paint, Marker::ALL[k % Marker::ALL.len()]);
+                (row.scene.clone(), style, true)
+            }
+        })
+    }
+
+    /// Keeps words at both ends of each line, at what is on the front, and at meshes of a summary;
+    /// of all points the chart would drown in them.
+    fn thin_labels(&self, series: &mut [Series], best: &[(f64, f64)]) {
+        for line in series {
+            let last = line.points.len().saturating_sub(1);
+            let joined = line.joined;
+            for (k, point) in line.points.iter_mut().enumerate() {
+                let end = match self.series {
+                    SeriesBy::Way => k == last,
+                    _ => joined && (k == 0 || k == last),
+                };
+                let on_front = self.front && best.contains(&(point.x, point.y));
+                let kept = |label: &String| {
+                    label == "not resolved" || (self.over.is_some() && label.contains('x'))
+                };
+                if !end && !on_front {
+                    point.label = point.label.take().filter(kept);
+                }
+            }
+        }
+    }
+
+    fn axes(&self, series: &[Series], floors: &[Guide]) -> Result<(Axis, Axis)> {
+        let even = |label: &str, linear: bool| match linear {
+            true => Axis::linear(label),
+            false => Axis::log(label),
+        };
+        let mut x = match self.over {
+            Some(_) => Axis::log("time / time of the RBM baseline").with(1.0),
+            None => even(columns::named(&self.x)?.heading, self.linear[0]),
+        };
+        let name = self
+            .y
+            .split_once(' ')
+            .map_or(self.y.as_str(), |(_, column)| column);
+        let heading = match self.over {
+            Some(over) => tables::heading(&self.y, over)?,
+            None => columns::named(&self.y)?.heading.to_owned(),
+        };
+        let mut y = even(&heading, self.linear[1]);
+        if let Ok(column) = columns::named(name)
+            && column.floor > 0.0
+        {
+            y = y.from(column.floor);
+        }
+        if self.front {
+            for place in floors.iter().filter_map(|floor| floor.points.first()) {
+                x = x.with(place.0);
+            }
+        }
+        if self.ticks {
+            x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
+        }
+        for (_, rate) in self.published() {
+            y = y.with(rate);
+        }
+        Ok((x, y))
+    }
+
+    /// The published line, in charts that have one.
+    fn published(&self) -> Vec<(f64, f64)> {
+        let mut words = self.guide.split(' ');
+        let table = match (words.next(), words.next()) {
+            (Some("published"), Some(number)) => published::table(number),
+            _ => None,
+        };
+        let size = words.next().unwrap_or("");
+        table.map_or(Vec::new(), |t| t.line(size, self.y == "rate_over_first"))
+    }
+
+    /// Lines to compare points with, and fitted laws.
+    fn guides(&self, context: &Context, rows: &[&Row], series: &[Series]) -> Result<Vec<Guide>> {
+        let mut all = Vec::new();
+        if self.guide == "equal" {
+            let mut values: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
+            values.sort_by(f64::total_cmp);
+            let points = values
+                .into_iter()
+                .filter(|v| *v > 0.0)
+                .map(|v| (v, v))
+                .collect();
+            all.push(Guide::dashed("the tolerance", points));
+        }
+        let line = self.published();
+        if !line.is_empty() {
+            all.push(Guide::dashed("published, GeForce GT 630M", line));
+        }
+        if self.law {
+            let column = columns::named(&self.x)?;
+            for g in growth(rows, |row| (column.cell)(context, row).value()) {
+                let (Some(law), [first, .., last]) = (g.law, g.points.as_slice()) else {
+                    continue;
+                };
+                let style = context.styles.style(&g.way);
+                all.push(Guide {
+                    name: String::new(),
+                    points: [first, last].map(|p| (p.0, law.at(p.0))).to_vec(),
+                    color: style.color,
+                    dash: style.dash,
+                    width: style.line(),
+                });
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// The word beside a marker: a mesh's tessellation, or the difference from other ways of the same
+/// method.
+fn label(context: &Context, s: &MethodSettings) -> Option<String> {
+    if is_rbm_baseline(s) {
+        return None;
+    }
+    let name = context.styles.way(s);
+    let rest = match s.method {
+        Method::Mesh { .. } => name.strip_prefix("mesh:"),
+        method => name.strip_prefix(method.name()),
+    }?;
+    let rest = rest.trim_start_matches([' ', ',']);
+    let rest = rest
+        .strip_suffix(" steps")
+        .or(rest.strip_suffix(" rows"))
+        .unwrap_or(rest);
+    (!rest.is_empty()).then(|| rest.to_owned())
+}

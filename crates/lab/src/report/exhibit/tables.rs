@@ -1,0 +1,310 @@
+//! Tables of a report.
+
+use super::check_column;
+use crate::report::chart::front::{WORTH, front};
+use crate::report::columns::{self, Cell, Context};
+use crate::report::growth::growth;
+use crate::report::names::number;
+use crate::report::picture_groups::pictures_of;
+use crate::report::plan::variant;
+use crate::report::published::published;
+use crate::report::ratios::{Over, Ratio, over};
+use crate::report::row::Row;
+use crate::report::stats::{self, Interval};
+use crate::report::table::Table as Text;
+use revmap::error::{Error, ErrorKind, Result};
+
+/// A table.
+#[derive(Clone, Debug, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Table {
+    /// The kind of its records.
+    pub of: Records,
+    /// The heading above it.
+    pub heading: String,
+    /// Columns, by their names. In tables of ways also `ratio R`, `interval R`, `range R` of the
+    /// time over `R`, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
+    /// `pictures`, `total wrong`, `no worse`.
+    pub columns: Vec<String>,
+    /// In tables of ways, what times are put over.
+    pub over: Option<Over>,
+    /// The file that holds it, too.
+    pub csv: Option<String>,
+    /// True if it is printed, too.
+    pub print: bool,
+    /// In tables of growth, the column that grows; in published ones the number of the table.
+    pub x: String,
+}
+
+/// Kinds of records.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Records {
+    /// Rows.
+    #[default]
+    Rows,
+    /// The first row of each picture.
+    Pictures,
+    /// Ways of drawing, over all pictures.
+    Ways,
+    /// Ways of drawing that are on Pareto fronts.
+    Fronts,
+    /// Ways of drawing, and how their times grow.
+    Growth,
+    /// A published table, measured again.
+    Published,
+    /// Flights.
+    Flights,
+}
+
+/// Kinds of cells that sum rows up.
+const SUMS: [&str; 4] = ["mean", "worst", "average", "other"];
+
+pub(super) fn check_summary(name: &str) -> Result<()> {
+    match name.split_once(' ') {
+        Some((sum, column)) if SUMS.contains(&sum) => columns::named(column).map(|_| ()),
+        Some(("ratio" | "interval" | "range" | "known", other)) => reference(other).map(|_| ()),
+        Some(("total", "wrong") | ("no", "worse")) => Ok(()),
+        None if name == "pictures" || name == "pair" => Ok(()),
+        _ => columns::named(name).map(|_| ()),
+    }
+}
+
+fn reference(name: &str) -> Result<Over> {
+    let known = [
+        ("baseline", Over::Baseline),
+        ("exact", Over::Exact),
+        ("1-ray", Over::Exact),
+        ("one", Over::One),
+        ("mesh", Over::Mesh),
+    ];
+    known
+        .iter()
+        .find(|(n, _)| *n == name)
+        .map(|(_, over)| *over)
+        .ok_or_else(|| {
+            let message = format!(
+                "{name:?} is nothing to put times over; give baseline, exact, 1-ray, one or mesh"
+            );
+            Error::new(ErrorKind::Content, message)
+        })
+}
+
+impl Table {
+    pub(super) fn check(&self) -> Result<()> {
+        self.columns
+            .iter()
+            .try_for_each(|name| check_column(name, self.over))
+    }
+
+    /// The table over these rows, for a page.
+    ///
+    /// # Errors
+    /// A column of this name does not exist.
+    pub fn shown(&self, context: &Context, rows: &[&Row]) -> Result<Text> {
+        match self.of {
+            Records::Rows => context.page(rows, &self.columns),
+            Records::Pictures => {
+                let pictures = pictures_of(rows);
+                let firsts = pictures.iter().filter_map(|p| p.first().copied());
+                context.page(&firsts.collect::<Vec<_>>(), &self.columns)
+            }
+            Records::Ways => {
+                let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
+                let over = self.over.unwrap_or(Over::Baseline);
+                ways_table(context, &own, over, &self.columns)
+            }
+            Records::Fronts => Ok(fronts(context, rows)),
+            Records::Growth => growth_table(context, rows, &self.x),
+            Records::Published => Ok(published(context, rows, &self.x)),
+            Records::Flights => Ok(Text::default()),
+        }
+    }
+}
+
+/// Which columns of a page's table are words: they stand to the left.
+#[must_use]
+pub fn left(table: &Text) -> Vec<usize> {
+    let word = |c: &usize| {
+        let mut fields = table.records.iter().filter_map(|r| r.get(*c));
+        fields.any(|f| f.starts_with(|c: char| c.is_alphabetic()) && f != "inf" && f != "nan")
+    };
+    (0..table.header.len()).filter(word).collect()
+}
+
+/// The table of ways of drawing over others.
+///
+/// # Errors
+/// A column of this name does not exist.
+pub fn ways_table(
+    context: &Context,
+    rows: &[Row],
+    reference: Over,
+    names: &[impl AsRef<str>],
+) -> Result<Text> {
+    let header: Vec<String> = names
+        .iter()
+        .map(|n| heading(n.as_ref(), reference))
+        .collect::<Result<_>>()?;
+    let ratios = over(rows, reference);
+    let record = |ratio: &Ratio| -> Result<Vec<String>> {
+        let shown = |n: &_| Ok(cell(context, rows, (reference, ratio), AsRef::as_ref(n))?.shown());
+        names.iter().map(shown).collect()
+    };
+    let records = ratios.iter().map(record).collect::<Result<_>>()?;
+    Ok(Text::new(header, records))
+}
+
+/// The heading of a column of ways.
+pub(super) fn heading(name: &str, over: Over) -> Result<String> {
+    let head = |column: &str| columns::named(column).map(|c| c.heading);
+    Ok(match name.split_once(' ') {
+        Some(("ratio" | "known", other)) => match other {
+            "baseline" => "time / RBM baseline".to_owned(),
+            other => format!("time / {}", other.replace('-', " ")),
+        },
+        Some(("interval", _)) => "95 % interval".to_owned(),
+        Some(("range", _)) => "range over pictures".to_owned(),
+        Some(("worst", column)) => format!("worst {}", head(column)?),
+        Some(("other", column)) => format!("mesh {}", head(column)?),
+        Some(("mean" | "average", column)) => head(column)?.to_owned(),
+        Some(("no", _)) => "mesh at least as accurate".to_owned(),
+        Some(("total", _)) => "wrong pixels".to_owned(),
+        None if name == "pictures" => name.to_owned(),
+        None if name == "pair" => "method / mesh".to_owned(),
+        _ if over == Over::Mesh && name == "method" => "method / mesh".to_owned(),
+        _ => head(name)?.to_owned(),
+    })
+}
+
+/// The cell of a way over the rows of a reference.
+pub(super) fn cell(
+    context: &Context,
+    rows: &[Row],
+    (primary, ratio): (Over, &Ratio),
+    name: &str,
+) -> Result<Cell> {
+    let values = |column: &str, other: bool| -> Result<Vec<f64>> {
+        let column = columns::named(column)?;
+        let value = |(row, of): &(&Row, &Row)| {
+            let row = if other { of } else { row };
+            (column.cell)(context, row)
+                .value()
+                .map(|v| v.max(column.floor))
+        };
+        Ok(ratio.pairs.iter().filter_map(value).collect())
+    };
+    let mean = |column: &str, other| {
+        Ok::<_, Error>(stats::geometric(&values(column, other)?).map(|m| m.value))
+    };
+    let time = |other: &str| -> Result<Option<(Interval, (f64, f64))>> {
+        let wanted = reference(other)?;
+        if wanted == primary {
+            return Ok(Some((ratio.time, ratio.range)));
+        }
+        let all = over(rows, wanted);
+        let own = all.iter().find(|r| r.settings == ratio.settings);
+        Ok(own.map(|r| (r.time, r.range)))
+    };
+    let first = ratio.pairs.first().map(|(row, _)| *row);
+    let found = match name.split_once(' ') {
+        Some(("ratio", other)) => Cell::number(time(other)?.map(|t| t.0.value)),
+        Some(("known", other)) => Cell::known(time(other)?.map(|t| t.0)),
+        Some(("interval", other)) => {
+            time(other)?.map_or(Cell::Empty, |t| Cell::Text(context.ends(&t.0)))
+        }
+        Some(("range", other)) => time(other)?.map_or(Cell::Empty, |(_, (least, most))| {
+            Cell::Text(format!("{} to {}", number(least, 3), number(most, 3)))
+        }),
+        Some(("mean", column)) => Cell::number(mean(column, false)?),
+        Some(("other", column)) => Cell::number(mean(column, true)?),
+        Some(("worst", column)) => {
+            Cell::number(values(column, false)?.into_iter().reduce(f64::max))
+        }
+        Some(("average", column)) => {
+            Cell::number(stats::mean(&values(column, false)?).map(|m| m.value))
+        }
+        Some(("no", _)) => Cell::Count(ratio.no_worse() as u64),
+        Some(("total", _)) => Cell::Share(ratio.wrong()),
+        None if name == "pictures" => Cell::Count(ratio.pairs.len() as u64),
+        None if name == "pair" => {
+            let mesh = ratio
+                .mesh
+                .map_or("coarsest as accurate".to_owned(), |m| m.to_string());
+            Cell::Text(format!("{} / {mesh}", ratio.settings.method))
+        }
+        _ => {
+            let column = columns::named(name)?;
+            first.map_or(Cell::Empty, |row| (column.cell)(context, row))
+        }
+    };
+    Ok(found)
+}
+
+/// The ways of drawing that are on the front of depth error against time of at least one picture,
+/// the most frequent first.
+fn fronts(context: &Context, rows: &[&Row]) -> Text {
+    let groups = pictures_of(rows);
+    let mut counts: Vec<(&Row, usize, f64, f64)> = Vec::new();
+    for group in &groups {
+        let place = |r: &&Row| {
+            let known = r.surface().filter(|_| r.resolved(context.resolved));
+            let error = known.and_then(|e| e.depth).map_or(f64::NAN, |d| d.p99);
+            (r.time().map_or(f64::NAN, |t| t.value), error)
+        };
+        let points: Vec<(f64, f64)> = group.iter().map(place).collect();
+        for i in front(&points, WORTH) {
+            let (row, depth, wrong) = (group[i], points[i].1, group[i].errors.wrong());
+            match counts
+                .iter_mut()
+                .find(|c| variant(&c.0.settings) == variant(&row.settings))
+            {
+                Some(c) => *c = (row, c.1 + 1, c.2.max(depth), c.3.max(wrong)),
+                None => counts.push((row, 1, depth, wrong)),
+            }
+        }
+    }
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then(a.2.total_cmp(&b.2)));
+    let record = |(row, count, depth, wrong): &(&Row, usize, f64, f64)| {
+        vec![
+            context.styles.way(&row.settings),
+            row.settings.stage.name().to_owned(),
+            format!("{count} of {}", groups.len()),
+            number(*depth, 3),
+            crate::report::names::percent(*wrong),
+        ]
+    };
+    let header = [
+        "method",
+        "stage",
+        "on the front of",
+        "worst depth p99 (h/512)",
+        "worst wrong pixels",
+    ];
+    Text::new(header, counts.iter().map(record).collect())
+}
+
+fn growth_table(context: &Context, rows: &[&Row], x: &str) -> Result<Text> {
+    let column = columns::named(x)?;
+    let record = |g: crate::report::growth::Growth| {
+        let ends = |p: Option<&(f64, f64)>| Cell::number(p.map(|p| p.1)).shown();
+        vec![
+            context.styles.way(&g.way),
+            g.way.stage.name().to_owned(),
+            ends(g.points.first()),
+            ends(g.points.last()),
+            Cell::known(g.exponent).shown(),
+            Cell::number(g.last).shown(),
+        ]
+    };
+    let header = [
+        "method",
+        "stage",
+        "time at the least (ms)",
+        "time at the most (ms)",
+        "exponent (95 % interval)",
+        "exponent of the last step",
+    ];
+    let all = growth(rows, |row| (column.cell)(context, row).value());
+    Ok(Text::new(header, all.into_iter().map(record).collect()))
+}

@@ -1,0 +1,192 @@
+//! A flight through the army: the time of every frame, and how far pictures are from exact ones.
+
+use super::columns::Cell;
+use super::plan::{army, flight_camera};
+use super::stats;
+use super::table::Table;
+use crate::compare::{PixelErrors, pixel_errors};
+use crate::method::MethodSettings;
+use crate::renderer::MethodDevice;
+use revmap::error::Result;
+use revmap::gpu::Times;
+use revmap::settings::{DrawStage, Planes, Tolerance};
+use std::time::Instant;
+
+/// Frames before the first that counts: buffers grow, and drivers compile when they first draw.
+const WARM: usize = 10;
+
+/// The default search with a tolerance, as crowds are drawn.
+#[must_use]
+pub fn settings(stage: DrawStage) -> MethodSettings {
+    MethodSettings {
+        stage,
+        width: 1366,
+        height: 706,
+        planes: Planes::Color,
+        tolerance: Tolerance::DEFAULT,
+        ..MethodSettings::default()
+    }
+}
+
+/// A flight.
+#[derive(Clone, Debug)]
+pub struct FlightTimes {
+    /// How it was drawn.
+    pub settings: MethodSettings,
+    /// How many solids it went through.
+    pub solids: u32,
+    /// Times of every frame; the CPU's part of a new view is within `prepare_ms`.
+    pub times: Vec<Times>,
+    /// Frames that were held to exact pictures, and their errors in pixels.
+    pub errors: Vec<(usize, PixelErrors)>,
+}
+
+/// Flies through `count` solids in so many frames; each `every`th picture is held to an exact one.
+///
+/// # Errors
+/// The device fails, or a solid that the program carries cannot be read.
+pub fn fly(
+    device: &MethodDevice,
+    settings: &MethodSettings,
+    count: u32,
+    frames: usize,
+    every: usize,
+) -> Result<FlightTimes> {
+    let mut scene = army(count)?.scene;
+    let at = |frame: usize| flight_camera(frame as f64 / frames as f64);
+    let mut renderer = device.renderer(&scene, settings)?;
+    renderer.prewarm()?;
+    for _ in 0..WARM {
+        renderer.draw()?;
+    }
+    let mut times = Vec::with_capacity(frames);
+    for frame in 0..frames {
+        scene.camera = at(frame);
+        let start = Instant::now();
+        renderer.update(&scene)?;
+        let update_ms = start.elapsed().as_secs_f64() * 1e3;
+        let mut drawn = renderer.draw()?;
+        drawn.prepare_ms += update_ms;
+        times.push(drawn);
+    }
+    drop(renderer);
+    let mut errors = Vec::new();
+    for frame in (0..frames).step_by(every) {
+        scene.camera = at(frame);
+        let picture = |tolerance| {
+            let all = MethodSettings {
+                tolerance,
+                planes: Planes::All,
+                ..*settings
+            };
+            Ok::<_, revmap::Error>(device.draw(&scene, &all)?.frame)
+        };
+        let exact = picture(Tolerance::EXACT)?;
+        errors.push((
+            frame,
+            pixel_errors(&scene, &exact, &picture(settings.tolerance)?)?,
+        ));
+    }
+    Ok(FlightTimes {
+        settings: *settings,
+        solids: count,
+        times,
+        errors,
+    })
+}
+
+impl FlightTimes {
+    /// Milliseconds of a frame: preparing, recording and drawing it.
+    fn whole(times: &Times) -> f64 {
+        times.prepare_ms + times.frame_ms
+    }
+
+    /// Median and longest frame, milliseconds.
+    #[must_use]
+    pub fn frame_ms(&self) -> [f64; 2] {
+        let all: Vec<f64> = self.times.iter().map(Self::whole).collect();
+        let median = stats::median(&all).unwrap_or(f64::NAN);
+        [median, all.into_iter().fold(0.0, f64::max)]
+    }
+
+    /// The CPU's part of a median frame, milliseconds.
+    #[must_use]
+    pub fn prepare_ms(&self) -> f64 {
+        let all: Vec<f64> = self.times.iter().map(|t| t.prepare_ms).collect();
+        stats::median(&all).unwrap_or(f64::NAN)
+    }
+
+    /// The largest error over the pictures that were compared, pixels: of 99.9 % of the pixels,
+    /// and of contours.
+    #[must_use]
+    pub fn worst(&self) -> [f64; 2] {
+        let most =
+            |of: fn(&PixelErrors) -> f64| self.errors.iter().map(|e| of(&e.1)).fold(0.0, f64::max);
+        [most(|e| e.p999), most(|e| e.contour_max)]
+    }
+
+    /// Every frame.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let header = [
+            "frame",
+            "prepare_ms",
+            "gpu_ms",
+            "frame_ms",
+            "error_p999_px",
+            "contour_max_px",
+        ];
+        let record = |(number, times): (usize, &Times)| {
+            let errors = self.errors.iter().find(|e| e.0 == number).map(|e| &e.1);
+            let [p999, contour] = [errors.map(|e| e.p999), errors.map(|e| e.contour_max)];
+            let numbers = [
+                Some(times.prepare_ms),
+                times.gpu_ms,
+                Some(times.frame_ms),
+                p999,
+                contour,
+            ];
+            let cells = numbers.map(|n| Cell::number(n).csv());
+            std::iter::once(number.to_string()).chain(cells).collect()
+        };
+        Table::new(header, self.times.iter().enumerate().map(record).collect())
+    }
+}
+
+/// The table of flights.
+#[must_use]
+pub fn table(flights: &[FlightTimes]) -> Table {
+    let header = [
+        "solids",
+        "stage",
+        "frames",
+        "median (ms)",
+        "of it CPU (ms)",
+        "slowest (ms)",
+        "slowest / median",
+        "pictures compared",
+        "error p99.9 (pixels)",
+        "farthest contour (pixels)",
+    ];
+    let record = |flight: &FlightTimes| {
+        let ([median, slowest], [p999, contour]) = (flight.frame_ms(), flight.worst());
+        let [compared, frames] = [flight.errors.len(), flight.times.len()].map(|n| n as f64);
+        let named = [
+            flight.solids.to_string(),
+            flight.settings.stage.name().to_owned(),
+        ];
+        let numbers = [
+            frames,
+            median,
+            flight.prepare_ms(),
+            slowest,
+            slowest / median,
+            compared,
+            p999,
+            contour,
+        ];
+        let cells = numbers.map(|n| Cell::Number(n).shown());
+        named.into_iter().chain(cells).collect()
+    };
+    Table::new(header, flights.iter().map(record).collect())
+}

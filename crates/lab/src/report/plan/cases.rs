@@ -1,0 +1,391 @@
+//! The measurements of a plan: views, settings, and which of them are measured against each other.
+
+use super::file::Measure;
+use crate::floor;
+use crate::method::{Edges, Method, MethodSettings};
+use crate::report::view::View;
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::{DrawStage, Planes, Tolerance};
+use revmap_searches::CIRCLE;
+
+/// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
+const MOST_QUADS: u64 = 1 << 23;
+
+/// One measurement: a view drawn in one way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// Index of the view.
+    pub view: usize,
+    /// How it is drawn.
+    pub settings: MethodSettings,
+    /// The entries of the plan that it belongs to: bits, by the places of their names in
+    /// [`Plan::sweeps`].
+    pub sweeps: u64,
+}
+
+/// The picture that others are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Truth {
+    /// The double-precision reference.
+    Reference,
+    /// The default search's own picture of so many rays per pixel, in the same stage.
+    Rays(u32),
+}
+
+/// All that is measured in one run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The views.
+    pub views: Vec<View>,
+    /// The measurements, none twice.
+    pub cases: Vec<Case>,
+    /// Names of the entries, each once.
+    pub sweeps: Vec<String>,
+    /// True if views are compared with each other: then all views of one size are drawn in turn,
+    /// not each view by itself.
+    pub mixed: bool,
+    /// The picture that others are compared with.
+    pub truth: Truth,
+    /// True if errors are measured in pixels too.
+    pub pixel_errors: bool,
+}
+
+impl Plan {
+    /// Views without measurements.
+    #[must_use]
+    pub fn new(views: Vec<View>) -> Self {
+        Self {
+            views,
+            cases: Vec::new(),
+            sweeps: Vec::new(),
+            mixed: false,
+            truth: Truth::Reference,
+            pixel_errors: false,
+        }
+    }
+
+    /// Adds a measurement; one that is there already becomes part of another entry.
+    pub fn add(&mut self, view: usize, settings: MethodSettings, sweep: &str) {
+        let place = self
+            .sweeps
+            .iter()
+            .position(|s| s == sweep)
+            .unwrap_or_else(|| {
+                self.sweeps.push(sweep.to_owned());
+                self.sweeps.len() - 1
+            });
+        let sweeps = 1u64 << place.min(63);
+        let same = |c: &&mut Case| (c.view, c.settings) == (view, settings);
+        match self.cases.iter_mut().find(same) {
+            Some(known) => known.sweeps |= sweeps,
+            None => self.cases.push(Case {
+                view,
+                settings,
+                sweeps,
+            }),
+        }
+    }
+
+    /// Adds every combination of an entry's lists for a view. `named` methods take the place of its
+    /// searches.
+    ///
+    /// A list that a method does not read counts for it as one value.
+    pub fn add_entry(&mut self, view: usize, measure: &Measure, named: &[Method]) {
+        let seen = &self.views[view];
+        if !(measure.views.is_empty() || measure.views.contains(&seen.group)) {
+            return;
+        }
+        let mut all = Vec::new();
+        for &(width, height) in &measure.sizes {
+            for &stage in &measure.stages {
+                for method in measure.methods(named) {
+                    let base = MethodSettings {
+                        width,
+                        height,
+                        stage,
+                        planes: Planes::Color,
+                        ..MethodSettings::default()
+                    };
+                    all.extend(ways(seen, measure, base, method));
+                }
+            }
+        }
+        let solids = seen.solids() as u64;
+        let fits = |s: &MethodSettings| match s.method {
+            Method::Floor => floor::is_available() && floor::check(&seen.scene).is_ok(),
+            mesh if mesh.is_mesh() && solids > 1 => mesh.quads() * solids <= MOST_QUADS,
+            _ => true,
+        };
+        all.retain(fits);
+        // The command line may name a mesh and compute: its row says why it was not drawn.
+        let own = |s: &MethodSettings| s.stage == DrawStage::Fragment || named.contains(&s.method);
+        all.retain(|s| own(s) || !(s.method.is_mesh() || s.edges == Edges::Msaa));
+        for settings in all {
+            self.add(view, settings, &measure.name);
+        }
+    }
+
+    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size
+    /// in a mixed plan.
+    #[must_use]
+    pub fn groups(&self) -> Vec<Vec<usize>> {
+        let size = |c: &Case| (c.settings.width, c.settings.height);
+        let all: Vec<usize> = (0..self.cases.len()).collect();
+        grouped(&all, |a, b| {
+            let (a, b) = (&self.cases[*a], &self.cases[*b]);
+            size(a) == size(b) && (self.mixed || a.view == b.view)
+        })
+    }
+
+    /// Those of the measurements that are compared with one picture.
+    #[must_use]
+    pub fn pictures(&self, group: &[usize]) -> Vec<Vec<usize>> {
+        let stage = |c: &Case| (self.truth != Truth::Reference).then_some(c.settings.stage);
+        grouped(group, |a, b| {
+            let (a, b) = (&self.cases[*a], &self.cases[*b]);
+            same_picture(a, b) && stage(a) == stage(b)
+        })
+    }
+}
+
+/// The settings of one method in an entry; `None`: the RBM baseline.
+fn ways(
+    view: &View,
+    measure: &Measure,
+    base: MethodSettings,
+    method: Option<Method>,
+) -> Vec<MethodSettings> {
+    let base = match method {
+        Some(method) => MethodSettings { method, ..base },
+        None => rbm_baseline(view, &base),
+    };
+    let own = base.method;
+    let reads = own.reads_map() || own.reads_own_table();
+    if measure.readers_only && !reads {
+        return Vec::new();
+    }
+    /// The list's values where it is read, else what the method takes.
+    fn values<T: Copy>(list: &[T], read: bool, own: Option<T>) -> Vec<Option<T>> {
+        match list {
+            [] => vec![own],
+            _ if !read => vec![own],
+            list => list.iter().copied().map(Some).collect(),
+        }
+    }
+    let searched = method.is_some();
+    let maps = searched && own.reads_map();
+    let bounded = searched && own.default_steps(false) > 1;
+    let formats = values(&measure.map_formats, maps, Some(base.map_format));
+    let tolerances = values(
+        &measure.tolerances,
+        own.follows_tolerance(),
+        Some(Tolerance::EXACT),
+    );
+    let edges = values(&measure.edges, searched, Some(Edges::OneRay));
+    let mut all = Vec::new();
+    for max_steps in values(&measure.max_steps, bounded, base.max_steps) {
+        for map_rows in values(&measure.map_rows, reads, base.map_rows) {
+            for map_source in values(&measure.map_sources, maps, base.map_source) {
+                for map_format in formats.iter().flatten() {
+                    for tolerance in tolerances.iter().flatten() {
+                        all.extend(edges.iter().flatten().map(|&edges| MethodSettings {
+                            max_steps,
+                            map_rows,
+                            map_source,
+                            map_format: *map_format,
+                            tolerance: *tolerance,
+                            edges,
+                            ..base
+                        }));
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Puts together what is alike, in the order in which it first appears.
+pub(in crate::report) fn grouped<T: Clone>(
+    all: &[T],
+    alike: impl Fn(&T, &T) -> bool,
+) -> Vec<Vec<T>> {
+    let mut groups: Vec<Vec<T>> = Vec::new();
+    for one in all {
+        let same = |group: &&mut Vec<T>| group.first().is_some_and(|first| alike(first, one));
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(one.clone()),
+            None => groups.push(vec![one.clone()]),
+        }
+    }
+    groups
+}
+
+/// True if two measurements show the same picture.
+#[must_use]
+pub fn same_picture(a: &Case, b: &Case) -> bool {
+    let key = |c: &Case| (c.view, c.settings.width, c.settings.height);
+    key(a) == key(b)
+}
+
+/// `solver` at the stage and size of `settings`, all else as drawing takes it.
+#[must_use]
+pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
+    MethodSettings {
+        width: settings.width,
+        height: settings.height,
+        stage: settings.stage,
+        planes: settings.planes,
+        method,
+        ..MethodSettings::default()
+    }
+}
+
+/// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
+/// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
+#[must_use]
+pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
+    MethodSettings {
+        method: Method::Search(CIRCLE),
+        max_steps: Some(if view.technique().is_beveled() {
+            25
+        } else {
+            20
+        }),
+        map_source: Some(MapSource::Binary),
+        map_format: MapFormat::Rgba8,
+        map_rows: None,
+        tolerance: Tolerance::EXACT,
+        ..*settings
+    }
+}
+
+/// A way of drawing apart from its size: what a summary over views and sizes is told by.
+#[must_use]
+pub fn variant(settings: &MethodSettings) -> MethodSettings {
+    MethodSettings {
+        width: 0,
+        height: 0,
+        planes: Planes::Color,
+        ..*settings
+    }
+}
+
+/// True if settings are those of [`rbm_baseline`].
+#[must_use]
+pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
+    s.method == CIRCLE
+        && matches!(s.max_steps, Some(20 | 25))
+        && s.map_source == Some(MapSource::Binary)
+        && s.map_format == MapFormat::Rgba8
+        && s.map_rows.is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::{Labels, Pick, RBM_BASELINE};
+    use super::*;
+    use crate::report::view::tests::spindle;
+
+    fn entry() -> Measure {
+        Measure {
+            max_steps: vec![20, 48],
+            sizes: vec![(64, 48), (32, 24)],
+            map_sources: vec![MapSource::Binary, MapSource::Exact],
+            map_formats: vec![MapFormat::R16, MapFormat::Rgba8],
+            methods: vec![Pick::Method(Method::Search(CIRCLE))],
+            ..Measure::default()
+        }
+    }
+
+    fn plan(views: usize, entries: &[Measure]) -> Plan {
+        let mut plan = Plan::new(vec![spindle(); views]);
+        for view in 0..views {
+            for entry in entries {
+                plan.add_entry(view, entry, &[]);
+            }
+        }
+        plan
+    }
+
+    #[test]
+    fn every_combination_is_there_once() {
+        assert_eq!(plan(1, &[entry()]).cases.len(), 2 * 2 * 2 * 2 * 2);
+        let twice = plan(2, &[entry(), entry()]);
+        assert_eq!(twice.cases.len(), 64);
+        // A measurement of two entries belongs to both.
+        let named = |name: &str| Measure {
+            name: name.to_owned(),
+            ..entry()
+        };
+        let both = plan(1, &[named("a"), named("b")]);
+        assert!(both.cases.iter().all(|c| c.sweeps == 3));
+        assert_eq!(both.sweeps, ["a", "b"]);
+    }
+
+    #[test]
+    fn groups_hold_what_shows_one_picture() {
+        let mut plan = plan(2, &[entry()]);
+        let groups = plan.groups();
+        assert_eq!(groups.len(), 4);
+        let mut seen: Vec<_> = groups.concat();
+        seen.sort_unstable();
+        assert_eq!(seen, (0..plan.cases.len()).collect::<Vec<_>>());
+        for group in &groups {
+            let same = |&i: &usize| same_picture(&plan.cases[i], &plan.cases[group[0]]);
+            assert!(group.iter().all(same));
+            assert_eq!(plan.pictures(group).len(), 1);
+        }
+        plan.mixed = true;
+        assert_eq!(plan.groups().len(), 2);
+        // A truth of rays is that of its own stage.
+        plan.truth = Truth::Rays(64);
+        assert_eq!(plan.pictures(&plan.groups()[0]).len(), 4);
+    }
+
+    #[test]
+    fn the_rbm_baseline_is_added_to_each_stage_and_size_once() {
+        let baseline = Measure {
+            methods: vec![Pick::Baseline],
+            sizes: entry().sizes,
+            ..Measure::default()
+        };
+        let mut plan = plan(1, &[entry(), baseline.clone(), baseline]);
+        let found = plan.cases.iter().filter(|c| is_rbm_baseline(&c.settings));
+        // The entry's own combinations hold it already: 20 steps, binary, in 8 bits.
+        assert_eq!((found.count(), plan.cases.len()), (4, 32));
+        plan.views[0].scene.objects[0].offset.bevel = 0.3;
+        let settings = plan.cases[0].settings;
+        assert_eq!(rbm_baseline(&plan.views[0], &settings).max_steps, Some(25));
+    }
+
+    #[test]
+    fn labels_tell_apart_and_say_no_more() {
+        let ways: Vec<MethodSettings> = plan(1, &[entry()])
+            .cases
+            .iter()
+            .map(|c| c.settings)
+            .collect();
+        let labels = Labels::new(&ways);
+        assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
+        assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
+        let all = Measure {
+            methods: [Method::Search(CIRCLE), Method::DEFAULT]
+                .map(Pick::Method)
+                .to_vec(),
+            ..Measure::default()
+        };
+        let baseline = Measure {
+            methods: vec![Pick::Baseline],
+            ..Measure::default()
+        };
+        let plan = plan(1, &[all, baseline]);
+        let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
+        assert_eq!(labels.way(&plan.cases[0].settings), "circle");
+        assert_eq!(
+            labels.way(&plan.cases.last().unwrap().settings),
+            RBM_BASELINE
+        );
+    }
+}

@@ -1,0 +1,391 @@
+//! The file of a plan: its keys, its faults, and what the command line changes in it.
+
+use super::cases::{Plan, Truth};
+use super::overrides::Overrides;
+use super::time_budget::TimeBudget;
+use super::values::{formats, parsed, sizes, sources, stages, tolerances};
+use super::views::Views;
+use crate::method::{Edges, Method};
+use crate::report::exhibit::{self, Exhibit};
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::maps::{MapFormat, MapSource};
+use revmap::settings::{DrawStage, Tolerance};
+use std::path::Path;
+
+/// A plan as its file has it. `docs/benchmarks.md` explains the keys.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanFile {
+    /// One sentence: what the plan measures.
+    pub about: String,
+    /// Title of the report.
+    pub title: String,
+    /// How long, and how often.
+    #[serde(default)]
+    pub time: TimeBudget,
+    /// The views.
+    pub views: Vec<Views>,
+    /// How it is drawn: every combination of the lists of each entry.
+    pub measure: Vec<Measure>,
+    /// Entries in place of `measure` where the command line lists bounds on steps or maps.
+    pub combinations: Option<Vec<Measure>>,
+    /// Flights through armies.
+    #[serde(default)]
+    pub flights: Vec<Flight>,
+    /// Names of the tables and charts of the report, in their order.
+    pub show: Vec<String>,
+    /// Tables and charts of the plan's own.
+    #[serde(default)]
+    pub exhibit: Vec<Exhibit>,
+    /// True if all views of one size are drawn in turn, not each view by itself.
+    #[serde(default)]
+    pub mixed: bool,
+    /// Rays per pixel of the picture that others are compared with; 1: the reference.
+    #[serde(default = "one_ray")]
+    pub truth_rays: u32,
+    /// True if errors are measured in pixels too.
+    #[serde(default)]
+    pub pixel_errors: bool,
+    /// True if times are those of the wall clock, also where the device has a clock.
+    #[serde(default)]
+    pub wall_clock: bool,
+    /// True if heat maps are drawn.
+    #[serde(default)]
+    pub heat_maps: bool,
+    /// The values for a quick look, in place of the keys above.
+    pub quick: Option<Quick>,
+}
+
+fn one_ray() -> u32 {
+    1
+}
+
+/// The values of a quick look, in place of the plan's own.
+#[derive(Clone, Debug, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Quick {
+    /// See [`PlanFile::time`].
+    pub time: Option<TimeBudget>,
+    /// See [`PlanFile::views`].
+    pub views: Option<Vec<Views>>,
+    /// See [`PlanFile::measure`].
+    pub measure: Option<Vec<Measure>>,
+    /// See [`PlanFile::flights`].
+    pub flights: Option<Vec<Flight>>,
+}
+
+/// Ways of drawing: every combination of the lists. A list that is left out holds what drawing
+/// takes.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Measure {
+    /// Its name, by which charts and tables choose its rows.
+    pub name: String,
+    /// Names of the views that it draws; empty: all.
+    pub views: Vec<String>,
+    /// The stages in which rays are traced.
+    #[serde(deserialize_with = "stages")]
+    pub stages: Vec<DrawStage>,
+    /// How the surface is found.
+    #[serde(deserialize_with = "parsed")]
+    pub methods: Vec<Pick>,
+    /// Widths and heights, pixels.
+    #[serde(deserialize_with = "sizes")]
+    pub sizes: Vec<(u32, u32)>,
+    /// Bounds on steps.
+    pub max_steps: Vec<u32>,
+    /// Rows of shape maps.
+    pub map_rows: Vec<u32>,
+    /// Sources of distances.
+    #[serde(deserialize_with = "sources")]
+    pub map_sources: Vec<MapSource>,
+    /// Formats of the maps.
+    #[serde(deserialize_with = "formats")]
+    pub map_formats: Vec<MapFormat>,
+    /// Allowed errors in pixels, of methods that follow one.
+    #[serde(deserialize_with = "tolerances")]
+    pub tolerances: Vec<Tolerance>,
+    /// How edges are treated.
+    #[serde(deserialize_with = "parsed")]
+    pub edges: Vec<Edges>,
+    /// True if methods that read neither a map nor a table are left out.
+    pub readers_only: bool,
+}
+
+impl Default for Measure {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            views: Vec::new(),
+            stages: vec![DrawStage::Fragment, DrawStage::Compute],
+            methods: vec![Pick::Method(Method::DEFAULT)],
+            sizes: vec![(800, 600)],
+            max_steps: Vec::new(),
+            map_rows: Vec::new(),
+            map_sources: Vec::new(),
+            map_formats: vec![MapFormat::R32],
+            tolerances: vec![Tolerance::EXACT],
+            edges: vec![Edges::OneRay],
+            readers_only: false,
+        }
+    }
+}
+
+/// An entry of a list of methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pick {
+    /// One method.
+    Method(Method),
+    /// The RBM baseline.
+    Baseline,
+    /// All searches of a kind.
+    Kind(Kind),
+}
+
+/// Kinds of searches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Every search.
+    All,
+    /// Those with a bound on their steps, without a table of their own.
+    Bounded,
+    /// Those without a bound and without a table.
+    Unbounded,
+    /// Those with a table of their own, whose rows are their bound.
+    Tables,
+    /// `circle` and `live`, the most exact of those that read maps; where others are named, those
+    /// of them that read maps.
+    Maps,
+}
+
+impl Kind {
+    const NAMES: [(&'static str, Self); 5] = [
+        ("all", Self::All),
+        ("bounded", Self::Bounded),
+        ("unbounded", Self::Unbounded),
+        ("tables", Self::Tables),
+        ("maps", Self::Maps),
+    ];
+
+    /// The methods of this kind among these.
+    fn of(self, all: &[Method]) -> Vec<Method> {
+        let usual = ["circle", "live"];
+        let named = all.iter().any(|m| usual.contains(&m.name()));
+        let own = |m: &Method| {
+            let bounded = m.default_steps(false) > 1;
+            match self {
+                Self::All => true,
+                Self::Bounded => bounded && !m.reads_own_table(),
+                Self::Unbounded => !bounded && !m.reads_own_table(),
+                Self::Tables => m.reads_own_table(),
+                Self::Maps => m.reads_map() && (!named || usual.contains(&m.name())),
+            }
+        };
+        all.iter().copied().filter(own).collect()
+    }
+}
+
+impl std::str::FromStr for Pick {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let kind = Kind::NAMES.iter().find(|(name, _)| *name == text);
+        match (text, kind) {
+            ("baseline", _) => Ok(Self::Baseline),
+            ("default", _) => Ok(Self::Method(Method::DEFAULT)),
+            (_, Some((_, kind))) => Ok(Self::Kind(*kind)),
+            _ => text.parse().map(Self::Method).map_err(|mut e: Error| {
+                e.message += "; or baseline, default, all, bounded, unbounded, tables or maps";
+                e
+            }),
+        }
+    }
+}
+
+impl Measure {
+    /// The methods; `named`: those to take in place of the list's own searches and meshes. `None`
+    /// stands for the RBM baseline.
+    #[must_use]
+    pub fn methods(&self, named: &[Method]) -> Vec<Option<Method>> {
+        let searches: Vec<Method> = if named.is_empty() {
+            Method::ALL.to_vec()
+        } else {
+            named.to_vec()
+        };
+        let (mut all, mut replaced) = (Vec::new(), false);
+        for pick in &self.methods {
+            match pick {
+                Pick::Baseline => all.push(None),
+                Pick::Kind(kind) => all.extend(kind.of(&searches).into_iter().map(Some)),
+                Pick::Method(Method::Floor) => all.push(Some(Method::Floor)),
+                Pick::Method(own) if named.is_empty() => all.push(Some(*own)),
+                // Meshes by themselves are not replaced by searches.
+                Pick::Method(own) if !own.is_mesh() => replaced = true,
+                Pick::Method(_) => {}
+            }
+        }
+        if replaced {
+            all.splice(0..0, named.iter().map(|m| Some(*m)));
+        }
+        all
+    }
+}
+
+/// A flight through an army: the default search with a tolerance, every frame timed.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Flight {
+    /// Copies.
+    pub copies: u32,
+    /// Frames.
+    pub frames: usize,
+    /// Each of so many pictures is compared with an exact one.
+    #[serde(default = "tenth")]
+    pub compared: usize,
+}
+
+fn tenth() -> usize {
+    10
+}
+
+impl PlanFile {
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`], naming the line and the key: an unknown key, a missing one, a value
+    /// that is not allowed, a name that is not there.
+    pub fn parse(text: &str) -> Result<Self> {
+        let plan: Self = toml::from_str(text).map_err(|e| fault(text, &e))?;
+        plan.check()?;
+        Ok(plan)
+    }
+
+    /// Reads the plan in a file.
+    ///
+    /// # Errors
+    /// See [`PlanFile::parse`]; also when the file cannot be read.
+    pub fn load(file: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(file).map_err(|e| {
+            let message =
+                format!("cannot be read ({e}); give a plan, `revmap bench --list` shows some");
+            Error::new(ErrorKind::File, message).in_file(file)
+        })?;
+        Self::parse(&text).map_err(|e| e.in_file(file))
+    }
+
+    /// Names that lead nowhere, and lists that leave nothing to measure.
+    fn check(&self) -> Result<()> {
+        let quick = self.quick.clone().unwrap_or_default();
+        let entries = |own: &[Measure], others: &[Option<Vec<Measure>>]| -> Vec<Measure> {
+            own.iter()
+                .chain(others.iter().flatten().flatten())
+                .cloned()
+                .collect()
+        };
+        let all = entries(&self.measure, &[quick.measure, self.combinations.clone()]);
+        let views: Vec<&str> = self.views.iter().map(|v| v.name.as_str()).collect();
+        let sweeps: Vec<&str> = all.iter().map(|m| m.name.as_str()).collect();
+        for measure in &all {
+            for name in &measure.views {
+                known("views", name, &views, "the names of [[views]]")?;
+            }
+        }
+        let exhibits = exhibit::all(&self.exhibit)?;
+        let names: Vec<&str> = exhibits.iter().map(|e| e.name.as_str()).collect();
+        for name in &self.show {
+            known("show", name, &names, "tables and charts")?;
+        }
+        for exhibit in &self.exhibit {
+            exhibit.check(&sweeps)?;
+        }
+        let empty = |key: &str| {
+            let message = "is empty; give at least one entry";
+            Err(Error::new(ErrorKind::Content, message).at_key(key))
+        };
+        match (self.views.is_empty(), self.measure.is_empty()) {
+            (true, _) => empty("views"),
+            (_, true) => empty("measure"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Applies what the command line names.
+    pub fn apply(&mut self, given: &Overrides) {
+        let quick = self.quick.take().unwrap_or_default();
+        if given.lists.combines() {
+            self.measure = self
+                .combinations
+                .take()
+                .unwrap_or_else(|| self.measure.clone());
+        } else if given.quick {
+            self.measure = quick.measure.unwrap_or_else(|| self.measure.clone());
+        }
+        if given.quick {
+            self.time = quick.time.unwrap_or(self.time);
+            self.views = quick.views.unwrap_or_else(|| self.views.clone());
+            self.flights = quick.flights.unwrap_or_else(|| self.flights.clone());
+        }
+        for views in &mut self.views {
+            views.apply(given);
+        }
+        for measure in &mut self.measure {
+            given.lists.replace(measure);
+        }
+        let exactly = |given: Option<usize>, own| given.map_or(own, |n| (n, n));
+        self.time.passes = exactly(given.passes, self.time.passes);
+        self.time.rounds = exactly(given.rounds, self.time.rounds);
+    }
+
+    /// The measurements.
+    ///
+    /// # Errors
+    /// A solid that the program carries cannot be read, or a map cannot be baked.
+    pub fn plan(&self, given: &Overrides) -> Result<Plan> {
+        let mut views = Vec::new();
+        for group in &self.views {
+            views.extend(group.views(&given.scenes)?);
+        }
+        let mut plan = Plan::new(views);
+        plan.mixed = self.mixed;
+        plan.pixel_errors = self.pixel_errors;
+        plan.truth = match self.truth_rays {
+            0 | 1 => Truth::Reference,
+            count => Truth::Rays(count),
+        };
+        for view in 0..plan.views.len() {
+            for measure in &self.measure {
+                plan.add_entry(view, measure, &given.methods);
+            }
+        }
+        Ok(plan)
+    }
+}
+
+fn known(key: &str, name: &str, all: &[&str], what: &str) -> Result<()> {
+    if all.contains(&name) {
+        return Ok(());
+    }
+    let message = format!(
+        "{name:?} is not among {what}; give one of {}",
+        all.join(", ")
+    );
+    Err(Error::new(ErrorKind::Content, message).at_key(key))
+}
+
+/// A fault of TOML or of a value, on one line: where, and what is allowed.
+fn fault(text: &str, error: &toml::de::Error) -> Error {
+    let start = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..start).unwrap_or("");
+    let number = before.matches('\n').count() + 1;
+    let line = text.lines().nth(number - 1).unwrap_or("");
+    let key = line.split('=').next().unwrap_or(line).trim();
+    let place = if key.is_empty() {
+        format!("line {number}")
+    } else {
+        format!("line {number}, {key}")
+    };
+    Error::new(ErrorKind::Content, error.message()).at_key(place)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,234 @@
+//! The views of a plan: solids, arrangements and forms of them.
+
+use super::arrange::{army, avenue, distant, field};
+use super::overrides::Overrides;
+use super::suite::{self, Extent};
+use super::values::framings;
+use crate::report::view::{Framing, View};
+use revmap::error::Result;
+use revmap::maps::{BakeOptions, ColorMap, MapSource, ShapeMap};
+use revmap::scene::{Clip, Offset};
+use std::sync::Arc;
+
+/// An entry of a plan's views.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Views {
+    /// Its name, by which entries of `measure` choose it.
+    pub name: String,
+    /// Which of the program's own solids.
+    pub solids: Extent,
+    /// Degrees above the horizon from which a solid is looked at.
+    pub elevations: Vec<f64>,
+    /// How much of the picture is solid.
+    #[serde(deserialize_with = "framings")]
+    pub framings: Vec<Framing>,
+    /// How copies are placed.
+    pub arrange: Arrangement,
+    /// Numbers of copies, of arrangements that have any number.
+    pub copies: Vec<u32>,
+    /// Forms of the surface; none: as the solid is.
+    pub forms: Vec<Form>,
+    /// The view's name in results, in place of the solid's.
+    pub call: Option<String>,
+}
+
+impl Default for Views {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            solids: Extent::One,
+            elevations: vec![25.0],
+            framings: vec![Framing::Whole],
+            arrange: Arrangement::Alone,
+            copies: Vec::new(),
+            forms: Vec::new(),
+            call: None,
+        }
+    }
+}
+
+/// How copies of a solid are placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Arrangement {
+    /// One solid.
+    Alone,
+    /// Copies on a square field, seen whole.
+    Field,
+    /// Two lines that go into the distance.
+    Avenue,
+    /// Copies of three solids, 2 to 20 pixels high.
+    Distant,
+    /// Copies of ten solids, seen from within.
+    Army,
+}
+
+/// A form of the surface.
+#[derive(Clone, Debug, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Form {
+    /// The ending of its views' names.
+    pub name: String,
+    /// The same key as in scene files.
+    pub extend: f64,
+    /// The same key as in scene files.
+    pub bevel: f64,
+    /// The same key as in scene files.
+    pub chamfer: f64,
+    /// True if `extend` and `bevel` are fractions of the largest distance that the published
+    /// method's map of the solid holds.
+    pub relative: bool,
+    /// True if the box cuts the solid.
+    pub cut: bool,
+    /// True if a chequered colour map covers it.
+    pub textured: bool,
+    /// The parameter that charts put it at.
+    pub value: Option<f64>,
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            extend: 0.0,
+            bevel: 0.0,
+            chamfer: 1.0,
+            relative: false,
+            cut: false,
+            textured: false,
+            value: None,
+        }
+    }
+}
+
+impl Views {
+    /// Applies what the command line names.
+    pub(super) fn apply(&mut self, given: &Overrides) {
+        if let Some(solids) = &given.solids {
+            self.solids = solids.clone();
+        }
+        if !given.elevations.is_empty() || !given.scenes.is_empty() {
+            // A scene without a named elevation keeps its camera.
+            self.elevations.clone_from(&given.elevations);
+        }
+        if !given.framings.is_empty() {
+            self.framings.clone_from(&given.framings);
+        }
+    }
+
+    /// The views; `scenes` take the place of the program's own solids.
+    pub(super) fn views(&self, scenes: &[View]) -> Result<Vec<View>> {
+        let mut all = Vec::new();
+        for view in self.arranged(scenes)? {
+            // Framings in their own order, whatever that of the list.
+            for framing in Framing::ALL.iter().filter(|f| self.framings.contains(f)) {
+                all.extend(self.formed(&view.clone().in_framing(*framing))?);
+            }
+        }
+        for view in &mut all {
+            view.group.clone_from(&self.name);
+            if let Some(name) = &self.call {
+                view.name.clone_from(name);
+            }
+        }
+        Ok(all)
+    }
+
+    fn arranged(&self, scenes: &[View]) -> Result<Vec<View>> {
+        let each =
+            |make: &dyn Fn(u32) -> Result<View>| self.copies.iter().map(|&n| make(n)).collect();
+        match self.arrange {
+            Arrangement::Army => return each(&army),
+            Arrangement::Distant => return Ok(vec![distant()?]),
+            _ => {}
+        }
+        let solids = self.solids(scenes)?;
+        let mut all = Vec::new();
+        for one in &solids {
+            match self.arrange {
+                Arrangement::Field => all.extend(each(&|n| Ok(field(one, n)))?),
+                Arrangement::Avenue => all.push(avenue(one)),
+                _ => all.push(one.clone()),
+            }
+        }
+        Ok(all)
+    }
+
+    fn solids(&self, scenes: &[View]) -> Result<Vec<View>> {
+        if scenes.is_empty() {
+            return suite::views(&self.solids, &self.elevations);
+        }
+        if self.elevations.is_empty() {
+            return Ok(scenes.to_vec());
+        }
+        let seen = |view: &View| {
+            let from = |&degrees: &f64| view.clone().at_elevation(degrees);
+            self.elevations.iter().map(from).collect::<Vec<_>>()
+        };
+        Ok(scenes.iter().flat_map(seen).collect())
+    }
+
+    fn formed(&self, view: &View) -> Result<Vec<View>> {
+        if self.forms.is_empty() {
+            return Ok(vec![view.clone()]);
+        }
+        let largest = match self.forms.iter().any(|f| f.relative) {
+            true => largest_distance(view)?,
+            false => 1.0,
+        };
+        self.forms
+            .iter()
+            .map(|form| form.of(view, largest))
+            .collect()
+    }
+}
+
+impl Form {
+    /// A view in this form.
+    fn of(&self, view: &View, largest: f64) -> Result<View> {
+        let unit = if self.relative { largest } else { 1.0 };
+        let map = match self.textured {
+            true => Some(Arc::new(chequered()?)),
+            false => None,
+        };
+        let mut view = view.clone();
+        for object in &mut view.scene.objects {
+            object.offset = Offset {
+                extend: unit * self.extend,
+                bevel: unit * self.bevel,
+                chamfer: self.chamfer,
+            };
+            if self.cut {
+                object.clip = Clip::Box;
+            }
+            if map.is_some() {
+                object.texturing.color_map.clone_from(&map);
+            }
+        }
+        if !self.name.is_empty() {
+            view.name = format!("{}-{}", view.name, self.name);
+        }
+        view.value = self.value;
+        Ok(view)
+    }
+}
+
+fn chequered() -> Result<ColorMap> {
+    let texels = (0..64 * 64u32).map(|k| match (k / 8 + k / 512) % 2 {
+        0 => [190, 150, 90, 255],
+        _ => [90, 40, 20, 255],
+    });
+    ColorMap::from_texels(64, 64, texels.collect())
+}
+
+/// The largest distance that the published method's map of a view's solid holds, object units.
+fn largest_distance(view: &View) -> Result<f64> {
+    let mut largest = 0.0f64;
+    for object in &view.scene.objects {
+        let options = BakeOptions::new(MapSource::Binary, object.map_rows);
+        let map = ShapeMap::bake(&object.profile, &options)?;
+        largest = largest.max(f64::from(map.largest_distance()));
+    }
+    Ok(largest)
+}

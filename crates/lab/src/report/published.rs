@@ -1,0 +1,210 @@
+//! The tables of frame rates that were published (article of 2022, tables 1 to 3), beside our own.
+
+use super::columns::Context;
+use super::names::number;
+use super::plan::variant;
+use super::ratios::between;
+use super::row::Row;
+use super::stats::Interval;
+use super::table::Table;
+use crate::method::MethodSettings;
+
+/// One of the published tables, measured by the authors on an Intel Core i7-3612QM with a GeForce
+/// GT 630M.
+pub struct Printed {
+    /// Its number in the article.
+    pub number: &'static str,
+    /// The letter of the parameter.
+    pub letter: char,
+    /// The parameter's values: `e` and `b` as fractions of the largest distance in the map.
+    pub values: [f64; 3],
+    /// Frames per second at each of [`SIZES`].
+    pub rates: [[f64; 3]; 2],
+    /// The article's claim: how speed changes as the parameter grows.
+    pub claim: &'static str,
+}
+
+/// Sizes of the published pictures.
+pub const SIZES: [&str; 2] = ["800x600", "1366x706"];
+
+/// The published tables.
+pub const TABLES: [Printed; 3] = [
+    Printed {
+        number: "1",
+        letter: 'e',
+        values: [0.25, 0.5, 0.8],
+        rates: [[180.0, 170.0, 160.0], [150.0, 145.0, 130.0]],
+        claim: FALLS,
+    },
+    Printed {
+        number: "2",
+        letter: 'b',
+        values: [0.25, 0.5, 0.8],
+        rates: [[200.0, 210.0, 230.0], [190.0, 195.0, 200.0]],
+        claim: RISES,
+    },
+    Printed {
+        number: "3",
+        letter: 'c',
+        values: [0.25, 0.5, 0.7],
+        rates: [[195.0, 209.0, 216.0], [174.0, 176.0, 182.0]],
+        claim: RISES,
+    },
+];
+
+const FALLS: &str = "falls";
+const RISES: &str = "rises";
+
+/// The published table of this number.
+#[must_use]
+pub fn table(number: &str) -> Option<&'static Printed> {
+    TABLES.iter().find(|t| t.number == number)
+}
+
+impl Printed {
+    /// The published line at a size: the parameter and the rate, over the first if `over_first`.
+    #[must_use]
+    pub fn line(&self, size: &str, over_first: bool) -> Vec<(f64, f64)> {
+        let Some(place) = SIZES.iter().position(|s| *s == size) else {
+            return Vec::new();
+        };
+        let rates = self.rates[place];
+        let unit = if over_first { rates[0] } else { 1.0 };
+        self.values
+            .into_iter()
+            .zip(rates.map(|r| r / unit))
+            .collect()
+    }
+}
+
+/// How the speed goes from a table's first value to its last, with the ratio of the rates.
+fn trend(first: &Row, last: &Row) -> Option<(&'static str, Interval)> {
+    // Rates are one over times.
+    let ratio = between(first, last)?;
+    let word = match (ratio.low > 1.0, ratio.high < 1.0) {
+        (true, _) => RISES,
+        (_, true) => FALLS,
+        _ => "no clear change",
+    };
+    Some((word, ratio))
+}
+
+/// A size, a way of drawing, and its rows at the three values.
+type Line<'a> = ((u32, u32), MethodSettings, [Option<&'a Row>; 3]);
+
+/// A published table, the published figures above ours at each size.
+pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Table {
+    let Some(printed) = table(number_of) else {
+        return Table::default();
+    };
+    let mut header = ["size", "method", "stage"].map(str::to_owned).to_vec();
+    header.extend(
+        printed
+            .values
+            .map(|v| format!("{} = {}", printed.letter, number(v, 3))),
+    );
+    header.extend(["last rate / first", "trend"].map(str::to_owned));
+    let mut out = Table::new(header, Vec::new());
+    let mut lines: Vec<Line> = Vec::new();
+    for &row in rows {
+        let Some(place) = printed.values.iter().position(|v| Some(*v) == row.value) else {
+            continue;
+        };
+        let (size, way) = (
+            (row.settings.width, row.settings.height),
+            variant(&row.settings),
+        );
+        match lines.iter_mut().find(|l| (l.0, l.1) == (size, way)) {
+            Some(line) => line.2[place] = Some(row),
+            None => {
+                let mut line = (size, way, [None; 3]);
+                line.2[place] = Some(row);
+                lines.push(line);
+            }
+        }
+    }
+    lines.sort_by_key(|l| l.0);
+    for group in lines.chunk_by(|a, b| a.0 == b.0) {
+        let size = format!("{}x{}", group[0].0.0, group[0].0.1);
+        // At sizes of the reader's own nothing was published, and the rest stands by itself.
+        let rates = printed.line(&size, false);
+        if let [(_, first), .., (_, last)] = rates.as_slice() {
+            let mut record = vec![size.clone(), "published, GT 630M".into(), "fragment".into()];
+            record.extend(rates.iter().map(|r| number(r.1, 4)));
+            record.extend([number(last / first, 3), printed.claim.to_owned()]);
+            out.records.push(record);
+        }
+        for (_, way, cells) in group {
+            let mut record = vec![
+                size.clone(),
+                context.styles.way(way),
+                way.stage.name().to_owned(),
+            ];
+            let rate = |row: &Option<&Row>| row.and_then(Row::time).map(|t| 1e3 / t.value);
+            let none = || "–".to_owned();
+            record.extend(
+                cells
+                    .iter()
+                    .map(|row| rate(row).map_or_else(none, |r| number(r, 3))),
+            );
+            let found = cells[0]
+                .zip(cells[2])
+                .and_then(|(first, last)| trend(first, last));
+            let ratio = found.map(|(_, ratio)| super::columns::Cell::Known(ratio).shown());
+            record.extend([
+                ratio.unwrap_or_else(none),
+                found.map_or_else(none, |f| f.0.to_owned()),
+            ]);
+            out.records.push(record);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::columns::tests::with_context;
+    use super::super::row::tests::row;
+    use super::*;
+
+    #[test]
+    fn trends_are_told_only_when_they_are_sure() {
+        let timed = |times: [f64; 4]| {
+            let passes = times.map(|t| [(None, t)]);
+            row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>())
+        };
+        let slow = timed([20.0, 20.4, 19.8, 20.1]);
+        let fast = timed([10.0, 10.1, 9.9, 10.2]);
+        let noisy = timed([14.0, 30.0, 20.0, 24.0]);
+        assert_eq!(trend(&slow, &fast).unwrap().0, RISES);
+        assert_eq!(trend(&fast, &slow).unwrap().0, FALLS);
+        assert_eq!(trend(&slow, &noisy).unwrap().0, "no clear change");
+    }
+
+    #[test]
+    fn a_line_holds_its_three_values() {
+        let timed = |value, ms| {
+            let mut r = row(&[&[(None, ms)], &[(None, ms)]]);
+            r.value = Some(value);
+            r
+        };
+        let mut rows: Vec<Row> = [(0.25, 10.0), (0.5, 8.0), (0.8, 5.0), (0.3, 1.0)]
+            .map(|(value, ms)| timed(value, ms))
+            .to_vec();
+        for value in [0.25, 0.5, 0.8] {
+            let mut r = timed(value, 4.0);
+            (r.settings.width, r.settings.height) = (1000, 600);
+            rows.push(r);
+        }
+        let records = with_context(&rows, |context| {
+            published(context, &rows.iter().collect::<Vec<_>>(), "2").records
+        });
+        // Published figures stand above what was measured at their size, and nowhere else.
+        assert_eq!(records.len(), 3);
+        assert_eq!(records[2][..3], ["1000x600", "circle", "fragment"]);
+        assert_eq!(records[2][3..6], ["250", "250", "250"]);
+        assert_eq!(records[0][3..], ["200", "210", "230", "1.15", "rises"]);
+        assert_eq!(records[1][3..7], ["100", "125", "200", "2 (2 to 2)"]);
+    }
+}
