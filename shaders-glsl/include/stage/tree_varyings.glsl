@@ -14,14 +14,14 @@ layout(location = 14) flat VARYING vec4 tree_offset;
 #if READS_TABLES
 layout(location = 15) flat VARYING uvec4 tree_patches;
 #endif
-#if SEARCH == SEARCH_QUADRIC
+#if READS_TABLES && !TAKES_STEPS
 layout(location = 13) flat VARYING vec2 tree_span; // no ray meets anything before and behind these t
 #endif
 
 #ifdef VERTEX_GLSL
 void hand_over_tree(vec2 span)
 {
-#if SEARCH == SEARCH_QUADRIC
+#if READS_TABLES && !TAKES_STEPS
     tree_span = span;
 #endif
     tree_bounds = solid.bounds;
@@ -39,7 +39,7 @@ void hand_over_tree(vec2 span)
 #else
 vec2 span_of_rays()
 {
-#if SEARCH == SEARCH_QUADRIC
+#if READS_TABLES && !TAKES_STEPS
     return tree_span;
 #else
     return EVERYWHERE;
