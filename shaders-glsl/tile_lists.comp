@@ -23,8 +23,14 @@ void main()
     uint place = tile_words[4u * record];
     uvec2 corner = uvec2(place & 0xffffu, place >> 16);
     uint number = tile_words[4u * record + 1u];
-    Instance instance = instances[number];
-    take_solid(instance.solid.x);
+    Instance instance;
+    if (ONE_INSTANCE != 0u) {
+        instance = instances[pushed.instance];
+        take_solid(pushed.solid);
+    } else {
+        instance = instances[number];
+        take_solid(instance.solid.x);
+    }
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
     uvec2 header = patch_tables[solid.hull.z].xy;
@@ -39,7 +45,7 @@ void main()
     atomicMin(low_y, corner.y);
     atomicMax(high_x, corner.x);
     atomicMax(high_y, corner.y);
-    if (number != tile_words[4u * group_first + 1u]) {
+    if (ONE_INSTANCE == 0u && number != tile_words[4u * group_first + 1u]) {
         atomicOr(copies, 1u);
     }
     barrier();

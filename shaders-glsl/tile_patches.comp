@@ -6,13 +6,19 @@
 void main()
 {
     begin_frame();
+    if (ONE_SOLID != 0u) {
+        take_solid(pushed.solid); // before barriers: see take_frame()
+    }
     share_record();
     barrier();
     take_shared_record();
-    share_instance();
     share_patches();
     barrier();
-    begin_tile(shared_copy());
+    take_shared_instance();
+    if (ONE_SOLID == 0u) {
+        take_solid(tile_instance.solid.x);
+    }
+    begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;
     bool found = search_listed(pixel, nearest);

@@ -7,12 +7,9 @@
 void main()
 {
     begin_frame();
-    share_record();
-    barrier();
-    take_shared_record();
-    share_instance();
-    barrier();
-    begin_tile(shared_copy());
+    take_record();
+    take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
+    begin_tile();
     // Tiles of the last list bring the span; those in their own order do not.
     vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;

@@ -171,6 +171,7 @@ impl Renderer {
             for object in fallback.iter() {
                 let variant = Variant {
                     one_solid: variant.one_solid,
+                    one_instance: variant.one_instance,
                     ..object.variant
                 };
                 // The fallback has one form only, the general one.

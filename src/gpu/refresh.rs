@@ -234,8 +234,7 @@ impl Renderer {
 
     /// The shape map of a changed object; `None` if nothing reads it.
     fn map_of(&mut self, one: &Resolved) -> Result<Option<Arc<ShapeTexture>>> {
-        let soft = self.lighting.shadow == Shadow::Soft;
-        if !self.solver_of(one.surface.as_ref()).reads_map() && !soft {
+        if !self.solver_of(one.surface.as_ref()).reads_map() {
             return Ok(None);
         }
         let Some(entry) = self.objects.at(one.number) else {

@@ -107,6 +107,8 @@ pub(crate) struct Pushed {
     pub list: u32,
     /// Number of the only solid.
     pub solid: u32,
+    /// Number of the only instance.
+    pub instance: u32,
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
@@ -157,6 +159,7 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
             one_solid: u32::from(alone),
+            one_instance: u32::from(alone && of.copies().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant
         }
@@ -372,11 +375,13 @@ impl FramePlan {
                 object: layer.objects[0],
                 call,
             };
-            let solid = objects[layer.objects[0] as usize].number;
+            let first = &objects[layer.objects[0] as usize];
+            let (solid, instance) = (first.number, first.first_instance);
             let direct = |records: &Range<u32>| Pushed {
                 first: records.start,
                 count: records.end - records.start,
                 solid,
+                instance,
                 ..Pushed::default()
             };
             for records in chunks(&tiles.listed) {
@@ -389,6 +394,7 @@ impl FramePlan {
                     tiles,
                     list,
                     solid,
+                    instance,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));

@@ -140,7 +140,15 @@ fn light(light: &Light) -> Result<()> {
             "has no length; say which way the light travels",
         ));
     }
-    color("color", &light.color)
+    color("color", &light.color)?;
+    let most = Light::LARGEST_RADIUS;
+    if !(light.radius >= 0.0 && light.radius <= most) {
+        return Err(fail(
+            "radius",
+            format!("is {:?}; give degrees from 0 to {most}", light.radius),
+        ));
+    }
+    Ok(())
 }
 
 fn object(object: &Object) -> Result<()> {
@@ -339,6 +347,9 @@ mod tests {
         refused("ambient", |s| s.ambient[0] = f32::INFINITY);
         refused("light.0.direction", |s| s.lights[0].direction = DVec3::ZERO);
         refused("light.0.color", |s| s.lights[0].color[1] = f32::NAN);
+        for radius in [-1.0, 61.0, f64::NAN, f64::INFINITY] {
+            refused("light.0.radius", |s| s.lights[0].radius = radius);
+        }
         refused("object.1.color", |s| s.objects[1].color[2] = -1.0);
         refused("object.0.specular", |s| {
             s.objects[0].specular.strength = -1.0

@@ -13,6 +13,7 @@
 //! | `camera.fov_y` | vertical field of view, degrees | `40` |
 //! | `light.N.direction` | the way the light travels | `[-0.4, -0.6, -0.7]` |
 //! | `light.N.color` | linear RGB | `[1, 1, 1]` |
+//! | `light.N.radius` | angular radius of the light's disc for soft shadows, degrees, 0 to 60 | `2` |
 //! | `object.N.profile` | an image or an SVG drawing, dark = solid | |
 //! | `object.N.polygon` | in its place: `[[r, z], ...]`, object units, closed by itself | |
 //! | `object.N.profile_axis` | `"left"`: half a profile; `"center"`: a silhouette | `"center"` |
@@ -42,7 +43,8 @@
 //! | `object.N.scale` | `S` | `[1, 1, 1]` |
 //! | `object.N.instances` | a CSV file of rows `x,y,z,qx,qy,qz,qw,sx,sy,sz`, one for each copy | |
 //!
-//! A scene without a `[[light]]` has the default light above; `light = []` switches it off.
+//! A scene without a `[[light]]` has the default light above and a weak one from the other side,
+//! `direction = [0.9, 0.45, -0.2]`, `color = [0.25, 0.28, 0.33]`. `light = []` switches both off.
 
 use super::instances;
 use super::keys::Keys;

@@ -45,7 +45,7 @@ fn what_is_not_said_has_the_documented_default() {
     assert_eq!(scene.background, [0.0; 4]);
     assert_eq!(scene.camera.up, DVec3::Z);
     assert_eq!(scene.camera.fov_y, 40.0);
-    assert_eq!(scene.lights, vec![Light::default()]);
+    assert_eq!(scene.lights, Light::pair());
     assert_eq!(scene.shadow, Shadow::Off);
     let object = &scene.objects[0];
     assert_eq!(object.name, "polygon");
@@ -86,6 +86,7 @@ up = [0, 1, 0]
 fov_y = 25.5
 [[light]]
 direction = [1, 2, -3]
+radius = 3.5
 color = [2, 1, 0.5]
 [[light]]
 [[object]]
@@ -126,7 +127,8 @@ instances = "copies.csv"
         scene.lights[0],
         Light {
             direction: DVec3::new(1.0, 2.0, -3.0),
-            color: [2.0, 1.0, 0.5]
+            color: [2.0, 1.0, 0.5],
+            radius: 3.5,
         }
     );
     assert_eq!(scene.lights[1], Light::default());

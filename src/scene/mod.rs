@@ -68,7 +68,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// An empty scene: transparent black background, a little ambient light, one white light, no
+    /// An empty scene: transparent black background, a little ambient light, [`Light::pair`], no
     /// shadows.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
@@ -76,7 +76,7 @@ impl Scene {
             background: [0.0; 4],
             ambient: Self::AMBIENT,
             camera,
-            lights: vec![Light::default()],
+            lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
             objects: Vec::new(),
         }
@@ -131,13 +131,41 @@ impl Camera {
     }
 }
 
-/// A directional light.
+/// A light from afar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The direction in which the light travels; any length but zero.
+    /// The direction in which the light of its centre travels; any length but zero.
     pub direction: DVec3,
     /// Linear RGB.
     pub color: [f32; 3],
+    /// Angular radius of its disc, degrees, 0 to 60. Only soft shadows use it.
+    pub radius: f64,
+}
+
+impl Light {
+    /// Angular radius if none is given, degrees.
+    pub const RADIUS: f64 = 2.0;
+    /// Largest angular radius, degrees.
+    pub const LARGEST_RADIUS: f64 = 60.0;
+
+    /// The default light, and a weak one from behind and from the other side. Together they leave
+    /// no side of a solid flat.
+    #[must_use]
+    pub fn pair() -> [Self; 2] {
+        let fill = Self {
+            direction: DVec3::new(0.9, 0.45, -0.2),
+            color: [0.25, 0.28, 0.33],
+            ..Self::default()
+        };
+        [Self::default(), fill]
+    }
+
+    /// `1 - cos` of the angular radius: the height of the cap of directions from which light comes.
+    #[must_use]
+    pub fn cap(&self) -> f64 {
+        // Without cancellation for small discs.
+        2.0 * (0.5 * self.radius.to_radians()).sin().powi(2)
+    }
 }
 
 impl Default for Light {
@@ -146,6 +174,7 @@ impl Default for Light {
         Self {
             direction: DVec3::new(-0.4, -0.6, -0.7),
             color: [1.0; 3],
+            radius: Self::RADIUS,
         }
     }
 }
@@ -162,11 +191,11 @@ pub struct Lighting {
 }
 
 impl Default for Lighting {
-    /// A little ambient light, one white light, no shadows.
+    /// A little ambient light, [`Light::pair`], no shadows.
     fn default() -> Self {
         Self {
             ambient: Scene::AMBIENT,
-            lights: vec![Light::default()],
+            lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
         }
     }
@@ -180,8 +209,8 @@ pub enum Shadow {
     Off,
     /// Hard shadows: each point is lit or not.
     Hard,
-    /// Soft shadows: the penumbra is estimated from how close the ray towards the light passes
-    /// other surfaces.
+    /// Soft shadows: each point is lit by the part of the light's disc that it sees. Rays to points
+    /// of the disc estimate that part.
     Soft,
 }
 

@@ -10,7 +10,7 @@ use toml::Table;
 /// Keys of `[camera]`.
 pub(super) const CAMERA: &[&str] = &["eye", "target", "up", "fov_y"];
 /// Keys of `[[light]]`.
-pub(super) const LIGHT: &[&str] = &["direction", "color"];
+pub(super) const LIGHT: &[&str] = &["direction", "color", "radius"];
 
 pub(super) fn camera(table: &Table) -> Result<Camera> {
     let keys = Keys::new(table, "camera", CAMERA)?;
@@ -36,6 +36,7 @@ pub(super) fn light(table: &Table, index: usize) -> Result<Light> {
             .numbers("direction")?
             .map_or(plain.direction, DVec3::from_array),
         color: keys.floats("color")?.unwrap_or(plain.color),
+        radius: keys.number("radius")?.unwrap_or(plain.radius),
     })
 }
 

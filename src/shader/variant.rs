@@ -93,6 +93,8 @@ pub struct Variant {
     pub own_tables: u32,
     /// 1 if there is one solid, and a uniform buffer holds it.
     pub one_solid: u32,
+    /// 1 if there is one instance of it. Compute stage.
+    pub one_instance: u32,
     /// Search for live parameters: 1 if there may be a bevel.
     pub beveled: u32,
 }
@@ -116,6 +118,7 @@ impl Variant {
         outside: 0,
         own_tables: 0,
         one_solid: 0,
+        one_instance: 0,
         beveled: 0,
     };
 
@@ -187,6 +190,7 @@ impl Variant {
             outside: 0,
             own_tables: 0,
             one_solid: 0,
+            one_instance: 0,
             // A replacement for another search has only the general form.
             beveled: u32::from(
                 solver == Solver::Live
@@ -235,11 +239,13 @@ impl Variant {
         let walks = kind.walks();
         let on_patches = matches!(kind, Kind::Cells | Kind::TilePatches);
         let of = |reads: bool, value: u32| if reads { value } else { 0 };
-        let compute = matches!(kind, Kind::TilePatches | Kind::TileTree | Kind::TileCopies);
+        let of_copy = matches!(kind, Kind::TilePatches | Kind::TileTree);
+        let compute = of_copy || kind == Kind::TileCopies;
         let lists = Self {
             outside: self.outside,
             own_tables: self.own_tables,
             one_solid: self.one_solid,
+            one_instance: self.one_instance & self.one_solid,
             ..Self::LISTS
         };
         if kind == Kind::TileLists {
@@ -247,11 +253,13 @@ impl Variant {
         }
         let tables = (walks && self.reads_tables()) || kind == Kind::TilePatches;
         let tested = self.search == Search::Quadric && self.cells == 0;
+        let one_solid = of(self.shadow == g::SHADOW_OFF, self.one_solid);
         Self {
             outside: of(on_patches || (walks && tested), self.outside),
             own_tables: of(tables, self.own_tables),
             // Lavapipe 22 crashes in shadows if it treats the solid as constants.
-            one_solid: of(self.shadow == g::SHADOW_OFF, self.one_solid),
+            one_solid,
+            one_instance: of(of_copy, self.one_instance & one_solid),
             list_length: match kind {
                 Kind::TilePatches => self.list_length,
                 Kind::TileTree => self.list_length.min(1),
@@ -324,7 +332,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 15] {
+    pub fn constants(&self) -> [(u32, u32); 16] {
         let (form, known_steps) = self.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, self.cells),
@@ -341,6 +349,7 @@ impl Variant {
             (g::OUTSIDE_ID, self.outside),
             (g::OWN_TABLES_ID, self.own_tables),
             (g::ONE_SOLID_ID, self.one_solid),
+            (g::ONE_INSTANCE_ID, self.one_instance),
             (g::MAY_BEVEL_ID, self.beveled),
         ]
     }

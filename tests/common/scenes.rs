@@ -22,6 +22,7 @@ pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     scene.lights.push(Light {
         direction: DVec3::new(0.7, 0.5, -0.2),
         color: [0.3, 0.3, 0.4],
+        ..Light::default()
     });
     scene.objects.push(Object::new("test", Arc::new(profile)));
     scene

@@ -32,6 +32,7 @@ fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
     scene.lights.push(Light {
         direction: DVec3::new(0.7, 0.5, -0.4),
         color: [0.8, 0.7, 0.6],
+        ..Light::default()
     });
     for (seed, profile) in (0u32..).zip(profiles) {
         let mut object = Object::new("test", Arc::new(profile));

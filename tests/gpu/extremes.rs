@@ -108,6 +108,7 @@ fn far_solids_do_not_shade_themselves() {
     scene.lights = vec![Light {
         direction: DVec3::new(-1.0, -0.1, -0.2),
         color: [1.0; 3],
+        ..Light::default()
     }];
     let truth = reference(&scene, &settings(STAGES[0], Solver::DEFAULT));
     for stage in STAGES {

@@ -21,6 +21,7 @@ fn scene(casters: Vec<Object>) -> Scene {
     scene.lights = vec![Light {
         direction: DVec3::new(0.55, 0.5, -0.6),
         color: [0.8; 3],
+        ..Light::default()
     }];
     let disc = Profile::polygon(&[[0.0, 0.1], [0.48, 0.1], [0.48, 0.9], [0.0, 0.9]], 0.5).unwrap();
     let mut table = Object::new("table", Arc::new(disc));
@@ -125,6 +126,60 @@ fn shadows_are_the_references() {
     }
 }
 
+/// The root mean square of the difference of the light, of pixels that both frames hit at one
+/// depth and that are partly lit in the first; and how many these are.
+fn penumbra_error(truth: &Frame, frame: &Frame, lit: &Frame) -> (f64, usize) {
+    let (mut sum, mut count) = (0.0, 0);
+    for i in 0..truth.pixels() {
+        let here =
+            truth.hits(i) && frame.hits(i) && (truth.distance[i] - frame.distance[i]).abs() < 2e-3;
+        // The part of the light above the ambient light.
+        let part = |f: &Frame| f64::from((f.color[i][1] - 0.16) / (lit.color[i][1] - 0.16));
+        if here && lit.color[i][1] > 0.3 && (0.02..0.98).contains(&part(truth)) {
+            sum += (part(truth) - part(frame)).powi(2);
+            count += 1;
+        }
+    }
+    ((sum / f64::max(count as f64, 1.0)).sqrt(), count)
+}
+
+/// Sixteen rays to a disc differ from hundreds by a few hundredths. A hard shadow, or a disc of
+/// another size, differs by much more.
+#[test]
+fn soft_shadows_are_the_references() {
+    for (name, mut scene) in cases() {
+        scene.objects.iter_mut().for_each(|o| o.color = [0.8; 3]);
+        scene.lights[0].radius = 6.0;
+        let settings = Settings {
+            width: 160,
+            height: 120,
+            ..Settings::exact()
+        };
+        scene.shadow = Shadow::Off;
+        let lit = reference(&scene, &settings);
+        scene.shadow = Shadow::Soft;
+        let truth = reference(&scene, &settings);
+        for solver in [Solver::Live, Solver::Quadric] {
+            let settings = Settings { solver, ..settings };
+            let (error, count) = penumbra_error(&truth, &draw(&scene, &settings), &lit);
+            let mut other = scene.clone();
+            other.shadow = Shadow::Hard;
+            let (hard, _) = penumbra_error(&truth, &draw(&other, &settings), &lit);
+            other.shadow = Shadow::Soft;
+            other.lights[0].radius = 2.0;
+            let (small, _) = penumbra_error(&truth, &draw(&other, &settings), &lit);
+            let solver = solver.name();
+            println!("{name}, {solver}: {error:.4} over {count}; hard {hard:.4}, small {small:.4}");
+            assert!(count > 200, "{name}: {count}");
+            assert!(error < 0.07, "{name}, {solver}: {error}");
+            assert!(
+                hard > 3.0 * error && small > 1.5 * error,
+                "{name}, {solver}"
+            );
+        }
+    }
+}
+
 /// Pixels that both frames hit and light otherwise, by their column in tiles of 8.
 fn otherwise_by_column(a: &Frame, b: &Frame) -> [usize; 8] {
     let mut columns = [0; 8];
@@ -144,6 +199,7 @@ fn every_column_of_a_tile_is_lit_alike() {
         scene.lights.push(Light {
             direction,
             color: [0.5; 3],
+            ..Light::default()
         });
     }
     for shadow in [Shadow::Soft, Shadow::Hard] {

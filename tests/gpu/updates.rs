@@ -7,7 +7,7 @@ use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::maps::MapSource;
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Object, Scene, Shadow};
+use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_searches::{CIRCLE, CONE};
 
@@ -76,26 +76,26 @@ fn what_is_refused_changes_nothing() {
     device().check().unwrap();
 }
 
-/// A soft shadow needs a map. A binary one of a solid thinner than a texel is empty, which shows
-/// only when it is baked: the frame before is drawn on.
+/// A binary map of a solid thinner than a texel is empty, which shows only when it is baked. The
+/// frame before is drawn on.
 #[test]
 fn a_map_that_cannot_be_baked_changes_nothing() {
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
     for stage in STAGES {
         let settings = Settings {
             map_source: Some(MapSource::Binary),
+            solver: Solver::Live,
             ..settings(stage)
         };
-        let mut scene = scene_of(thin.clone(), eye(25.0, 2.2));
+        let mut scene = vase();
         let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
         let before = drawn(&mut renderer);
-        scene.shadow = Shadow::Soft;
+        scene.objects[0].profile = thin.clone().into();
         let error = renderer.update(&scene).unwrap_err();
         assert_eq!(error.kind, ErrorKind::Content, "{error}");
         let after = drawn(&mut renderer);
         assert_eq!(before.first_difference(&after), None);
-        scene.shadow = Shadow::Off;
-        scene.objects[0].offset.extend = 0.02;
+        scene.objects[0].profile = shapes::glass().into();
         renderer.update(&scene).unwrap();
         let mended = drawn(&mut renderer);
         let fresh = draw(&scene, &settings);

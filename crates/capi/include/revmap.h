@@ -872,13 +872,17 @@ typedef struct RevmapCamera {
  */
 typedef struct RevmapLight {
     /**
-     * The way the light travels; any length but zero.
+     * The way the light of its centre travels; any length but zero.
      */
     double direction[3];
     /**
      * Linear RGB.
      */
     float color[3];
+    /**
+     * Angular radius of its disc, degrees, 0 to 60. Only soft shadows use it.
+     */
+    float radius;
 } RevmapLight;
 
 /**

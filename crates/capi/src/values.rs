@@ -37,10 +37,12 @@ pub struct RevmapOffset {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevmapLight {
-    /// The way the light travels; any length but zero.
+    /// The way the light of its centre travels; any length but zero.
     pub direction: [f64; 3],
     /// Linear RGB.
     pub color: [f32; 3],
+    /// Angular radius of its disc, degrees, 0 to 60. Only soft shadows use it.
+    pub radius: f32,
 }
 
 /// Lights and shadows of all objects. Defaults: revmap_lighting_defaults().
@@ -158,20 +160,21 @@ impl From<Offset> for RevmapOffset {
 
 impl RevmapLighting {
     pub(crate) fn defaults() -> Self {
-        static LIGHT: LazyLock<RevmapLight> = LazyLock::new(|| {
-            let light = Light::default();
-            RevmapLight {
+        static LIGHTS: LazyLock<[RevmapLight; 2]> = LazyLock::new(|| {
+            Light::pair().map(|light| RevmapLight {
                 direction: light.direction.to_array(),
                 color: light.color,
-            }
+                #[allow(clippy::cast_possible_truncation)]
+                radius: light.radius as f32,
+            })
         });
         let lighting = Lighting::default();
         Self {
             size: size(size_of::<Self>()),
             shadow: RevmapShadow::Off as u32,
             ambient: lighting.ambient,
-            light_count: 1,
-            lights: &raw const *LIGHT,
+            light_count: 2,
+            lights: LIGHTS.as_ptr(),
         }
     }
 
@@ -185,6 +188,7 @@ impl RevmapLighting {
                 .map(|light| Light {
                     direction: light.direction.into(),
                     color: light.color,
+                    radius: light.radius.into(),
                 })
                 .collect(),
             shadow: enums::shadow(self.shadow)?,

@@ -1,5 +1,5 @@
 //! Colour of a hit: texture and bump, Blinn-Phong under the scene's lights, linear (Blinn 1977,
-//! 1978), hard shadows.
+//! 1978), hard and soft shadows.
 
 use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
@@ -24,8 +24,7 @@ const LIFT: f64 = 1e-6;
 /// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
 /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
 /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-/// away. A hidden light adds nothing. Soft shadows are drawn as hard ones, since they are an
-/// estimate without a ground truth.
+/// away. A light adds the part of it that [`visible`] finds.
 pub(super) fn shade(
     scene: &Scene,
     reference: &Reference,
@@ -58,13 +57,13 @@ pub(super) fn shade(
         if lambert <= 0.0 {
             continue;
         }
-        let shadow = Ray {
-            origin: point + lift * smooth,
-            direction: towards,
+        let from = point + lift * smooth;
+        let visible = match scene.shadow {
+            Shadow::Off => 1.0,
+            Shadow::Hard => f64::from(u8::from(reaches(reference, from, smooth, towards))),
+            Shadow::Soft => visible(reference, from, smooth, towards, light.cap()),
         };
-        let shaded = scene.shadow != Shadow::Off
-            && (smooth.dot(towards) <= 0.0 || reference.trace(shadow).hit.is_some());
-        if shaded {
+        if visible == 0.0 {
             continue;
         }
         let half = (towards + view).normalize_or_zero();
@@ -74,7 +73,7 @@ pub(super) fn shade(
                 .max(0.0)
                 .powf(f64::from(object.specular.shininess));
         for (c, sum) in color.iter_mut().enumerate() {
-            *sum += f64::from(light.color[c]) * (albedo[c] * lambert + shine);
+            *sum += visible * f64::from(light.color[c]) * (albedo[c] * lambert + shine);
         }
     }
     Some(Shaded {
@@ -83,6 +82,44 @@ pub(super) fn shade(
         albedo: albedo.map(|v| v as f32),
         uv,
     })
+}
+
+/// Rays towards a light's disc whose mean is its visible part, where they disagree.
+const DISC_RAYS: u32 = 256;
+/// Rays that must agree for the others to be left out.
+const FIRST_RAYS: u32 = 64;
+
+/// True if nothing is between a point and a light. The surface itself hides what is below its
+/// horizon; `normal` points to the lit side.
+fn reaches(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3) -> bool {
+    normal.dot(towards) > 0.0
+        && reference
+            .trace(Ray {
+                origin: from,
+                direction: towards,
+            })
+            .hit
+            .is_none()
+}
+
+/// The part of a light's disc that a point sees, 0 to 1: directions within the cone around
+/// `towards`, all of the same weight. `cap` is 1 - cos of the cone's half angle.
+fn visible(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3, cap: f64) -> f64 {
+    let (u, v) = towards.any_orthonormal_pair();
+    let one = |k: u32| {
+        // Bit-reversed numbers beside multiples of the golden ratio: every prefix is even.
+        let height = cap * (f64::from(k.reverse_bits()) + 0.5) / f64::from(u32::MAX);
+        let turn = f64::from(k) * std::f64::consts::TAU * 0.618_033_988_749_894_9;
+        let aside = (height * (2.0 - height)).sqrt();
+        let direction = (1.0 - height) * towards + aside * (turn.cos() * u + turn.sin() * v);
+        u32::from(reaches(reference, from, normal, direction))
+    };
+    let first: u32 = (0..FIRST_RAYS).map(one).sum();
+    if first == 0 || first == FIRST_RAYS {
+        return f64::from(first / FIRST_RAYS);
+    }
+    let all = first + (FIRST_RAYS..DISC_RAYS).map(one).sum::<u32>();
+    f64::from(all) / f64::from(DISC_RAYS)
 }
 
 /// The outward normal tilted by the height's slope, in the world; `None` if the object has no
@@ -108,6 +145,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::{Surface, samples, tests};
     use super::*;
+    use revmap::profile::Profile;
+    use revmap::scene::{Light, Object};
     use std::f64::consts::FRAC_1_SQRT_2;
 
     fn look(normal: [f64; 3], light: [f64; 3], direction: [f64; 3]) -> Shaded {
@@ -141,6 +180,32 @@ mod tests {
             );
         }
         assert_eq!(shaded.color[3], 1.0);
+    }
+
+    /// A wide plate whose edge crosses the light's disc hides a segment of a circle.
+    #[test]
+    fn half_hidden_lights_are_segments_of_circles() {
+        let plate = Profile::polygon(&[[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]], 0.5);
+        let radius: f64 = 3.0;
+        let light = Light {
+            radius,
+            ..Light::default()
+        };
+        let disc = 10.0 * radius.to_radians().tan();
+        for part in [-1.1, -0.7, -0.2, 0.0, 0.3, 0.6, 1.1] {
+            let mut scene = tests::scene(vec![Object::new("plate", plate.clone().unwrap().into())]);
+            scene.objects[0].placement.scale = DVec3::new(2e4, 2e4, 1e-4);
+            scene.objects[0].placement.position = DVec3::new(1e4 + part * disc, 0.0, 10.0);
+            let reference = Reference::new(&scene).unwrap();
+            let found = visible(&reference, DVec3::ZERO, DVec3::Z, DVec3::Z, light.cap());
+            let d: f64 = f64::clamp(-part, -1.0, 1.0);
+            let segment = (d.acos() - d * (1.0 - d * d).sqrt()) / std::f64::consts::PI;
+            assert!((found - segment).abs() < 0.01, "{part}: {found}, {segment}");
+        }
+        // Half of the disc is below the horizon.
+        let clear = Reference::new(&tests::scene(Vec::new())).unwrap();
+        let low = visible(&clear, DVec3::ZERO, DVec3::X, DVec3::Z, light.cap());
+        assert!((low - 0.5).abs() < 0.01, "{low}");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 #include "core/variant.glsl"
 
 struct Light {
-    vec4 towards; // unit, from the surface to the light
+    vec4 towards; // unit, from the surface to the light; w: 1 - cos of its angular radius
     vec4 color;   // linear RGB
 };
 
@@ -39,7 +39,7 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; its clip x
     vec4 origin;      // of the ray of pixel (0, 0) (pixel_ray.glsl), object space, from the axis at z = 0; w: clip y of the box's middle
-    uvec4 solid;      // x: number of its solid
+    uvec4 solid;      // x: number of its solid; y: bits of the distance from its position that the box reaches
 };
 
 // An object: what its instances share.

@@ -34,13 +34,13 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 }
 
 // What a light that shines on the hit adds. `n` and `view` in the turned space, `point` from the instance's place.
-vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point)
+vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point, uvec2 pixel)
 {
     vec3 color = blinn_phong(look, light, n, view, albedo);
 #if SHADOWED
     if (SHADOW != SHADOW_OFF && color != vec3(0.0)) {
-        bool faces = dot(turned, light.towards.xyz) > 0.0;
-        color *= faces ? light_reaching(look.position, point, rotate(look.rotation, light.towards.xyz)) : 0.0;
+        Disc disc = disc_of(rotate(look.rotation, light.towards.xyz), light.towards.w, pixel);
+        color *= light_reaching(look.position, point, rotate(look.rotation, turned), disc);
     }
 #endif
     return color;
@@ -99,7 +99,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     // A shadow's ray starts off the surface, or it would meet the surface itself: off the exact one by a few roundings,
     // off that of a map by a texel and a half. Lengths are of object space, which a scale does not shrink alike along
     // all axes.
-    float off = SEARCH == SEARCH_QUADRIC && SHADOW == SHADOW_HARD ? 5e-5 : 1.5 * solid.map.z;
+    float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * solid.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
     vec3 place = ray_origin(rays, pixel) + vec3(solid.axis.xy, 0.0) + hit.t * v;
     point = rotate(look.rotation, place * scale + facing * lift * turned);
@@ -114,7 +114,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     }
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
-            color += lit_by(look, light_seen(look.rotation, n), lit, facing * turned, view, s.albedo, point);
+            color += lit_by(look, light_seen(look.rotation, n), lit, facing * turned, view, s.albedo, point, pixel);
         }
     }
     s.color = vec4(color, 1.0);

@@ -1,4 +1,4 @@
-// How much of a light reaches a point: a ray towards it, traced against every solid of the scene.
+// How much of a light reaches a point: rays towards it, traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
 #if SHADOWED
@@ -10,55 +10,129 @@ layout(set = 0, binding = 3, std140) uniform ShadowBlock {
     Solid shadow_solids[MAX_SHADOW_BATCHES];
 };
 
-// A soft shadow is cheap: from how close the ray passes a surface, in units of how far along it does (Inigo Quilez'
-// estimate of sphere tracers), about a light of half this angle's tangent.
-const float PENUMBRA = 0.06;
+// Rays towards a light: one, or several to its disc, in a spiral (Vogel 1979) that each pixel turns by an angle of its own.
+const uint LIGHT_RAYS = SHADOW == SHADOW_SOFT ? 16u : 1u;
+const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u; // a bit for each
+const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfc09u : 1u; // to the disc's rim and middle
+const vec2 GOLDEN_ANGLE = vec2(-0.73736888, 0.67549029); // its cosine and sine
 
-// Nearness of the ray to the solid, F / distance along the ray, by the clipped ray's own few look-ups.
-float solid_openness(vec3 eye, vec3 v)
+// The disc of a light, world axes.
+struct Disc {
+    vec3 middle; // unit, towards the light
+    vec3 u;      // unit, at right angles to it and to each other
+    vec3 v;
+    float cap;   // 1 - cos of the angular radius
+    vec2 first;  // cosine and sine of the angle at which the spiral begins
+};
+
+// Angles of neighbouring pixels differ much and evenly: multiples of the two numbers of Roberts (2018). The view has a
+// part in them, so pictures that are averaged have different ones.
+float spiral_begin(uvec2 pixel)
 {
-    Meridian m;
-    if (!clip_ray(eye, v, 0.0, m)) {
-        return 1.0;
-    }
-    float open = 1.0;
-    float s = 0.0;
-    for (uint i = 0u; i < 48u && s < m.s_end; ++i) {
-        float f = field(point_rz(m, s));
-        float along = (m.t_start + s) / m.inverse_speed;
-        open = min(open, f / max(PENUMBRA * along, 1e-4));
-        if (open <= 0.0) {
-            return 0.0;
-        }
-        s += max(f, 0.5 * solid.map.z) * m.inverse_speed;
-    }
-    return open;
+    uvec2 view = floatBitsToUint(frame.dir_00.xy);
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + (view.x ^ view.y) * 2654435769u;
+    return 1.4629180e-9 * float(turn); // 2 pi / 2^32
 }
 
-// `point` is given from `place`, that from the eye; world axes.
-float light_reaching(vec3 place, vec3 point, vec3 towards)
+// Duff et al. 2017 for the two vectors beside the direction.
+Disc disc_of(vec3 towards, float cap, uvec2 pixel)
 {
-    float open = 1.0;
-    Solid own = solid;
-    casts = true;
-    for (uint b = 0u; b < shadow_batches.x && open > 0.0; ++b) {
-        solid = shadow_solids[b];
-        shadow_map = int(solid.instances.z);
-        for (uint n = 0u; n < solid.instances.y && open > 0.0; ++n) {
-            Instance i = instances[solid.instances.x + n];
-            vec3 eye = point_to_axis(i, place, point);
-            vec3 v = direction_to_object(i, towards);
-            if (SHADOW == SHADOW_SOFT && solid.cells.x * solid.cells.y * solid.cells.z == 1u) {
-                open = min(open, solid_openness(eye, v));
-            } else {
-                Hit hit;
-                open = trace(eye, v, 0.0, EVERYWHERE, hit) ? 0.0 : open;
+    Disc disc;
+    disc.middle = towards;
+    float side = towards.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (side + towards.z);
+    float b = towards.x * towards.y * a;
+    disc.u = vec3(1.0 + side * towards.x * towards.x * a, side * b, -side * towards.x);
+    disc.v = vec3(b, side + towards.y * towards.y * a, -towards.y);
+    disc.cap = SHADOW == SHADOW_SOFT ? cap : 0.0;
+    float begin = spiral_begin(pixel);
+    disc.first = vec2(cos(begin), sin(begin));
+    return disc;
+}
+
+// The direction of ray number `k`, at this angle. All have the same part of the disc's solid angle.
+vec3 towards_disc(Disc disc, uint k, vec2 angle)
+{
+    float height = disc.cap * (float(k) + 0.5) / float(LIGHT_RAYS);
+    float aside = sqrt(height * (2.0 - height));
+    return (1.0 - height) * disc.middle + aside * (angle.x * disc.u + angle.y * disc.v);
+}
+
+vec2 next_angle(vec2 angle)
+{
+    return vec2(angle.x * GOLDEN_ANGLE.x - angle.y * GOLDEN_ANGLE.y, angle.x * GOLDEN_ANGLE.y + angle.y * GOLDEN_ANGLE.x);
+}
+
+// Whether the cone of rays to the disc may meet a sphere around `middle`, which is given from the rays' origin.
+bool may_meet(Disc disc, vec3 middle, float radius)
+{
+    float along = dot(middle, disc.middle);
+    float aside = sqrt(max(dot(middle, middle) - along * along, 0.0));
+    float from_cone = aside * (1.0 - disc.cap) - along * sqrt(disc.cap * (2.0 - disc.cap));
+    float slack = 1e-3 * (radius + abs(along));
+    return from_cone <= radius + slack && along >= -radius - slack;
+}
+
+// The rays of `left` that the solid, `solid`, does not stop.
+uint unstopped_by(Instance i, vec3 place, vec3 point, Disc disc, uint left)
+{
+    vec3 eye = point_to_axis(i, place, point);
+    vec2 angle = disc.first;
+    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+        vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
+        Hit hit;
+        if ((left >> k & 1u) != 0u && trace(eye, v, 0.0, EVERYWHERE, hit)) {
+            left &= ~(1u << k);
+        }
+        angle = next_angle(angle);
+    }
+    return left;
+}
+
+// The rays of `left`, a bit for each, that no solid stops.
+uint unstopped(vec3 place, vec3 point, Disc disc, uint left)
+{
+    for (uint b = 0u; b < shadow_batches.x && left != 0u; ++b) {
+        uint first = shadow_solids[b].instances.x;
+        uint end = first + shadow_solids[b].instances.y;
+        for (uint n = first; n < end && left != 0u; ++n) {
+            vec3 middle = instances[n].position_sx.xyz - place - point;
+            bool near = may_meet(disc, middle, uintBitsToFloat(instances[n].solid.y));
+            // A loop, since software drivers run what is in a branch for none, too.
+            for (uint k = near ? 0u : LIGHT_RAYS; k < LIGHT_RAYS; k = LIGHT_RAYS) {
+                solid = shadow_solids[b];
+                shadow_map = int(solid.instances.z);
+                left = unstopped_by(instances[n], place, point, disc, left);
             }
         }
     }
+    return left;
+}
+
+// The visible part of the light. `point` is given from `place`, that from the eye; world axes. `normal` points to the
+// lit side: what is below its horizon is hidden.
+float light_reaching(vec3 place, vec3 point, vec3 normal, Disc disc)
+{
+    uint open = 0u;
+    vec2 angle = disc.first;
+    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+        open |= dot(normal, towards_disc(disc, k, angle)) > 0.0 ? 1u << k : 0u;
+        angle = next_angle(angle);
+    }
+    Solid own = solid;
+    casts = true;
+    // Where the first rays agree they speak for the others.
+    uint asked = FIRST_RAYS;
+    uint lit = 0u;
+    for (uint pass = 0u; asked != 0u; ++pass) {
+        uint left = unstopped(place, point, disc, open & asked);
+        bool agree = pass == 0u && (left == asked || left == 0u);
+        lit |= agree && left != 0u ? ALL_RAYS : left;
+        asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
+    }
     solid = own;
     casts = false;
-    return clamp(open, 0.0, 1.0);
+    return float(bitCount(lit)) / float(LIGHT_RAYS);
 }
 
 #endif

@@ -78,6 +78,7 @@ layout(constant_id = 8) const uint LIGHTS = 3u; // most lights: 1, 2, or any num
 layout(constant_id = 11) const uint OUTSIDE = 0u;
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids have one table, which a uniform buffer holds
 layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
+layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // of one solid's tables: most that the device's uniform buffers hold
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel

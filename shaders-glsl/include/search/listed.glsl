@@ -1,16 +1,40 @@
-// A pixel of a tile whose patches are listed: these alone, in a straight line.
+// A pixel of a tile whose patches are listed: these alone, in a straight line. A few invocations read record, instance
+// and patches for all: lavapipe 22 reads storage buffers lane by lane.
 #ifndef LISTED_GLSL
 #define LISTED_GLSL
 #extension GL_EXT_control_flow_attributes : require
 #include "stage/tile.glsl"
 #include "search/patch_row.glsl"
 
+const uint INSTANCE_WORDS = 20u;
+layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
+    uint instance_words[];
+};
+
+shared uint shared_record[4];
+shared uint shared_instance[INSTANCE_WORDS];
 shared float listed[8u * LONGEST_LIST];
 
-// Shares the tile's patches.
+// Shares what take_shared_record() reads after a barrier.
+void share_record()
+{
+    if (gl_LocalInvocationIndex < 4u) {
+        shared_record[gl_LocalInvocationIndex] = record_word(gl_LocalInvocationIndex);
+    }
+}
+
+void take_shared_record()
+{
+    tile_record = uvec4(shared_record[0], shared_record[1], shared_record[2], shared_record[3]);
+}
+
+// Shares the tile's instance and patches.
 void share_patches()
 {
     uint self = gl_LocalInvocationIndex;
+    if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
+        shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
+    }
     if (ONE_SOLID == 0u) {
         solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record.y + 16u]].solid.hull.z;
     }
@@ -25,6 +49,21 @@ void share_patches()
             k = number < lower + (runs >> 24) ? k : none;
             listed[place] = uintBitsToFloat(listed_word(1u + 3u * k + (place >> 2 & 1u), place & 3u));
         }
+    }
+}
+
+vec4 instance_vector(uint n)
+{
+    uint at = 4u * n;
+    return uintBitsToFloat(uvec4(shared_instance[at], shared_instance[at + 1u], shared_instance[at + 2u], shared_instance[at + 3u]));
+}
+
+void take_shared_instance()
+{
+    if (ONE_INSTANCE != 0u) {
+        tile_instance = instances[pushed.instance];
+    } else {
+        tile_instance = Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u), uvec4(shared_instance[16]));
     }
 }
 

@@ -6,12 +6,13 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant) uniform Pushed {
-    uint first; // number of the first record
-    uint count; // of records
-    uint heads; // word of list_words where the heads of their lists begin
-    uint tiles; // word where the lists' tiles begin
-    uint list;  // which of the lists a dispatch takes
-    uint solid; // number of the only solid
+    uint first;    // number of the first record
+    uint count;    // of records
+    uint heads;    // word of list_words where the heads of their lists begin
+    uint tiles;    // word where the lists' tiles begin
+    uint list;     // which of the lists a dispatch takes
+    uint solid;    // number of the only solid
+    uint instance; // number of the only instance
 } pushed;
 
 // Lists of tiles, made by tile_lists.comp for N records:

@@ -142,12 +142,14 @@ pub(crate) fn instance_block(
         rotation.as_quat(),
         origin.as_vec3(),
     );
+    let radius = object.profile.radius;
+    let reach = (placement.scale * DVec3::new(radius, radius, 1.0)).length() as f32;
     InstanceBlock {
         position_sx: [p.x, p.y, p.z, s.x],
         rotation: q.to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
-        solid: [solid, 0, 0, 0],
+        solid: [solid, reach.to_bits(), 0, 0],
     }
 }
 
@@ -156,7 +158,9 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
         let towards = -light.direction.normalize_or_zero().as_vec3();
-        block.towards = towards.extend(0.0).to_array();
+        #[allow(clippy::cast_possible_truncation)]
+        let cap = light.cap() as f32;
+        block.towards = towards.extend(cap).to_array();
         block.color = [light.color[0], light.color[1], light.color[2], 0.0];
     }
     #[allow(clippy::cast_possible_truncation)]

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct LightBlock {
-    /// Unit vector from the surface to the light.
+    /// Unit vector from the surface to the light; w: 1 - cos of its angular radius.
     pub towards: [f32; 4],
     /// Linear RGB.
     pub color: [f32; 4],
@@ -54,7 +54,7 @@ pub struct InstanceBlock {
     /// Origin of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's
     /// middle.
     pub origin: [f32; 4],
-    /// First: number of the instance's solid.
+    /// Number of the instance's solid; bits of the distance from its position that its box reaches.
     pub solid: [u32; 4],
 }
 

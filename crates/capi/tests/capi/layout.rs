@@ -34,7 +34,7 @@ fn structures_are_the_same_in_c() {
     let mut text = assertions! {
         RevmapPlacement { rotation, scale }
         RevmapOffset { chamfer }
-        RevmapLight { color }
+        RevmapLight { color, radius }
         RevmapLighting { ambient, light_count, lights }
         RevmapCamera { eye, target, up, fov_y }
         RevmapView { view, projection, viewport }

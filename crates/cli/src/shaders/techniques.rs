@@ -4,7 +4,7 @@ use revmap::error::Result;
 use revmap::gpu::compiler::Look;
 use revmap::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Lighting, Object, Shadow};
+use revmap::scene::{Clip, Light, Lighting, Object, Shadow};
 use revmap::settings::Planes;
 use std::sync::Arc;
 
@@ -19,7 +19,10 @@ pub fn techniques() -> Result<Vec<(&'static str, Look)>> {
     let changed = |name, change: &dyn Fn(&mut Look)| {
         let mut look = Look {
             object: Object::new(name, profile.clone()),
-            lighting: Lighting::default(),
+            lighting: Lighting {
+                lights: vec![Light::default()],
+                ..Lighting::default()
+            },
             format: MapFormat::R32,
             planes: Planes::Color,
         };

@@ -80,7 +80,8 @@ fn assignments(scene: &Scene) -> Vec<String> {
         .iter()
         .map(|light| {
             let direction = light.direction.to_array();
-            format!("{{direction = {direction:?}, color = {:?}}}", light.color)
+            let (color, radius) = (light.color, light.radius);
+            format!("{{direction = {direction:?}, color = {color:?}, radius = {radius:?}}}")
         })
         .collect();
     all.push(format!("light=[{}]", lights.join(", ")));

@@ -6,12 +6,9 @@
 void main()
 {
     begin_frame();
-    share_record();
-    barrier();
-    take_shared_record();
-    share_instance();
-    barrier();
-    begin_tile(shared_copy());
+    take_record();
+    take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
+    begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);
     vec3 v = ray_direction(tile_rays, pixel);

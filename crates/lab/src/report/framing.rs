@@ -52,10 +52,12 @@ impl View {
             Light {
                 direction: turned(35.0) - DVec3::Z * 0.8,
                 color: [0.95, 0.9, 0.8],
+                ..Light::default()
             },
             Light {
                 direction: turned(-60.0) - DVec3::Z * 0.3,
                 color: [0.2, 0.24, 0.3],
+                ..Light::default()
             },
         ];
         view

@@ -104,6 +104,7 @@ fn shading_is_the_renderer_s() {
         let light = |(direction, color): ([f64; 3], _)| Light {
             direction: direction.into(),
             color,
+            ..Light::default()
         };
         scene.lights = all[..count].iter().copied().map(light).collect();
         // In 8 bits a rounding the other way is a step of sRGB, at most 0.009.

@@ -146,6 +146,7 @@ pub fn army(count: u32) -> Result<View> {
     let light = |direction: [f64; 3], color| Light {
         direction: direction.into(),
         color,
+        ..Light::default()
     };
     scene.lights = vec![
         light([-0.6, 0.5, -0.7], [0.95, 0.9, 0.8]),

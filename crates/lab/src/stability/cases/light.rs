@@ -34,7 +34,7 @@ fn soft() -> Case {
             .collect(),
         ..case(
             "soft-shadows",
-            "solids on a table under a soft light; stages compared, as soft shadows have no truth",
+            "solids on a table under a soft light; colours are compared between the stages, as rays to a disc have noise",
             "Objects are read in a loop that lanes leave one by one; a driver that runs them side by side must keep each lane's own.",
             "Loops over casters are the same for all lanes.",
         )
