@@ -104,6 +104,25 @@ fn programs_get_json() {
     let found = json("compare truth.exr a.exr --json");
     assert_eq!(found["hits"], truth["hits"]);
     assert!(found["depth_p99_texels"].as_f64().unwrap() < 0.5 && found["flip"].is_f64());
+    let coarse = json("compare truth.exr a.exr --json --texel 0.0078125");
+    let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
+    // Texels are four times as long; h/512 stays.
+    assert_eq!(
+        number(&found, "depth_p99_texels"),
+        4.0 * number(&coarse, "depth_p99_texels")
+    );
+    for other in [
+        number(&found, "depth_p99_texels"),
+        number(&coarse, "depth_p99_h512"),
+    ] {
+        assert_eq!(number(&found, "depth_p99_h512"), other);
+    }
+    let said = text(bench.done("compare truth.exr a.exr").stdout);
+    assert!(
+        said.contains("texels of 0.001953 world units")
+            && said.contains("h/512 (height h = 1 world unit)"),
+        "{said}"
+    );
     assert!(found["first_difference"].is_string());
     assert_eq!(
         json("compare a.exr a.exr --json")["first_difference"],
