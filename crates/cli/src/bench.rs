@@ -98,7 +98,9 @@ impl Bench {
     pub fn run(self) -> Result<()> {
         let what = &self.what;
         if let [old, new] = what.compare.as_slice() {
-            print(&compare_runs::as_text(&compare_runs::compare(old, new)?));
+            let found = compare_runs::compare(old, new)?;
+            found.warnings.iter().for_each(|text| output::warn(text));
+            print(&compare_runs::as_text(&found));
             return Ok(());
         }
         if !what.drivers.is_empty() {
@@ -209,7 +211,13 @@ impl Session {
     fn open(lists: &Lists) -> Result<Self> {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
-        let machine = Machine::here(&report.name, report.kind, &report.driver, &Lists::command());
+        let machine = Machine::here(
+            &report.name,
+            report.kind,
+            &report.driver,
+            output::VERSION,
+            &Lists::command(),
+        );
         let out = lists.folder(&machine.folder())?;
         if !lists.quiet {
             output::note(&format!(

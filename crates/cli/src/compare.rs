@@ -82,7 +82,8 @@ impl Compare {
     }
 }
 
-/// The names of the columns of `results.csv`; values that do not apply are null.
+/// The names of the columns of `results.csv`, and depth errors in h/512 beside them; values that do
+/// not apply are null.
 fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
     json!({
         "pixels": found.pixels,
@@ -92,6 +93,9 @@ fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
         "depth_rms_texels": found.depth.map(|d| d.rms),
         "depth_p99_texels": found.depth.map(|d| d.p99),
         "depth_max_texels": found.depth.map(|d| d.max),
+        "depth_rms_h512": found.depth_h512().map(|d| d.rms),
+        "depth_p99_h512": found.depth_h512().map(|d| d.p99),
+        "depth_max_h512": found.depth_h512().map(|d| d.max),
         "normal_rms_degrees": found.normal.map(|n| n.rms),
         "normal_p99_degrees": found.normal.map(|n| n.p99),
         "normal_max_degrees": found.normal.map(|n| n.max),

@@ -25,6 +25,9 @@ mod stability;
 mod usage;
 #[cfg(feature = "viewer")]
 mod view;
+#[cfg(not(feature = "viewer"))]
+#[path = "no_view.rs"]
+mod view;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,7 +35,7 @@ use std::process::ExitCode;
 
 /// Revolution mapping: draws solids of revolution from flat outlines, without a stored mesh.
 #[derive(Parser)]
-#[command(name = "revmap", version, max_term_width = 110, after_help = AFTER_HELP)]
+#[command(name = "revmap", version = output::VERSION, max_term_width = 110, after_help = AFTER_HELP)]
 struct Program {
     #[command(subcommand)]
     command: Command,
@@ -56,7 +59,6 @@ enum Command {
     Shaders(shaders::Shaders),
     Devices(devices::Devices),
     Compare(compare::Compare),
-    #[cfg(feature = "viewer")]
     View(view::View),
     Completions(shell::Completions),
     Man(shell::Man),
@@ -74,7 +76,6 @@ impl Command {
             Self::Shaders(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
-            #[cfg(feature = "viewer")]
             Self::View(command) => command.run(),
             Self::Completions(command) => command.run(Program::command()),
             Self::Man(command) => command.run(Program::command()),

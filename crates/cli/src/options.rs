@@ -194,6 +194,10 @@ impl TypedValueParser for MethodParser {
             let method = |text: &str| text.parse::<Method>();
             return method.parse_ref(command, argument, value);
         }
+        let listed = self.possible_values().into_iter().flatten();
+        let alias = PossibleValue::new(ALIAS).hide(true);
+        let known = PossibleValuesParser::new(listed.chain([alias]));
+        known.parse_ref(command, argument, value)?;
         named(&SOLVERS).parse_ref(command, argument, value)
     }
 

@@ -4,6 +4,9 @@ use revmap::error::{Error, ErrorKind, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// The version, and the commit of a program that was built from a git checkout.
+pub const VERSION: &str = env!("REVMAP_VERSION");
+
 /// Prints a line of results on standard output. A closed standard output is not a failure.
 pub fn result(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");

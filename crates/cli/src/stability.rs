@@ -62,7 +62,13 @@ impl Stability {
         let solvers = self.solvers()?;
         let device = Device::open(self.device.as_deref())?;
         let about = device.report();
-        let machine = Machine::here(&about.name, about.kind, &about.driver, &self.command());
+        let machine = Machine::here(
+            &about.name,
+            about.kind,
+            &about.driver,
+            output::VERSION,
+            &self.command(),
+        );
         let out = match &self.out {
             Some(out) => {
                 folder::claim(out, self.overwrite, [])?;

@@ -2,6 +2,7 @@
 
 use super::app::{App, title};
 use super::controls::Asked;
+use super::keys::Action;
 use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
@@ -24,11 +25,45 @@ pub enum Change {
 }
 
 impl App {
+    /// Executes the effect of a key.
+    pub fn press(&mut self, action: Action) {
+        let before = self.shown.clone();
+        match action {
+            Action::Help => (self.help, self.hint) = (!self.help, false),
+            Action::Panel => self.panel = !self.panel,
+            Action::Show(inspected) => self.shown.inspected = inspected,
+            Action::Stage(stage) => self.shown.stage = stage,
+            Action::ResetCamera => self.shown.scene.camera = self.first.scene.camera,
+            Action::Screenshot => self.keep = true,
+            Action::Undo => {
+                let undo = Asked {
+                    undo: true,
+                    ..Asked::default()
+                };
+                return self.take(undo, before);
+            }
+            Action::Close if self.help => self.help = false,
+            Action::Close => self.quit = true,
+        }
+        let changes = matches!(
+            action,
+            Action::Show(_) | Action::Stage(_) | Action::ResetCamera
+        );
+        if changes {
+            self.changing = None;
+            let changed = Asked {
+                changed: true,
+                ..Asked::default()
+            };
+            self.take(changed, before);
+        }
+    }
+
     /// Executes the requests of the controls.
     pub fn take(&mut self, asked: Asked, before: Shown) {
         if asked != Asked::default() {
             self.problem = None;
-            self.version += 1;
+            self.change();
         }
         if asked.undo {
             self.changing = None;
@@ -52,6 +87,12 @@ impl App {
             let written = self.write_turntable();
             self.say(written);
         }
+    }
+
+    /// Counts a change of the shown state, after which the last report is old.
+    fn change(&mut self) {
+        self.version += 1;
+        self.written.clear();
     }
 
     /// Reports the written file, or the failure.
@@ -109,7 +150,8 @@ impl App {
                 self.shown.scene = scene;
                 self.first = self.shown.clone();
                 (self.source, self.file) = (path.to_owned(), file);
-                (self.problem, self.version) = (None, self.version + 1);
+                self.problem = None;
+                self.change();
                 if let Some(open) = &self.open {
                     open.window.set_title(&title(path));
                 }
@@ -126,20 +168,19 @@ impl App {
             return;
         };
         self.remember(Change::Held, self.shown.clone());
-        self.version += 1;
-        let open = self.open.as_ref();
-        let height = open.map_or(1, |open| open.window.inner_size().height);
+        self.change();
+        let height = self.framing.height();
         let camera = &mut self.shown.scene.camera;
         match button {
             MouseButton::Left => orbit::turn(camera, by),
-            _ => orbit::shift(camera, by, f64::from(height)),
+            _ => orbit::shift(camera, by, height),
         }
     }
 
     /// Handles a turn of the wheel by `steps`.
     pub fn zoom(&mut self, steps: f64) {
         self.remember(Change::Wheel, self.shown.clone());
-        self.version += 1;
+        self.change();
         orbit::zoom(&mut self.shown.scene.camera, steps);
     }
 

@@ -2,7 +2,7 @@
 
 use super::View;
 use super::actions::Change;
-use super::controls::{self, Asked, Told};
+use super::framing::Framing;
 use super::inspect::Inspector;
 #[cfg(feature = "shaderc")]
 use super::reload::Reload;
@@ -10,7 +10,6 @@ use super::saved;
 use super::shown::Shown;
 use super::stage::Stage;
 use super::times::Times;
-use crate::output;
 use revmap::error::{self, Error, Result};
 use revmap::scene::file::SceneFile;
 use std::path::{Path, PathBuf};
@@ -30,16 +29,16 @@ const SOON: Duration = Duration::from_secs(5);
 pub(super) struct Open {
     pub inspector: Inspector,
     #[cfg(feature = "shaderc")]
-    reload: Option<Reload>,
+    pub reload: Option<Reload>,
     pub stage: Stage,
-    gui: egui_winit::State,
+    pub gui: egui_winit::State,
     pub window: Rc<Window>,
 }
 
 pub struct App {
     pub(super) options: View,
     /// Requests a frame from another thread.
-    wake: EventLoopProxy<()>,
+    pub(super) wake: EventLoopProxy<()>,
     /// The file of the shown scene.
     pub(super) source: PathBuf,
     pub(super) file: SceneFile,
@@ -51,15 +50,23 @@ pub struct App {
     /// The change in progress: all of it is undone at once.
     pub(super) changing: Option<Change>,
     pub(super) open: Option<Open>,
-    times: Times,
+    pub(super) times: Times,
     pub(super) problem: Option<String>,
-    /// Report of the last written file.
+    /// Report of the last written file, until the next change.
     pub(super) written: String,
     /// True to write the next frame as a picture.
     pub(super) keep: bool,
+    pub(super) panel: bool,
+    pub(super) help: bool,
+    /// True until the help has been shown.
+    pub(super) hint: bool,
+    /// True to close the window.
+    pub(super) quit: bool,
+    /// The framing of the last frame.
+    pub(super) framing: Framing,
     pub(super) pointer: [f64; 2],
     pub(super) held: Option<MouseButton>,
-    drawn: u32,
+    pub(super) drawn: u32,
     ended: Result<()>,
 }
 
@@ -82,6 +89,11 @@ impl App {
             problem: None,
             written: String::new(),
             keep: false,
+            panel: true,
+            help: false,
+            hint: true,
+            quit: false,
+            framing: Framing::default(),
             pointer: [0.0; 2],
             held: None,
             drawn: 0,
@@ -131,123 +143,6 @@ impl App {
             gui,
             window: Rc::new(window),
         })
-    }
-
-    /// Draws a frame. Returns the delay until the next frame if no event comes.
-    fn frame(&mut self) -> Result<Option<Duration>> {
-        let Some(open) = &mut self.open else {
-            return Ok(None);
-        };
-        let size = open.window.inner_size();
-        if size.width == 0 || size.height == 0 {
-            return Ok(None); // minimised
-        }
-        let mut shaders = "";
-        #[cfg(feature = "shaderc")]
-        if let Some(reload) = &mut open.reload {
-            let (host, format) = (&open.stage.host, open.stage.format());
-            if let Some(made) = reload.take(host, format, &self.shown) {
-                open.inspector.forget();
-                open.stage.take(made)?;
-            }
-            if reload.is_busy() {
-                shaders = "the shaders are being compiled";
-            }
-        }
-        let input = open.gui.take_egui_input(&open.window);
-        let context = open.gui.egui_ctx().clone();
-        let inspects = Inspector::is_wanted(&self.shown);
-        let picture = if inspects {
-            let (version, size) = (self.version, (size.width, size.height));
-            let (inspector, device) = (&mut open.inspector, &open.stage.device);
-            let made = inspector.picture(&self.shown, version, size, device, &context, &self.wake);
-            made.map(|texture| texture.map(egui::TextureHandle::id))
-        } else {
-            Ok(None)
-        };
-        let picture = picture.unwrap_or_else(|error| {
-            self.problem = Some(error.to_string());
-            None
-        });
-        let before = self.shown.clone();
-        let mut asked = Asked::default();
-        let draw_paths = match inspects {
-            true => open.inspector.draw_paths.clone(),
-            false => open.stage.draw_paths(),
-        };
-        let told = Told {
-            times: &self.times,
-            problem: self.problem.as_deref(),
-            notes: [
-                &self.written,
-                if inspects { &open.inspector.words } else { "" },
-                shaders,
-            ],
-            undos: self.undo.len(),
-            draw_paths: &draw_paths,
-        };
-        let shown = &mut self.shown;
-        let mut output = context.run_ui(input, |ui| {
-            if let Some(id) = picture {
-                let all = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-                let painter = ui.ctx().layer_painter(egui::LayerId::background());
-                painter.image(id, ui.ctx().content_rect(), all, egui::Color32::WHITE);
-            }
-            egui::Window::new("revmap")
-                .default_pos([8.0, 8.0])
-                .default_size([300.0, 640.0])
-                .vscroll(true)
-                .show(ui.ctx(), |ui| asked = controls::show(ui, shown, &told));
-            #[cfg(feature = "shaderc")]
-            if let Some(text) = open.reload.as_ref().and_then(|r| r.problem.as_deref()) {
-                controls::shader_problem(ui.ctx(), text);
-            }
-        });
-        self.take(asked, before);
-        let open = match &mut self.open {
-            Some(open) => open,
-            None => return Ok(None),
-        };
-        if self.changing == Some(Change::Held) && !context.input(|i| i.pointer.any_down()) {
-            self.changing = None;
-        }
-        if let Err(error) = open.stage.set(&self.shown) {
-            self.problem = Some(error.to_string());
-        }
-        let platform = std::mem::take(&mut output.platform_output);
-        open.gui.handle_platform_output(&open.window, platform);
-        let root = output.viewport_output.get(&egui::ViewportId::ROOT);
-        let pause = root.map_or(Duration::MAX, |v| v.repaint_delay);
-        let last = self.options.frames == Some(self.drawn + 1);
-        let keep = self.keep || (last && self.options.screenshot.is_some());
-        let scene = (!inspects).then_some(&self.shown.scene);
-        let drawn = open
-            .stage
-            .draw(scene, output, &context, keep, &mut self.problem)?;
-        let stale = drawn.as_ref().is_none_or(|frame| frame.stale);
-        if stale {
-            open.stage.resize((size.width, size.height))?;
-            open.window.request_redraw();
-        }
-        if let Some(mut frame) = drawn {
-            if let Some(ms) = open.inspector.device_ms.filter(|_| inspects) {
-                frame.cost.device = ms;
-            }
-            self.times.push(frame.cost);
-            self.drawn += 1;
-            if let Some(picture) = frame.picture {
-                if let (true, Some(file)) = (last, &self.options.screenshot) {
-                    picture.write_png(file)?;
-                    output::result(&format!("{}: frame {}", file.display(), self.drawn));
-                }
-                if std::mem::take(&mut self.keep) {
-                    let path = saved::beside(&self.source, ".png");
-                    let written = picture.write_png(&path);
-                    self.say(written.map(|()| path));
-                }
-            }
-        }
-        Ok(Some(pause))
     }
 
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
@@ -318,6 +213,7 @@ impl ApplicationHandler for App {
             }
             WindowEvent::RedrawRequested => match self.frame() {
                 Err(error) => self.fail(events, error),
+                Ok(_) if self.quit => events.exit(),
                 Ok(None) => events.set_control_flow(ControlFlow::Wait),
                 Ok(_) if self.options.frames.is_some_and(|n| self.drawn >= n) => events.exit(),
                 Ok(_) if self.options.frames.is_some() => window.request_redraw(),

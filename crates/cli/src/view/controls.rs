@@ -13,8 +13,8 @@ pub struct Told<'a> {
     pub times: &'a Times,
     /// The problem that the last values caused.
     pub problem: Option<&'a str>,
-    /// The last written file, the numbers of an inspected picture, the state of shaders.
-    pub notes: [&'a str; 3],
+    /// The numbers of an inspected picture, the state of shaders.
+    pub notes: [&'a str; 2],
     pub undos: usize,
     /// The draw path of each object.
     pub draw_paths: &'a [DrawPath],
@@ -29,7 +29,7 @@ pub struct Asked {
     pub reset: bool,
     /// Save the scene as TOML.
     pub save: bool,
-    /// Save the window as a picture.
+    /// Save the part of the window beside the panel as a picture.
     pub screenshot: bool,
     pub turntable: bool,
 }

@@ -1,6 +1,8 @@
 //! Pictures that the window shows in place of the drawn scene: planes of an off-screen frame, and
 //! errors against the reference.
 
+use super::framing::Framing;
+use super::legend::{Legend, grey, level};
 use super::shown::{Inspected, Shown};
 use egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use revmap::error::{self, Error, Result};
@@ -30,6 +32,8 @@ pub struct Inspector {
     /// The version of the scene in the texture, with the plane and the settings.
     made: Option<(u64, Inspected, Settings)>,
     check: Option<Check>,
+    /// The scale of the picture in the texture.
+    pub legend: Option<Legend>,
     /// The picture's content in numbers.
     pub words: String,
     /// Device time of the last off-screen frame, milliseconds.
@@ -44,13 +48,13 @@ impl Inspector {
         shown.inspected != Inspected::Color
     }
 
-    /// The picture of version `version` of the shown state, for a window of `size` pixels. Returns
+    /// The picture of version `version` of the shown state and its framing, for a window. Returns
     /// `None` until the reference has been drawn.
     pub fn picture(
         &mut self,
         shown: &Shown,
         version: u64,
-        size: (u32, u32),
+        framing: &Framing,
         device: &Device,
         context: &Context,
         wake: &EventLoopProxy<()>,
@@ -64,11 +68,15 @@ impl Inspector {
             Inspected::Color => Planes::Color,
             _ => Planes::All,
         };
+        let size = framing.window;
         let settings = shown.settings((size.0.div_ceil(side), size.1.div_ceil(side)), planes);
         let wanted = (version, shown.inspected, settings);
         if self.made == Some(wanted) {
             return Ok(self.texture.as_ref());
         }
+        let mut shown = shown.clone();
+        shown.scene.camera = framing.camera(&shown.scene.camera, side);
+        let shown = &shown;
         let reference = match shown.inspected {
             Inspected::Error => match self.reference(shown, version, &settings, wake)? {
                 Some(frame) => Some(frame),
@@ -80,13 +88,14 @@ impl Inspector {
             _ => None,
         };
         let frame = self.draw(shown, settings, device)?;
-        let picture = match (shown.inspected, reference) {
-            (_, Some(reference)) => self.errors(&reference, &frame)?,
-            (Inspected::Depth, _) => depth(&frame),
-            (Inspected::Normals, _) => normals(&frame),
-            (Inspected::Steps, _) => steps(&frame),
-            _ => Picture::of(&frame),
+        let (picture, legend) = match (shown.inspected, reference) {
+            (_, Some(reference)) => (self.errors(&reference, &frame)?, Some(Legend::errors())),
+            (Inspected::Depth, _) => (depth(&frame), Some(Legend::depth(span(&frame)))),
+            (Inspected::Normals, _) => (normals(&frame), Some(Legend::normals())),
+            (Inspected::Steps, _) => (steps(&frame), Some(Legend::steps())),
+            _ => (Picture::of(&frame), None),
         };
+        self.legend = legend;
         if shown.inspected != Inspected::Error {
             self.words.clear();
         }
@@ -170,7 +179,7 @@ impl Inspector {
             .depth
             .map_or("none".into(), |d| format!("{:.4}", d.p99));
         self.words = format!(
-            "{} missed, {} ghost pixels of {}; depth p99 {depth} of 1/512 unit; every {COARSE}nd pixel",
+            "{} missed, {} ghost pixels of {}; depth p99 {depth} h/512; every {COARSE}nd pixel",
             found.missed,
             found.ghost,
             frame.pixels()
@@ -179,24 +188,24 @@ impl Inspector {
     }
 }
 
-/// A grey level for each pixel's distance, between the nearest and the farthest hit.
-fn depth(frame: &Frame) -> Picture {
+/// Distances of the nearest and the farthest hit; reversed without a hit.
+fn span(frame: &Frame) -> [f32; 2] {
     let hits = || frame.distance.iter().copied().filter(|d| d.is_finite());
-    let (near, far) = (
+    [
         hits().fold(f32::INFINITY, f32::min),
         hits().fold(0.0, f32::max),
-    );
-    let span = (far - near).max(f32::MIN_POSITIVE);
-    painted(frame, |k| {
-        let grey = 255.0 - 215.0 * (frame.distance[k] - near) / span;
-        [grey as u8; 3]
-    })
+    ]
+}
+
+/// A grey level for each pixel's distance, between the nearest and the farthest hit.
+fn depth(frame: &Frame) -> Picture {
+    let [near, far] = span(frame);
+    let length = (far - near).max(f32::MIN_POSITIVE);
+    painted(frame, |k| grey((frame.distance[k] - near) / length))
 }
 
 fn normals(frame: &Frame) -> Picture {
-    painted(frame, |k| {
-        frame.normal[k].map(|n| (127.5 + 127.5 * n) as u8)
-    })
+    painted(frame, |k| frame.normal[k].map(level))
 }
 
 /// Pixels with a hit in their colour, the others black.
@@ -231,5 +240,44 @@ mod tests {
             colored,
             [[255, 127, 127, 255], [127, 127, 0, 255], [0, 0, 0, 255]]
         );
+    }
+
+    /// Each tick of a scale has the colour of a pixel with its value.
+    #[test]
+    fn scales_have_the_colours_of_the_pictures() {
+        let mut frame = Frame::new(5, 1, [0.0; 4]).unwrap();
+        frame.steps = vec![1.0, 4.0, 16.0, 64.0, 128.0];
+        let mut truth = frame.clone();
+        (truth.distance, frame.distance) = (vec![2.0; 5], vec![2.0; 5]);
+        for (drawn, texels) in frame.distance.iter_mut().zip([0.0, 0.01, 0.1, 1.0, 10.0]) {
+            *drawn += texels / 512.0;
+        }
+        let options = CompareOptions::default();
+        let errors = heat_map(&truth, &frame, &options, Heat::Depth).unwrap();
+        let mut deep = frame.clone();
+        deep.distance = vec![2.0, 2.5, 3.0, 3.5, 4.0];
+        for (picture, legend) in [
+            (steps(&frame), Legend::steps()),
+            (errors, Legend::errors()),
+            (depth(&deep), Legend::depth(span(&deep))),
+        ] {
+            let bar = legend.bar.unwrap();
+            assert_eq!(bar.ticks.len(), 5);
+            for ((place, value), pixel) in bar.ticks.iter().zip(picture.rgba) {
+                let color = bar.color(*place);
+                // Distances are rounded to floats.
+                let near = color.iter().zip(pixel).all(|(a, b)| a.abs_diff(b) <= 1);
+                assert!(near, "{} {value}: {color:?}, {pixel:?}", legend.title);
+            }
+        }
+        let depth = Legend::depth(span(&deep)).bar.unwrap();
+        let values: Vec<_> = depth
+            .ticks
+            .iter()
+            .map(|(_, value)| value.as_str())
+            .collect();
+        assert_eq!(values, ["2.000", "2.500", "3.000", "3.500", "4.000"]);
+        let empty = Frame::new(5, 1, [0.0; 4]).unwrap();
+        assert!(Legend::depth(span(&empty)).bar.is_none());
     }
 }

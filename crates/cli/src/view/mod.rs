@@ -5,9 +5,14 @@ mod app;
 mod barriers;
 mod controls;
 mod frames;
+mod framing;
 mod inspect;
+mod keys;
+mod legend;
 mod memory;
 mod orbit;
+mod overlay;
+mod redraw;
 #[cfg(feature = "shaderc")]
 mod reload;
 mod saved;
@@ -30,8 +35,11 @@ use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 
 /// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to
-/// go nearer; drop a file to see it
+/// go nearer; drop a file to see it; H shows all keys
 #[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap view assets/profiles/rook.svg\n  \
+    revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture
     scene: PathBuf,
@@ -65,7 +73,7 @@ pub struct View {
     /// Show so many frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
-    /// Write the last of these frames as a PNG, with the controls
+    /// Write the last of these frames as a PNG, with panel and words (the key P writes without)
     #[arg(long, value_name = "FILE", requires = "frames")]
     screenshot: Option<PathBuf>,
     /// Write what each frame cost as CSV when the window closes

@@ -15,7 +15,7 @@ use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer as Gui};
 use revmap::error::{self, Error, Result};
 use revmap::frame::Picture;
 use revmap::gpu::{Device, DrawPath, View};
-use revmap::scene::Scene;
+use revmap::scene::Camera;
 use revmap::settings::DrawStage;
 use std::rc::Rc;
 use std::time::Instant;
@@ -146,12 +146,12 @@ impl Stage {
         self.drawn.renderer.draw_paths()
     }
 
-    /// Draws a frame: the scene, unless the controls bring a picture of their own, then the
-    /// controls. Returns `None` if the window has another size. A scene that cannot be drawn is
+    /// Draws a frame: the scene with this camera and background, unless the controls bring a picture
+    /// of their own, then the controls. Returns `None` if the window has another size. A scene that cannot be drawn is
     /// left out, and `problem` gets the reason.
     pub fn draw(
         &mut self,
-        scene: Option<&Scene>,
+        scene: Option<(&Camera, [f32; 4])>,
         mut gui: FullOutput,
         context: &egui::Context,
         keep: bool,
@@ -164,8 +164,7 @@ impl Stage {
         let device = self.screen.frames.device_ms(frame.slot).unwrap_or(0.0);
         let start = Instant::now();
         let extent = self.screen.extent();
-        let prepared = scene.map(|scene| {
-            let camera = &scene.camera;
+        let prepared = scene.map(|(camera, _)| {
             let distance = (camera.eye - camera.target).length();
             let range = [0.01 * distance, 100.0 * distance];
             let view = View::from_camera(camera, (extent.width, extent.height), range)?;
@@ -184,7 +183,7 @@ impl Stage {
             Some(Ok(prepared)) => Some(prepared),
             None => None,
         };
-        let background = scene.map_or([0.0; 4], |scene| scene.background);
+        let background = scene.map_or([0.0; 4], |(_, background)| background);
         let (renderer, commands) = (&self.drawn.renderer, frame.commands);
         match (&self.traced, &draws) {
             (Some(traced), Some(prepared)) => {
@@ -221,17 +220,22 @@ impl Stage {
             compiled: compiled - self.compiled,
         };
         self.compiled = compiled;
-        if !self.freed.is_empty() {
-            self.host.wait();
-            for id in self.freed.drain(..) {
-                self.gui.free_texture(id).map_err(gui_error)?;
-            }
-        }
+        self.free_textures()?;
         Ok(Some(Frame {
             cost,
             stale: !fits,
             picture,
         }))
+    }
+
+    fn free_textures(&mut self) -> Result<()> {
+        if !self.freed.is_empty() {
+            self.host.wait();
+        }
+        for id in self.freed.drain(..) {
+            self.gui.free_texture(id).map_err(gui_error)?;
+        }
+        Ok(())
     }
 
     fn take_textures(&mut self, gui: &mut FullOutput) -> Result<()> {

@@ -101,6 +101,9 @@ fn a_brief_run_measures_every_combination() {
     for file in ["report.html", "machine.txt", "pictures/sphere@10.png"] {
         assert!(made.join(file).exists(), "{file}");
     }
+    let version = text(&run(folder.path(), &["--version"]).stdout);
+    let note = std::fs::read_to_string(made.join("machine.txt")).unwrap();
+    assert!(note.contains(&format!("\nprogram: {version}")), "{note}");
     assert!(
         text(&out.stdout).contains("RBM baseline"),
         "{}",
@@ -173,25 +176,11 @@ fn a_mesh_stands_beside_the_searches() {
 #[test]
 fn close_pictures_are_measured_beside_whole_ones() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = [
-        "bench",
-        SCENE,
-        "--quick",
-        "--size",
-        "64x48",
-        "--solver",
-        "hull",
-        "--stage",
-        "fragment",
-        "--framing",
-        "close,whole",
-        "--passes",
-        "2",
-        "--rounds",
-        "1",
-        "--out",
-        "f",
-    ];
+    let options = "--quick --size 64x48 --solver hull --stage fragment --framing close,whole \
+                   --passes 2 --rounds 1 --out f";
+    let arguments: Vec<&str> = (["bench", SCENE].into_iter())
+        .chain(options.split(' '))
+        .collect();
     let out = run(folder.path(), &arguments);
     assert!(out.status.success(), "{}", text(&out.stderr));
     let said = text(&out.stdout);

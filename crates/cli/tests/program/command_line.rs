@@ -30,6 +30,14 @@ fn wrong_usage() {
             ["--solver", "circle"],
         ),
         (
+            "bench scene.toml --solver exact,magic",
+            ["mesh:SEGMENTSxRINGS, floor", "circle"],
+        ),
+        (
+            "chart scene.toml --solver magic",
+            ["mesh:SEGMENTSxRINGS, floor", "default, "],
+        ),
+        (
             "render scene.toml -o a.png --solver mesh:2x1",
             ["--solver", "3 segments"],
         ),
@@ -220,6 +228,38 @@ fn paths_in_a_scene_are_relative_to_it() {
     let picture = image::open(bench.path("out.png")).unwrap().into_rgba8();
     assert_eq!(picture.get_pixel(16, 12).0[3], 255);
     assert_eq!(picture.get_pixel(0, 0).0[3], 0);
+}
+
+#[test]
+#[cfg(not(feature = "viewer"))]
+fn a_build_without_the_window_says_how_to_get_it() {
+    let bench = Bench::new();
+    let how = "`cargo install --path crates/cli --features viewer`";
+    for arguments in [
+        "view",
+        "view scene.toml",
+        "view scene.toml --show steps --frames 3",
+    ] {
+        bench.refused(arguments, 2, &[how]);
+    }
+}
+
+#[test]
+fn the_version_names_the_commit() {
+    let bench = Bench::new();
+    let version = String::from_utf8(bench.done("--version").stdout).unwrap();
+    let git = |arguments: &[&str]| {
+        let mut git = std::process::Command::new("git");
+        let git = git.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
+        let output = git.output().ok().filter(|git| git.status.success())?;
+        Some(String::from_utf8(output.stdout).unwrap())
+    };
+    // In a source package, which git does not track, it is the version alone.
+    let tracked = git(&["ls-files", "--error-unmatch", "build.rs"]);
+    let commit = tracked.and_then(|_| git(&["rev-parse", "--short=12", "HEAD"]));
+    let commit = commit.map_or(String::new(), |commit| format!(" ({})", commit.trim()));
+    let wanted = format!("revmap {}{commit}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(version, wanted);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod bad_input;
 #[cfg(unix)]
 mod bench_command;
+mod bench_compare;
 mod command_line;
 mod pictures;
 mod run;

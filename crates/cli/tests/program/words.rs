@@ -3,7 +3,7 @@
 use crate::run::Bench;
 use serde_json::Value;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "render",
     "animate",
     "bake",
@@ -13,6 +13,7 @@ const COMMANDS: [&str; 11] = [
     "shaders",
     "devices",
     "compare",
+    "view",
     "completions",
     "man",
 ];
@@ -25,7 +26,9 @@ fn text(bytes: Vec<u8>) -> String {
 #[test]
 fn every_help_has_examples() {
     let bench = Bench::new();
-    for command in COMMANDS {
+    // Without the window there is nothing to try.
+    let tried = |command: &&&str| **command != "view" || cfg!(feature = "viewer");
+    for command in COMMANDS.iter().filter(tried) {
         let help = text(bench.done(&format!("{command} --help")).stdout);
         let examples = help.split("Examples:\n").nth(1).unwrap();
         let lines: Vec<_> = examples
@@ -104,6 +107,25 @@ fn programs_get_json() {
     let found = json("compare truth.exr a.exr --json");
     assert_eq!(found["hits"], truth["hits"]);
     assert!(found["depth_p99_texels"].as_f64().unwrap() < 0.5 && found["flip"].is_f64());
+    let coarse = json("compare truth.exr a.exr --json --texel 0.0078125");
+    let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
+    // Texels are four times as long; h/512 stays.
+    assert_eq!(
+        number(&found, "depth_p99_texels"),
+        4.0 * number(&coarse, "depth_p99_texels")
+    );
+    for other in [
+        number(&found, "depth_p99_texels"),
+        number(&coarse, "depth_p99_h512"),
+    ] {
+        assert_eq!(number(&found, "depth_p99_h512"), other);
+    }
+    let said = text(bench.done("compare truth.exr a.exr").stdout);
+    assert!(
+        said.contains("texels of 0.001953 world units")
+            && said.contains("h/512 (height h = 1 world unit)"),
+        "{said}"
+    );
     assert!(found["first_difference"].is_string());
     assert_eq!(
         json("compare a.exr a.exr --json")["first_difference"],

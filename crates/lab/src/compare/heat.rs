@@ -48,10 +48,52 @@ impl Heat {
     }
 }
 
+/// A logarithmic scale of colours: dark blue at `low` and below, pale yellow at `high` and above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The value of the darkest colour, above 0.
+    pub low: f64,
+    /// The value of the brightest.
+    pub high: f64,
+}
+
+impl Scale {
+    /// Depth errors, texels.
+    pub const DEPTH: Self = Self {
+        low: 1e-3,
+        high: 10.0,
+    };
+    /// Angles between normals, degrees.
+    pub const NORMAL: Self = Self {
+        low: 1e-2,
+        high: 100.0,
+    };
+
+    /// The place of a value on the scale: 0 at `low`, 1 at `high`.
+    #[must_use]
+    pub fn place(self, value: f64) -> f64 {
+        (value.max(self.low) / self.low).log2() / (self.high / self.low).log2()
+    }
+
+    /// The value at a place.
+    #[must_use]
+    pub fn value(self, place: f64) -> f64 {
+        self.low * (self.high / self.low).powf(place)
+    }
+
+    /// The colour of a value.
+    #[must_use]
+    pub fn color(self, value: f64) -> [u8; 3] {
+        ramp(self.place(value))
+    }
+}
+
 const EMPTY: [u8; 3] = [40; 3];
 const BOTH: [u8; 3] = [110; 3];
-const MISSED: [u8; 3] = [0, 255, 255];
-const GHOST: [u8; 3] = [0, 255, 0];
+/// The colour of a missed pixel.
+pub const MISSED: [u8; 3] = [0, 255, 255];
+/// The colour of a ghost.
+pub const GHOST: [u8; 3] = [0, 255, 0];
 
 /// A picture of one kind of error.
 ///
@@ -64,11 +106,12 @@ pub fn heat_map(
     kind: Heat,
 ) -> Result<Picture> {
     check(reference, frame, options)?;
-    let decades = |error: f64, low: f64| ramp((error.max(low) / low).log10() / 4.0);
     let paint: Box<dyn Fn(usize) -> [u8; 3]> = match kind {
         Heat::Wrong => Box::new(|_| BOTH),
-        Heat::Depth => Box::new(|k| decades(depth_error(reference, frame, k, options.texel), 1e-3)),
-        Heat::Normal => Box::new(|k| decades(normal_error(reference, frame, k), 1e-2)),
+        Heat::Depth => {
+            Box::new(|k| Scale::DEPTH.color(depth_error(reference, frame, k, options.texel)))
+        }
+        Heat::Normal => Box::new(|k| Scale::NORMAL.color(normal_error(reference, frame, k))),
         Heat::Silhouette => Box::new(rims(reference, frame)),
         Heat::Flip => {
             let resolution = options.pixels_per_degree.unwrap_or(PIXELS_PER_DEGREE);
@@ -151,7 +194,7 @@ fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
 
 /// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
 /// too.
-pub(crate) fn ramp(place: f64) -> [u8; 3] {
+fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],
         [96.0, 20.0, 140.0],

@@ -6,9 +6,7 @@ mod pixels;
 mod silhouette;
 
 pub use flip::flip_map;
-#[cfg(feature = "report")]
-pub(crate) use heat::ramp;
-pub use heat::{Heat, heat_map, heat_sheet};
+pub use heat::{GHOST, Heat, MISSED, Scale, heat_map, heat_sheet};
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
@@ -65,6 +63,8 @@ pub struct Comparison {
     pub ghost: usize,
     /// Error of the distance along the ray, in texels; `None` when no pixel hits in both.
     pub depth: Option<Spread>,
+    /// World length of a texel, from [`CompareOptions`].
+    pub texel: f64,
     /// Angle between the normals `N`, degrees; `None` when no pixel hits in both.
     pub normal: Option<Spread>,
     /// Hausdorff distance of the silhouettes in pixels; `+inf` when only one frame hits anything.
@@ -78,6 +78,18 @@ impl Comparison {
     #[must_use]
     pub fn wrong(&self) -> f64 {
         (self.missed + self.ghost) as f64 / self.hits.max(1) as f64
+    }
+
+    /// Error of the distance along the ray in h/512: h = 1 world unit is the height of an unscaled
+    /// solid.
+    #[must_use]
+    pub fn depth_h512(&self) -> Option<Spread> {
+        let unit = 512.0 * self.texel;
+        self.depth.map(|d| Spread {
+            rms: d.rms * unit,
+            p99: d.p99 * unit,
+            max: d.max * unit,
+        })
     }
 }
 
@@ -93,7 +105,10 @@ impl std::fmt::Display for Comparison {
         writeln!(f, "hits        {} of {} pixels", self.hits, self.pixels)?;
         writeln!(f, "missed      {}", self.missed)?;
         writeln!(f, "ghost       {}", self.ghost)?;
-        writeln!(f, "depth       {}", spread(self.depth, "texels"))?;
+        let texels = format!("texels of {:.6} world units", self.texel);
+        writeln!(f, "depth       {}", spread(self.depth, &texels))?;
+        let heights = "h/512 (height h = 1 world unit)";
+        writeln!(f, "            {}", spread(self.depth_h512(), heights))?;
         writeln!(f, "normal      {}", spread(self.normal, "degrees"))?;
         writeln!(
             f,
@@ -192,6 +207,7 @@ fn measured(
         depth: spread(reference, frame, |k| {
             depth_error(reference, frame, k, options.texel)
         }),
+        texel: options.texel,
         normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
         silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
         flip: eye.map(|eye| flip::mean(&eye.flip(frame))),
@@ -347,6 +363,21 @@ mod tests {
                 .iter()
                 .all(|e| (e - 25.0).abs() < 1e-9),
             "{d:?}"
+        );
+        // The same in h/512: 0.25 units are 128 of them.
+        let h512 = c.depth_h512().unwrap();
+        assert!((h512.p99 - 128.0).abs() < 1e-9, "{h512:?}");
+        let text = c.to_string();
+        let depth: Vec<&str> = text.lines().skip(3).take(2).collect();
+        assert!(
+            depth[0].contains("p99 25.000000")
+                && depth[0].ends_with("texels of 0.010000 world units"),
+            "{text}"
+        );
+        assert!(
+            depth[1].contains("p99 128.000000")
+                && depth[1].ends_with("h/512 (height h = 1 world unit)"),
+            "{text}"
         );
         // On exactly 1 % of the pixels: the percentile does not see it, on one more it does.
         for (extra, p99) in [(0, 0.0), (1, 25.0)] {

@@ -73,6 +73,8 @@ pub struct Against {
     pub alone: (usize, usize),
     /// Device and driver of each.
     pub devices: [String; 2],
+    /// A warning for each of device, driver and processor that differs.
+    pub warnings: Vec<String>,
 }
 
 /// Reads two folders that `revmap bench` or `revmap chart` wrote.
@@ -118,12 +120,19 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     if pairs.is_empty() {
         return Err(Error::new(ErrorKind::Content, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
     }
+    let (old, new) = (before.machine(), after.machine());
     Ok(Against {
         alone: (
             before.results.records.len().saturating_sub(pairs.len()),
             after.results.records.len().saturating_sub(pairs.len()),
         ),
-        devices: [before.device(), after.device()],
+        warnings: (old.iter().zip(&new))
+            .filter(|((_, a), (_, b))| a != b && !a.is_empty() && !b.is_empty())
+            .map(|((name, a), (_, b))| {
+                format!("the runs differ in {name}: old {a:?}, new {b:?}; ratios of times are between machines")
+            })
+            .collect(),
+        devices: [&old, &new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
         pairs,
     })
 }

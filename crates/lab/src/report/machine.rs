@@ -19,16 +19,16 @@ pub struct Machine {
     pub system: String,
     /// Date and time of the start, UTC.
     pub date: String,
-    /// This program and its version.
+    /// This program, its version and commit.
     pub program: String,
     /// The command that makes the results again.
     pub command: String,
 }
 
 impl Machine {
-    /// This machine, now.
+    /// This machine, now. `version` is that of the program which measures.
     #[must_use]
-    pub fn here(device: &str, kind: &str, driver: &str, command: &str) -> Self {
+    pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
         let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let memory = field(&read("/proc/meminfo"), "MemTotal", ':')
@@ -50,7 +50,7 @@ impl Machine {
             date: jiff::Timestamp::now()
                 .strftime("%Y-%m-%d %H:%M UTC")
                 .to_string(),
-            program: format!("revmap {}", env!("CARGO_PKG_VERSION")),
+            program: format!("revmap {version}"),
             command: command.to_owned(),
         }
     }
@@ -104,7 +104,7 @@ impl Machine {
 }
 
 /// The value of the first line that starts with `key`.
-fn field(text: &str, key: &str, sign: char) -> Option<String> {
+pub(super) fn field(text: &str, key: &str, sign: char) -> Option<String> {
     text.lines()
         .filter_map(|line| line.split_once(sign))
         .find(|(name, _)| name.trim() == key)
@@ -121,6 +121,7 @@ mod tests {
             "llvmpipe (LLVM 15.0.6, 256 bits)",
             "cpu",
             "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)",
+            "0.1.0",
             "revmap bench",
         );
         assert!(

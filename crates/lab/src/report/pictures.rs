@@ -4,7 +4,7 @@ use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
 use super::plan::{Labels, is_rbm_baseline};
-use crate::compare::{Heat, heat_map, ramp};
+use crate::compare::{Heat, Scale, heat_map};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::{Frame, Picture};
@@ -24,8 +24,11 @@ pub struct Shot {
     pub size: (u32, u32),
 }
 
-/// Look-ups at which the heat map of steps is palest.
-pub const MOST_STEPS: f64 = 128.0;
+/// The heat map of steps.
+pub const STEPS: Scale = Scale {
+    low: 1.0,
+    high: 128.0,
+};
 /// Pictures in a page are at most this wide.
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
@@ -163,7 +166,7 @@ pub fn heat_key() -> String {
         "Look-ups: dark blue is 1, pale yellow {} or more, each doubling an equal step of brightness; grey is where nothing was looked up. \
          Error of depth: dark blue is a thousandth of a texel of a 512-row map or less, pale yellow 10 texels or more, four decades between; cyan pixels \
          are missed, green ones ghosts, grey is where there is nothing to hit.",
-        names::number(MOST_STEPS, 3)
+        names::number(STEPS.high, 3)
     )
 }
 
@@ -174,7 +177,7 @@ pub fn steps(frame: &Frame) -> Picture {
         let [r, g, b] = if steps < 1.0 {
             [40; 3]
         } else {
-            ramp(f64::from(steps).log2() / MOST_STEPS.log2())
+            STEPS.color(f64::from(steps))
         };
         [r, g, b, 255]
     };
@@ -232,7 +235,7 @@ mod tests {
         };
         assert_eq!(picture.rgba[0], [40, 40, 40, 255]);
         assert!(bright(1) < bright(2) && bright(2) < bright(3));
-        assert_eq!(picture.rgba[3][..3], ramp(1.0));
+        assert_eq!(picture.rgba[3][..3], STEPS.color(STEPS.high));
     }
 
     #[test]

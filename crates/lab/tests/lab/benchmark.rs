@@ -86,7 +86,13 @@ fn an_interrupt_keeps_what_was_measured() {
 #[test]
 fn a_runs_folder_is_whole() {
     let folder = tempfile::tempdir().unwrap();
-    let machine = Machine::here("stand-in", "none", "driver 1, with a comma", "revmap bench");
+    let machine = Machine::here(
+        "stand-in",
+        "none",
+        "driver 1, with a comma",
+        "0",
+        "revmap bench",
+    );
     let plan = plan();
     let mut album = Album::new(
         folder.path(),

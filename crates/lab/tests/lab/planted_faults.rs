@@ -88,7 +88,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     // In the chart its marker stands further right: marks in order of series, the markers of the
     // plot before those of the legend.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
-    let machine = Machine::here("stand-in", "none", "none", "revmap bench");
+    let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let plan = plan();
     let context = Context {
         rows: &outcome.rows,
@@ -150,7 +150,7 @@ fn a_clock_that_lies_is_rejected() {
         marked.records[0]
     );
     // In results.csv the lie is not told.
-    let machine = Machine::here("stand-in", "none", "none", "revmap bench");
+    let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let results = results(&outcome.rows, &plan(), &machine, 0.25).unwrap();
     let (method, gpu, frame) = (
         results.column("solver").unwrap(),

@@ -1,6 +1,7 @@
 //! A run read back from its folder.
 
 use crate::report::columns::{CONTRACT, results as columns};
+use crate::report::machine;
 use crate::report::stats;
 use crate::report::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
@@ -14,6 +15,8 @@ pub(super) struct Run {
     pub(super) results: Table,
     /// Each row's medians by pass.
     pub(super) medians: HashMap<usize, Vec<f64>>,
+    /// The processor, with its threads; empty without `machine.txt`.
+    processor: String,
 }
 
 /// Columns that make a row the RBM baseline, and their values.
@@ -96,9 +99,12 @@ impl Run {
                     .collect(),
             )
         });
+        // Tables that were put together from several runs have none.
+        let note = std::fs::read_to_string(folder.join("machine.txt")).unwrap_or_default();
         Ok(Self {
             results,
             medians: medians.collect(),
+            processor: machine::field(&note, "processor", ':').unwrap_or_default(),
         })
     }
 
@@ -141,14 +147,17 @@ impl Run {
         Some(own.iter().zip(rival).map(|(a, b)| a / b).collect())
     }
 
-    /// Its device and driver.
-    pub(super) fn device(&self) -> String {
-        let Some(record) = self.results.records.first() else {
-            return String::new();
+    /// Device, driver and processor, each with its name; empty where unknown.
+    pub(super) fn machine(&self) -> [(&'static str, String); 3] {
+        let first = |name: &str| {
+            let at = self.results.column(name).ok()?;
+            Some(self.results.records.first()?[at].clone())
         };
-        let named = |name: &str| self.results.column(name).ok().map(|at| record[at].as_str());
-        [named("device"), named("driver")]
-            .map(Option::unwrap_or_default)
-            .join(", ")
+        let named = |name| (name, first(name).unwrap_or_default());
+        [
+            named("device"),
+            named("driver"),
+            ("processor", self.processor.clone()),
+        ]
     }
 }

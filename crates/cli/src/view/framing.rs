@@ -1,0 +1,104 @@
+//! The part of the window that the panel leaves free: the scene is centred in it.
+
+use revmap::frame::Picture;
+use revmap::scene::Camera;
+
+/// Pixels of the window, and those at its left that the panel covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Framing {
+    pub window: (u32, u32),
+    left: u32,
+}
+
+impl Framing {
+    /// A panel that covers most of the window covers the picture, too.
+    pub fn new(window: (u32, u32), panel: u32) -> Self {
+        let left = if panel > window.0 / 3 * 2 { 0 } else { panel };
+        Self { window, left }
+    }
+
+    /// Pixels of the free part.
+    fn free(&self) -> (u32, u32) {
+        (self.window.0 - self.left, self.window.1)
+    }
+
+    /// The factor by which the picture shrinks: the shorter side of the window over that of the
+    /// free part.
+    fn shrinking(&self) -> f64 {
+        let shorter = |(width, height): (u32, u32)| f64::from(width.min(height).max(1));
+        shorter(self.window) / shorter(self.free())
+    }
+
+    /// The camera for pictures of the window's size divided by `side`: its target is drawn in the
+    /// middle of the free part.
+    pub fn camera(&self, camera: &Camera, side: u32) -> Camera {
+        let mut framed = *camera;
+        let half = (camera.fov_y.to_radians() * 0.5).tan() * self.shrinking();
+        framed.fov_y = 2.0 * half.atan().to_degrees();
+        framed.shift[0] -= f64::from(self.left) * 0.5 / f64::from(side);
+        framed
+    }
+
+    /// The height that the field of view of the unframed camera has in the window, pixels.
+    pub fn height(&self) -> f64 {
+        f64::from(self.window.1) / self.shrinking()
+    }
+
+    /// The free part of a picture of the window.
+    pub fn crop(&self, picture: &Picture) -> Picture {
+        let left = self.left.min(picture.width.saturating_sub(1));
+        let rows = picture.rgba.chunks_exact(picture.width as usize);
+        Picture {
+            width: picture.width - left,
+            height: picture.height,
+            rgba: rows.flat_map(|row| row[left as usize..].to_vec()).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use glam::DVec3;
+    use revmap::scene::CameraFrame;
+
+    #[test]
+    fn the_target_is_in_the_middle_of_the_free_part() {
+        let camera = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
+        for (window, panel, middle) in [
+            ((1200, 800), 300, 750.0),
+            ((800, 600), 300, 550.0),
+            ((1200, 800), 0, 600.0),
+            ((300, 600), 280, 150.0),
+        ] {
+            let framing = Framing::new(window, panel);
+            let framed = framing.camera(&camera, 1);
+            let frame = CameraFrame::new(&framed, window.0, window.1).unwrap();
+            assert_eq!(frame.middle, [middle, f64::from(window.1) * 0.5]);
+            // A ray at the edge of the shorter side of the window is now at that of the free part.
+            let before = CameraFrame::new(&camera, window.0, window.1).unwrap();
+            let shorter = |(w, h): (u32, u32)| f64::from(w.min(h));
+            let edge = |frame: &CameraFrame, side: f64| frame.up.length() * side;
+            let (a, b) = (shorter(window), shorter(framing.free()));
+            assert!((edge(&before, a) - edge(&frame, b)).abs() < 1e-12);
+            let half = framing.camera(&camera, 2);
+            assert_eq!(2.0 * half.shift[0], framed.shift[0]);
+        }
+    }
+
+    #[test]
+    fn a_picture_is_cut_to_the_free_part() {
+        let rgba = (0..12).map(|n| [n, 0, 0, 255]).collect();
+        let picture = Picture {
+            width: 6,
+            height: 2,
+            rgba,
+        };
+        let framing = Framing::new((6, 2), 4);
+        let cut = framing.crop(&picture);
+        assert_eq!((cut.width, cut.height), (2, 2));
+        let reds: Vec<_> = cut.rgba.iter().map(|p| p[0]).collect();
+        assert_eq!(reds, [4, 5, 10, 11]);
+    }
+}

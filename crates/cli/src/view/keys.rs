@@ -1,0 +1,180 @@
+//! The keys of the window: one table of what they do and of what the help says.
+
+use super::shown::Inspected;
+use egui::{Event, Key};
+use revmap::settings::DrawStage;
+
+/// The effect of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    Help,
+    Panel,
+    Show(Inspected),
+    Stage(DrawStage),
+    ResetCamera,
+    Screenshot,
+    Undo,
+    /// Closes the help, or the window.
+    Close,
+}
+
+/// Keys with one effect.
+pub struct Binding {
+    keys: &'static [Key],
+    /// True if Ctrl (or Cmd) is held with the key.
+    command: bool,
+    action: Action,
+    /// Names of the keys, and their effect, in the help.
+    pub help: [&'static str; 2],
+}
+
+const fn key(keys: &'static [Key], action: Action, help: [&'static str; 2]) -> Binding {
+    let command = matches!(action, Action::Undo);
+    Binding {
+        keys,
+        command,
+        action,
+        help,
+    }
+}
+
+/// All keys, in the order of the help.
+pub const KEYS: [Binding; 13] = [
+    key(
+        &[Key::H, Key::Questionmark, Key::F1],
+        Action::Help,
+        ["H or ?", "show or hide this help"],
+    ),
+    key(
+        &[Key::Tab],
+        Action::Panel,
+        ["Tab", "show or hide the panel"],
+    ),
+    key(
+        &[Key::Num1],
+        Action::Show(Inspected::Color),
+        ["1", "lit colours"],
+    ),
+    key(&[Key::Num2], Action::Show(Inspected::Depth), ["2", "depth"]),
+    key(
+        &[Key::Num3],
+        Action::Show(Inspected::Normals),
+        ["3", "normals"],
+    ),
+    key(
+        &[Key::Num4],
+        Action::Show(Inspected::Steps),
+        ["4", "steps of each pixel's search"],
+    ),
+    key(
+        &[Key::Num5],
+        Action::Show(Inspected::Error),
+        ["5", "depth error against the reference (takes seconds)"],
+    ),
+    key(
+        &[Key::F],
+        Action::Stage(DrawStage::Fragment),
+        ["F", "trace in the fragment stage"],
+    ),
+    key(
+        &[Key::C],
+        Action::Stage(DrawStage::Compute),
+        ["C", "trace in the compute stage"],
+    ),
+    key(&[Key::R], Action::ResetCamera, ["R", "reset the camera"]),
+    key(
+        &[Key::P],
+        Action::Screenshot,
+        ["P", "save the picture as PNG beside the scene"],
+    ),
+    key(&[Key::Z], Action::Undo, ["Ctrl+Z", "undo"]),
+    key(
+        &[Key::Escape],
+        Action::Close,
+        ["Esc", "close this help, or quit"],
+    ),
+];
+
+/// Takes the keys of the table out of the events, and returns the effects of those pressed.
+pub fn take(events: &mut Vec<Event>) -> Vec<Action> {
+    let mut actions = Vec::new();
+    events.retain(|event| {
+        let Event::Key {
+            key,
+            pressed,
+            repeat,
+            modifiers,
+            ..
+        } = event
+        else {
+            return true;
+        };
+        let held = modifiers.command || modifiers.ctrl;
+        let bound = KEYS
+            .iter()
+            .find(|one| one.keys.contains(key) && one.command == held && !modifiers.alt);
+        if let Some(bound) = bound.filter(|_| *pressed && !repeat) {
+            actions.push(bound.action);
+        }
+        bound.is_none()
+    });
+    actions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::Modifiers;
+
+    fn event(key: Key, modifiers: Modifiers, pressed: bool, repeat: bool) -> Event {
+        Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat,
+            modifiers,
+        }
+    }
+
+    #[test]
+    fn each_key_has_one_effect_and_a_line_of_help() {
+        let all: Vec<_> = KEYS.iter().flat_map(|one| one.keys).collect();
+        for (n, key) in all.iter().enumerate() {
+            assert!(!all[..n].contains(key), "{key:?}");
+        }
+        for (_, inspected) in Inspected::NAMES {
+            let shows = |one: &&Binding| one.action == Action::Show(inspected);
+            assert_eq!(KEYS.iter().filter(shows).count(), 1, "{inspected:?}");
+        }
+        assert!(
+            KEYS.iter()
+                .all(|one| one.help.iter().all(|h| !h.is_empty()))
+        );
+    }
+
+    #[test]
+    fn pressed_keys_act_once_and_are_taken() {
+        let (none, ctrl) = (Modifiers::NONE, Modifiers::COMMAND);
+        let mut events = vec![
+            event(Key::Tab, none, true, false),
+            event(Key::Tab, none, true, true),
+            event(Key::Tab, none, false, false),
+            event(Key::Questionmark, Modifiers::SHIFT, true, false),
+            event(Key::Z, none, true, false),
+            event(Key::Z, ctrl, true, false),
+            event(Key::R, ctrl, true, false),
+            event(Key::A, none, true, false),
+        ];
+        assert_eq!(
+            take(&mut events),
+            [Action::Panel, Action::Help, Action::Undo]
+        );
+        // Keys without an effect are left to the controls.
+        let left = |e: &Event| match e {
+            Event::Key { key, .. } => Some(*key),
+            _ => None,
+        };
+        let left: Vec<_> = events.iter().filter_map(left).collect();
+        assert_eq!(left, [Key::Z, Key::R, Key::A]);
+    }
+}
