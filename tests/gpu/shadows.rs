@@ -171,9 +171,11 @@ fn soft_shadows_are_the_references() {
             let solver = solver.name();
             println!("{name}, {solver}: {error:.4} over {count}; hard {hard:.4}, small {small:.4}");
             assert!(count > 200, "{name}: {count}");
-            assert!(error < 0.07, "{name}, {solver}: {error}");
+            // Rays of `live` begin a texel and a half off the surface.
+            let most = if solver == "live" { 0.1 } else { 0.06 };
+            assert!(error < most, "{name}, {solver}: {error}");
             assert!(
-                hard > 3.0 * error && small > 1.5 * error,
+                hard > 3.0 * error && small > 2.0 * error,
                 "{name}, {solver}"
             );
         }

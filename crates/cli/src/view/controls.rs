@@ -166,7 +166,13 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
             let turned = any(direction
                 .iter_mut()
                 .map(|v| ui.add(DragValue::new(v).speed(0.01)).changed()));
-            turned | ui.color_edit_button_rgb(&mut light.color).changed()
+            let colored = ui.color_edit_button_rgb(&mut light.color).changed();
+            let radius = DragValue::new(&mut light.radius)
+                .range(0.0..=Light::LARGEST_RADIUS)
+                .speed(0.05)
+                .suffix("°");
+            let sized = scene.shadow == Shadow::Soft && ui.add(radius).changed();
+            turned | colored | sized
         });
     }
     changed
