@@ -21,10 +21,10 @@ pub enum Over {
     First,
     /// A mesh of the same picture in the fragment stage.
     Mesh,
-    /// Of rows in the compute stage: the same way in the fragment stage.
+    /// The same way in the fragment stage. Only rows in the compute stage have one.
     Fragment,
-    /// Of exact rows of the default search: the fastest other search in the same picture and stage
-    /// whose depth errors are below a texel (99th percentile).
+    /// The fastest other search in the same picture and stage whose depth errors are below a texel
+    /// (99th percentile). Only exact rows of the default search have one.
     Rival,
 }
 

@@ -235,16 +235,22 @@ impl Run<'_> {
             false => format!("{least} to {most}"),
         };
         let wide = 100.0 * self.file.time.resolved;
+        let limit = self.file.time.limit().as_secs_f64();
+        let added = match self.file.time.is_fixed() {
+            true => String::new(),
+            false => format!(
+                " Passes were added to pictures with such a time until it was resolved or {} s had passed. Stopping so makes intervals a little too narrow.",
+                number(limit, 3)
+            ),
+        };
         page.text(&format!(
             "All ways of drawing one picture are drawn in turn, one frame each and there and back, so that a machine that slows down slows all of them; drivers' compilers \
              run before the first frame that counts. This is repeated in {passes} passes over all pictures, each with maps, buffers and pipelines made anew; {} to {} \
              frames of each row were timed in {} s. A time is the geometric mean of the passes' medians, its interval Student's over the passes, with 95 % confidence: it covers how this \
-             run would have come out again on this machine, not how another machine would. A time whose interval reaches more than {wide:.0} % to either side is not resolved: passes were added to its picture \
-             until it was or until {} s had passed. Intervals that were watched in this way are a little too narrow.",
+             run would have come out again on this machine, not how another machine would. A time whose interval reaches more than {wide:.0} % to either side is not resolved.{added}",
             samples.clone().min().unwrap_or(0),
             samples.max().unwrap_or(0),
             number(measured.took.as_secs_f64(), 3),
-            number(self.file.time.limit().as_secs_f64(), 3),
         ));
         page.text(&format!(
             "The device's timestamps stand around the work of one frame in one stage alone; the wall clock counts from submission to completion, without reading back. Rows in \

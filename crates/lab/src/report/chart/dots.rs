@@ -60,9 +60,10 @@ impl DotChart {
     #[must_use]
     pub fn figure(&self) -> Figure {
         let lines = || self.blocks.iter().flat_map(|b| &b.lines);
-        // An interval without an end says nothing and must not stretch the axis.
+        // An interval without an end or too wide must not stretch the axis.
         let ends = lines().flat_map(|l| {
-            let (low, high) = l.value.ends().unwrap_or((l.value.value, l.value.value));
+            let ends = l.value.ends().filter(|_| !l.unresolved);
+            let (low, high) = ends.unwrap_or((l.value.value, l.value.value));
             [low, l.value.value, high]
         });
         let scale = Scale::new(&self.axis, ends.chain(self.mark));
@@ -73,7 +74,7 @@ impl DotChart {
         let values = widest(&|l| width(&l.number(), TEXT));
         let left = (EDGE + names + 12.0).min(WIDTH * 0.55);
         let right = WIDTH - EDGE - values - 14.0;
-        let at = |v: f64| Some(left + scale.place(v)? * (right - left));
+        let at = |v: f64| Some((left + scale.place(v)? * (right - left)).clamp(left, right));
         let heads = self.blocks.iter().filter(|b| !b.name.is_empty()).count();
         let bottom = top + STEP * (heads + lines().count()) as f64 + 6.0;
         let mut end = f64::NEG_INFINITY;

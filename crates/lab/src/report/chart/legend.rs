@@ -55,11 +55,11 @@ pub(super) fn unresolved() -> (String, Key) {
 
 /// The stroke through the marker of what is not resolved.
 pub(super) fn strike((x, y): (f64, f64)) -> Mark {
-    let reach = MARKER;
+    let reach = 0.75 * MARKER;
     Mark::Line {
         points: vec![(x - reach, y + reach), (x + reach, y - reach)],
         color: INK,
-        width: 1.6,
+        width: 1.2,
         dash: Dash::Solid,
     }
 }

@@ -20,7 +20,8 @@ pub struct Point {
     pub spread: Option<(f64, f64)>,
     /// The ends of its interval up, where they are known.
     pub rise: Option<(f64, f64)>,
-    /// True if its interval is too wide: it is struck through.
+    /// True if its interval is too wide: it is struck through, and has no bars, which would fill the
+    /// plot.
     pub unresolved: bool,
     /// A word beside it, where there is room.
     pub label: Option<String>,
@@ -226,9 +227,9 @@ impl Drawing {
                     .line(points, style.color, style.line(), style.dash);
             }
             for ((x, y), point) in places {
-                self.bars(plot, point, (x, y), style.color);
-                if point.unresolved {
-                    struck.push(strike((x, y)));
+                match point.unresolved {
+                    true => struck.push(strike((x, y))),
+                    false => self.bars(plot, point, (x, y), style.color),
                 }
                 let dot = dot(style, (x, y));
                 self.taken.push(dot.bounds());

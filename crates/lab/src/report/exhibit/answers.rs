@@ -5,7 +5,7 @@ use crate::method::Method;
 use crate::report::columns::{Cell, Context};
 use crate::report::names::number;
 use crate::report::picture_groups::pictures_of;
-use crate::report::plan::grouped;
+use crate::report::plan::{grouped, is_rbm_baseline};
 use crate::report::ratios::{Over, Ratio, between, mean_ms, over};
 use crate::report::row::Row;
 use crate::report::stats::{Interval, Verdict};
@@ -51,14 +51,28 @@ fn range((low, high): (f64, f64)) -> String {
     format!("{} to {}", number(low, 3), number(high, 3))
 }
 
-/// The answer for each way of drawing by the default search; of all others where it was not
-/// measured.
+/// The answer for each way of drawing by the default search; for other searches where the plan has
+/// it not.
 fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
     let own = owned(rows);
     let all = over(&own, Over::Fragment);
     let default = |r: &&Ratio| r.settings.method == Method::DEFAULT;
-    let any = all.iter().any(|r| default(&r));
-    let chosen = all.iter().filter(|r| !any || default(r));
+    let drawn = |stage: DrawStage| {
+        let own = |r: &Row| (r.settings.method, r.settings.stage) == (Method::DEFAULT, stage);
+        rows.iter().any(|r| own(r))
+    };
+    let both = drawn(DrawStage::Fragment) && drawn(DrawStage::Compute);
+    if both && !all.iter().any(|r| default(&r)) {
+        return vec![format!(
+            "On {} the stages cannot be compared for `{}`: in no picture do the clocks agree in both.",
+            context.device,
+            Method::DEFAULT.name()
+        )];
+    }
+    let other = |r: &&Ratio| r.settings.method != Method::Floor && !is_rbm_baseline(&r.settings);
+    let chosen = all
+        .iter()
+        .filter(|r| if both { default(r) } else { other(r) });
     let sentence = |r: &Ratio| {
         let pictures = r.pairs.len();
         let spread = match pictures {
@@ -297,6 +311,18 @@ mod tests {
         );
         assert!(record[2].ends_with(", not resolved"), "{record:?}");
         assert_eq!(record[4], "not resolved");
+        let rows = [
+            timed(Method::DEFAULT, Fragment, 0, &[10.0, 10.0]),
+            timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0]),
+            timed(Solver::Live.into(), Compute, 0, &[5.0, 5.0]),
+        ];
+        assert!(stages_of(&rows).0[0].contains("0.5 of the fragment stage's time for `live`"));
+        let mut lies = rows[0].clone();
+        lies.settings.stage = Compute;
+        lies.passes[0][0].gpu_ms = Some(0.1);
+        let (answers, _) = stages_of(&[rows.to_vec(), vec![lies]].concat());
+        assert_eq!(answers.len(), 1);
+        assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
         let (slower, record) = answer(&[15.0, 15.1, 15.0]);
         assert!(slower.ends_with(": the fragment stage is faster."));
         assert_eq!(record[4], "fragment");

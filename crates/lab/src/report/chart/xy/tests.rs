@@ -227,7 +227,7 @@ fn unresolved_points_are_struck_through() {
     let mut chart = piled();
     assert_eq!(strokes(&chart), (0, 0));
     chart.series[1].points[0].unresolved = true;
-    chart.series[1].points[0].rise = Some((2.0, 5.0));
+    chart.series[0].points[0].rise = Some((2.0, 5.0));
     // One in the plot and one in the legend.
     assert_eq!(strokes(&chart), (2, 1));
 }
