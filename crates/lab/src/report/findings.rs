@@ -17,10 +17,10 @@ pub(super) fn findings(page: &mut Page, context: &Context) {
     }
     let plain = |r: &Ratio| r.settings.method == Method::DEFAULT;
     for (reference, name) in [
-        (Over::Baseline, format!("of that of {}", context.baseline())),
+        (Over::Baseline, context.baseline()),
         (
             Over::Mesh,
-            "of that of the coarsest mesh that is at least as accurate".to_owned(),
+            "the coarsest mesh that is at least as accurate".to_owned(),
         ),
     ] {
         let all = over(rows, reference);
@@ -38,7 +38,7 @@ pub(super) fn findings(page: &mut Page, context: &Context) {
             .collect();
         if !own.is_empty() {
             page.lead(format!(
-                "The default takes this part {name} time (95 % interval): {}.",
+                "The default takes this part of the time of {name} (95 % interval): {}.",
                 own.join("; ")
             ));
         }
