@@ -74,6 +74,10 @@ struct What {
     /// The cost of a tolerance: errors and times of ten scenes at five tolerances
     #[arg(long)]
     budget: bool,
+    /// The default search against the other exact ones from 64x48 to 800x600, with and without
+    /// shadows: where it is the wrong choice
+    #[arg(long)]
+    sizes: bool,
     /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them
     #[arg(long)]
     crowds: bool,
@@ -124,6 +128,7 @@ impl Bench {
             (what.tables, "tables"),
             (what.scaling, "scaling"),
             (what.budget, "budget"),
+            (what.sizes, "sizes"),
             (what.crowds, "crowds"),
             (what.antialiasing, "antialiasing"),
             (self.scale.full, "full"),

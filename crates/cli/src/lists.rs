@@ -74,6 +74,10 @@ pub struct Lists {
     /// Frames of each row in a pass [default: as time allows, at least 2]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub rounds: Option<u16>,
+    /// Seconds after which no further pass begins [default: the plan's limit, else twice the time
+    /// that it means to take]
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_seconds: Option<u32>,
     /// Any key of the scenes, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", requires = "scenes")]
     pub set: Vec<String>,
@@ -120,6 +124,7 @@ impl Lists {
             },
             passes: self.passes.map(usize::from),
             rounds: self.rounds.map(usize::from),
+            max_seconds: self.max_seconds.map(f64::from),
         })
     }
 

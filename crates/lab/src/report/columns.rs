@@ -1,9 +1,13 @@
 //! The one description of every column: its name in files, its heading on pages, its meaning, and the
 //! cell of a row.
 
-use super::names::{number, percent};
+mod cell;
+
+pub use cell::Cell;
+
+use super::names::number;
 use super::plan::{Plan, RBM_BASELINE, is_rbm_baseline};
-use super::ratios::{Over, above_floor, between};
+use super::ratios::{Over, above_floor, baseline_stage, between};
 use super::row::{Clocks, Row};
 use super::series_style::SeriesStyles;
 use super::stats::{self, Interval};
@@ -12,86 +16,8 @@ use crate::compare::PixelErrors;
 use crate::method::{Edges, Method};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::MapSource;
-use revmap::scene::Offset;
-use revmap::settings::Tolerance;
-
-/// The content of a cell.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
-    /// Nothing.
-    Empty,
-    /// Words.
-    Text(String),
-    /// A number that is a count.
-    Count(u64),
-    /// A number.
-    Number(f64),
-    /// A share, shown in percent.
-    Share(f64),
-    /// A value with its interval.
-    Known(Interval),
-}
-
-impl Cell {
-    /// Its text in files.
-    #[must_use]
-    pub fn csv(&self) -> String {
-        match self {
-            Self::Empty => String::new(),
-            Self::Text(text) => text.clone(),
-            Self::Count(count) => count.to_string(),
-            Self::Number(value) | Self::Share(value) => number(*value, 6),
-            Self::Known(interval) => number(interval.value, 6),
-        }
-    }
-
-    /// Its text in tables.
-    #[must_use]
-    pub fn shown(&self) -> String {
-        match self {
-            Self::Empty => "–".to_owned(),
-            Self::Number(value) => number(*value, 3),
-            Self::Share(share) => percent(*share),
-            Self::Known(i) if i.high.is_finite() => {
-                let [value, low, high] = [i.value, i.low, i.high].map(|v| number(v, 3));
-                format!("{value} ({low} to {high})")
-            }
-            Self::Known(interval) => number(interval.value, 3),
-            Self::Text(_) | Self::Count(_) => self.csv(),
-        }
-    }
-
-    /// The value, if it is a number.
-    #[must_use]
-    pub fn value(&self) -> Option<f64> {
-        match self {
-            Self::Empty | Self::Text(_) => None,
-            Self::Count(count) => Some(*count as f64),
-            Self::Number(value) | Self::Share(value) => Some(*value),
-            Self::Known(interval) => Some(interval.value),
-        }
-    }
-
-    pub(super) fn text(text: impl Into<String>) -> Self {
-        Self::Text(text.into())
-    }
-
-    pub(super) fn number(value: impl Into<Option<f64>>) -> Self {
-        value.into().map_or(Self::Empty, Self::Number)
-    }
-
-    pub(super) fn known(value: Option<Interval>) -> Self {
-        value.map_or(Self::Empty, Self::Known)
-    }
-
-    fn count(count: impl Into<Option<usize>>) -> Self {
-        count.into().map_or(Self::Empty, |n| Self::Count(n as u64))
-    }
-
-    fn name(text: Option<&str>) -> Self {
-        text.map_or(Self::Empty, Self::text)
-    }
-}
+use revmap::scene::{Offset, Shadow};
+use revmap::settings::{Tolerance, name_of};
 
 /// The sources of cells beside their row.
 pub struct Context<'a> {
@@ -137,7 +63,7 @@ macro_rules! columns {
 }
 
 /// How many columns `results.csv` has: the first of all.
-pub const RESULTS: usize = 36;
+pub const RESULTS: usize = 40;
 
 /// How many of them every version writes, before all others.
 pub const CONTRACT: usize = 31;
@@ -167,8 +93,18 @@ fn pixels(row: &Row, of: fn(&PixelErrors) -> Cell) -> Cell {
 }
 
 fn over(context: &Context, row: &Row, other: Over) -> Cell {
-    let other = other.of(context.rows, row);
-    Cell::known(other.and_then(|other| between(row, other)))
+    context.known(ratio(context, row, other))
+}
+
+/// A row's time over another's.
+fn ratio(context: &Context, row: &Row, other: Over) -> Option<Interval> {
+    between(row, other.of(context.rows, row)?)
+}
+
+/// An end of the interval of a row's time over that of the fragment stage.
+fn stages_end(context: &Context, row: &Row, of: fn((f64, f64)) -> f64) -> Cell {
+    let ends = ratio(context, row, Over::Fragment).and_then(|i| i.ends());
+    Cell::number(ends.map(of))
 }
 
 fn within(row: &Row) -> Cell {
@@ -232,6 +168,10 @@ pub static COLUMNS: &[Column] = columns! {
     "tolerance_px", "tolerance (pixels)", "allowed error of silhouettes and depths in pixels, of searches on patches; 0 is exact" => |_, r| Cell::number(r.settings.method.follows_tolerance().then(|| r.settings.tolerance.pixels()));
     "above_floor_ms", "above the floor (ms)", "time less that of the floor in the same picture and stage: what the search itself takes" => |c, r| Cell::number(above_floor(c.rows, r));
     "resolved", "resolved", "whether the interval of the time is as narrow as the plan demands; figures that are not are left out of Pareto fronts" => |c, r| Cell::text(if r.resolved(c.resolved) { "yes" } else { "no" });
+    "time_over_fragment", "time / fragment stage", "time of the compute stage over that of the same method in the fragment stage, same picture" => |c, r| over(c, r, Over::Fragment);
+    "time_over_fragment_low", "time / fragment stage, low", "lower end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.0);
+    "time_over_fragment_high", "time / fragment stage, high", "upper end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.1);
+    "shadow", "shadows", "shadows in the scene: off, hard or soft" => |_, r| Cell::text(name_of(&Shadow::NAMES, &r.shadow));
     "framing", "framing", "whole: the solid from head to foot; close: the field of view narrowed until the solid's box is a quarter larger than a picture of 4:3" => |_, r| Cell::text(r.framing.name());
     "value", "value", "parameter of the form, in plans that vary one" => |_, r| Cell::number(r.value);
     "method", "method", "the solver, and what else differs between the ways of drawing that are measured" => |c, r| Cell::text(c.styles.way(&r.settings));
@@ -244,13 +184,15 @@ pub static COLUMNS: &[Column] = columns! {
     "time_low_ms", "time, low (ms)", "lower end of the 95 % interval of the time" => |_, r| Cell::number(r.time().and_then(|t| t.ends()).map(|e| e.0));
     "time_high_ms", "time, high (ms)", "upper end of the 95 % interval of the time" => |_, r| Cell::number(r.time().and_then(|t| t.ends()).map(|e| e.1));
     "rate", "frames / s", "1000 over the time" => |_, r| Cell::number(r.time().map(|t| 1e3 / t.value));
-    "above_floor", "above the floor / RBM baseline", "time above the floor over the whole time of the RBM baseline in the same picture and stage" => |c, r| {
+    "above_floor", "above the floor / RBM baseline", "time above the floor over the whole time of the RBM baseline (see time / RBM baseline)" => |c, r| {
         let baseline = Over::Baseline.of(c.rows, r).and_then(Row::time);
         Cell::number(above_floor(c.rows, r).zip(baseline).map(|(above, t)| above / t.value))
     };
-    "time_over_rbm_baseline", "time / RBM baseline", "time over that of the RBM baseline in the same picture and stage" => |c, r| over(c, r, Over::Baseline);
+    "time_over_rbm_baseline", "time / RBM baseline", "time over that of the RBM baseline in the same picture: one for both stages, drawn in the fragment stage, or in the compute stage where only that was measured" => |c, r| over(c, r, Over::Baseline);
     "time_over_exact", "time / exact", "time over that of the exact picture in the same stage" => |c, r| over(c, r, Over::Exact);
     "time_over_1_ray", "time / 1 ray", "time over that of one ray per pixel in the same picture and stage" => |c, r| over(c, r, Over::Exact);
+    "time_over_rival", "exact / fastest other", "time of the default search, exact, over that of the fastest other search in the same picture and stage whose depth errors are below a texel (99th percentile)" => |c, r| over(c, r, Over::Rival);
+    "rival", "fastest other", "the fastest other search in the same picture and stage whose depth errors are below a texel" => |c, r| Cell::name(Over::Rival.of(c.rows, r).map(|o| o.settings.method.name()));
     "time_over_one_solid", "time / one solid", "time over that of one solid seen close, drawn in the same way; of the floor, over the solid that is searched" => |c, r| over(c, r, Over::One);
     "by_equal_pixels", "by equal pixels", "the same over the ratio of the pixels hit" => |c, r| {
         let one = Over::One.of(c.rows, r);
@@ -295,6 +237,23 @@ pub fn named(name: &str) -> Result<&'static Column> {
 }
 
 impl Context<'_> {
+    /// The cell of a value with its interval.
+    pub(super) fn known(&self, value: Option<Interval>) -> Cell {
+        match value {
+            Some(i) if i.relative() <= self.resolved => Cell::Known(i),
+            Some(i) => Cell::Unresolved(i),
+            None => Cell::Empty,
+        }
+    }
+
+    /// The RBM baseline that all times are put over, with its stage.
+    pub(super) fn baseline(&self) -> String {
+        format!(
+            "the RBM baseline in the {} stage",
+            baseline_stage(self.rows).name()
+        )
+    }
+
     /// The ends of an interval, and whether it is as narrow as the plan demands.
     pub(super) fn ends(&self, i: &Interval) -> String {
         let wide = if i.relative() > self.resolved {
@@ -324,7 +283,9 @@ impl Context<'_> {
     pub fn file(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         // A number in each cell: an interval is two columns.
         let split = |name: &str| match name {
-            "time_interval" => vec!["time_low_ms".to_owned(), "time_high_ms".to_owned()],
+            "time_interval" => ["time_low_ms", "time_high_ms", "resolved"]
+                .map(str::to_owned)
+                .to_vec(),
             name => vec![name.to_owned()],
         };
         let names: Vec<String> = names.iter().flat_map(|n| split(n.as_ref())).collect();

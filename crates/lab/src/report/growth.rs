@@ -10,8 +10,10 @@ use crate::method::MethodSettings;
 pub struct Growth {
     /// The way, without what is varied.
     pub way: MethodSettings,
-    /// `(quantity, ms)`, growing.
+    /// `(quantity, ms)` of resolved times, growing.
     pub points: Vec<(f64, f64)>,
+    /// How many times were measured, resolved or not.
+    pub measured: usize,
     /// The medians of each pass, point by point.
     passes: Vec<Vec<f64>>,
     /// The law through all points; `None` of fewer than two.
@@ -31,9 +33,9 @@ pub(super) fn growing(settings: &MethodSettings) -> MethodSettings {
     }
 }
 
-/// Every way's growth with a quantity.
+/// Every way's growth with a quantity, from times whose intervals are no wider than `resolved`.
 #[must_use]
-pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>) -> Vec<Growth> {
+pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>, resolved: f64) -> Vec<Growth> {
     let mut all: Vec<Growth> = Vec::new();
     for row in rows {
         let (Some(x), Some(time)) = (quantity(row), row.time()) else {
@@ -44,6 +46,7 @@ pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>) -> Vec<Grow
             all.push(Growth {
                 way,
                 points: Vec::new(),
+                measured: 0,
                 passes: Vec::new(),
                 law: None,
                 exponent: None,
@@ -51,6 +54,10 @@ pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>) -> Vec<Grow
             });
             all.len() - 1
         });
+        all[index].measured += 1;
+        if !row.resolved(resolved) {
+            continue;
+        }
         let place = all[index].points.partition_point(|p| p.0 < x);
         all[index].points.insert(place, (x, time.value));
         all[index].passes.insert(place, row.pass_medians());
@@ -87,12 +94,19 @@ mod tests {
             (r.settings.width, r.settings.height) = (w, h);
             rows.push(r);
         }
+        // Far off, and not resolved.
+        let mut noisy = row(&[&[(None, 1.0)], &[(None, 900.0)]]);
+        (noisy.settings.width, noisy.settings.height) = (1600, 1600);
+        rows.push(noisy);
         let rows: Vec<&Row> = rows.iter().collect();
         let pixels = |r: &Row| Some(f64::from(r.settings.width) * f64::from(r.settings.height));
-        let found = growth(&rows, pixels);
-        assert_eq!(found.len(), 1);
+        let found = growth(&rows, pixels, 0.25);
+        assert_eq!(
+            (found.len(), found[0].points.len(), found[0].measured),
+            (1, 4, 5)
+        );
         let exponent = found[0].law.unwrap().exponent.value;
         assert!((exponent - 0.9).abs() < 1e-9 && (found[0].last.unwrap() - 0.9).abs() < 1e-9);
-        assert!(growth(&rows, |_| None).is_empty());
+        assert!(growth(&rows, |_| None, 0.25).is_empty());
     }
 }

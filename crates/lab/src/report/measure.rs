@@ -5,9 +5,12 @@
 //! with everything built anew: what one placement in memory, or one bout of work beside ours, does
 //! to a time shows as spread between passes (see [`stats`](super::stats)).
 
+mod bench;
+
+pub use bench::{Bench, Observer, RenderedCase, TimedRenderer};
+
 use super::plan::{Case, Plan, TimeBudget, Truth};
 use super::row::{Row, Sample, Steps};
-use super::view::View;
 use crate::compare::{
     self, CompareOptions, Comparison, PIXELS_PER_DEGREE, PixelErrors, flip_map, pixel_errors,
 };
@@ -15,71 +18,9 @@ use crate::method::{Edges, Method, MethodSettings};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::settings::Planes;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
-
-/// A way of drawing a view, ready to be timed.
-pub trait TimedRenderer {
-    /// Draws one frame and waits for it.
-    ///
-    /// # Errors
-    /// Drawing fails.
-    fn sample(&mut self) -> Result<Sample>;
-}
-
-/// A source of renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
-/// itself.
-pub trait Bench {
-    /// Makes everything ready to draw `view` as `settings` say.
-    ///
-    /// # Errors
-    /// This way of drawing does not apply to the view; a failure of the device itself is
-    /// [`ErrorKind::DeviceLost`] and ends the run.
-    fn timed_renderer(
-        &mut self,
-        view: &View,
-        settings: &MethodSettings,
-    ) -> Result<Box<dyn TimedRenderer>>;
-
-    /// One frame with all planes, and the bytes of its maps.
-    ///
-    /// # Errors
-    /// See [`Bench::timed_renderer`].
-    fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
-
-    /// The truth.
-    ///
-    /// # Errors
-    /// The scene is wrong.
-    fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
-}
-
-/// Whoever waits for the measurement.
-pub struct Observer<'a> {
-    /// Set from anywhere to end early; what was measured is kept.
-    pub stop: &'a AtomicBool,
-    /// Told what is under way, milliseconds gone, and milliseconds expected in all.
-    pub progress: &'a dyn Fn(&str, u64, u64),
-    /// Shown every picture once, with what should be seen.
-    pub picture: &'a mut dyn FnMut(&RenderedCase) -> Result<()>,
-    /// Given the rows so far after each pass, so that not even a crash loses them.
-    pub passed: &'a mut dyn FnMut(&[Row]) -> Result<()>,
-}
-
-/// A picture and its measure.
-pub struct RenderedCase<'a> {
-    /// The plan.
-    pub plan: &'a Plan,
-    /// Which of its cases.
-    pub case: &'a Case,
-    /// The picture.
-    pub frame: &'a Frame,
-    /// The truth.
-    pub truth: &'a Frame,
-    /// How the two were compared.
-    pub options: &'a CompareOptions,
-}
 
 /// The outcome of a run.
 #[derive(Clone, Debug)]
@@ -121,37 +62,7 @@ pub fn measure(
         rows: plan.cases.iter().map(|_| None).collect(),
         left_out: Vec::new(),
     };
-    let groups = plan.groups();
-    let mut visits = groups.len() * budget.passes.0;
-    let mut pass = 0;
-    let mut began = Instant::now();
-    'passes: loop {
-        for group in &groups {
-            if observer.stop.load(Ordering::Relaxed) {
-                break 'passes;
-            }
-            let begin = Instant::now();
-            let left = budget.time().saturating_sub(run.start.elapsed());
-            let share = left / u32::try_from(visits.max(1)).unwrap_or(u32::MAX);
-            if pass == 0 {
-                for picture in plan.pictures(group) {
-                    run.accuracy(&picture, observer)?;
-                }
-            }
-            run.time(group, pass, begin + share, observer)?;
-            visits = visits.saturating_sub(1);
-        }
-        pass += 1;
-        (observer.passed)(&run.timed())?;
-        let last = std::mem::replace(&mut began, Instant::now()).elapsed();
-        if budget.would_overrun(pass, run.start.elapsed(), last) {
-            break;
-        }
-        if pass >= budget.passes.1 || (pass >= budget.passes.0 && (run.known() || run.late(pass))) {
-            break;
-        }
-        visits = visits.max(groups.len() * budget.passes.0.saturating_sub(pass).max(1));
-    }
+    run.passes(observer)?;
     let interrupted = observer.stop.load(Ordering::Relaxed);
     let took = run.start.elapsed();
     let rows = run.timed();
@@ -185,6 +96,55 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// All passes: as many as the plan means to take, then more over the groups with a time that is
+    /// not resolved, until all are or the limit is reached.
+    fn passes(&mut self, observer: &mut Observer) -> Result<()> {
+        let (plan, budget) = (self.plan, self.budget);
+        let groups = plan.groups();
+        let mut visits = groups.len() * budget.passes.0;
+        let (mut pass, mut planned) = (0, true);
+        loop {
+            let began = Instant::now();
+            for group in &groups {
+                if observer.stop.load(Ordering::Relaxed) {
+                    return Ok(());
+                }
+                if !planned && self.resolved(group) {
+                    continue;
+                }
+                let begin = Instant::now();
+                let left = budget.time().saturating_sub(self.start.elapsed());
+                let share = left / u32::try_from(visits.max(1)).unwrap_or(u32::MAX);
+                if pass == 0 {
+                    for picture in plan.pictures(group) {
+                        self.accuracy(&picture, observer)?;
+                    }
+                }
+                self.time(group, pass, begin + share, observer)?;
+                visits = visits.saturating_sub(1);
+            }
+            pass += 1;
+            (observer.passed)(&self.timed())?;
+            planned = planned
+                && pass < budget.passes.1
+                && (pass < budget.passes.0 || !(self.known() || self.late(pass)));
+            let done = budget.is_fixed() || groups.iter().all(|group| self.resolved(group));
+            if budget.would_overrun(pass, self.start.elapsed(), began.elapsed())
+                || (!planned && done)
+            {
+                return Ok(());
+            }
+            visits = visits.max(groups.len() * budget.passes.0.saturating_sub(pass).max(1));
+        }
+    }
+
+    /// True if every time of a group that can be trusted is resolved.
+    fn resolved(&self, group: &[usize]) -> bool {
+        let times = group.iter().filter_map(|&index| self.rows[index].as_ref());
+        let mut times = times.filter_map(Row::time);
+        times.all(|time| time.relative() <= self.budget.resolved)
+    }
+
     fn tell(&self, observer: &Observer, what: &str) {
         let gone = self.start.elapsed();
         let all = self.budget.time().max(gone);

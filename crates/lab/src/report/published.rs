@@ -5,7 +5,7 @@ use super::names::number;
 use super::plan::variant;
 use super::ratios::between;
 use super::row::Row;
-use super::stats::Interval;
+use super::stats::{Interval, Verdict};
 use super::table::Table;
 use crate::method::MethodSettings;
 
@@ -78,13 +78,14 @@ impl Printed {
 }
 
 /// How the speed goes from a table's first value to its last, with the ratio of the rates.
-fn trend(first: &Row, last: &Row) -> Option<(&'static str, Interval)> {
+fn trend(first: &Row, last: &Row, resolved: f64) -> Option<(&'static str, Interval)> {
     // Rates are one over times.
     let ratio = between(first, last)?;
-    let word = match (ratio.low > 1.0, ratio.high < 1.0) {
-        (true, _) => RISES,
-        (_, true) => FALLS,
-        _ => "no clear change",
+    let word = match ratio.verdict(resolved) {
+        Verdict::Slower => RISES,
+        Verdict::Faster => FALLS,
+        Verdict::Even => "no clear change",
+        Verdict::Unresolved => "not resolved",
     };
     Some((word, ratio))
 }
@@ -140,17 +141,18 @@ pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Ta
                 context.styles.way(way),
                 way.stage.name().to_owned(),
             ];
-            let rate = |row: &Option<&Row>| row.and_then(Row::time).map(|t| 1e3 / t.value);
             let none = || "–".to_owned();
-            record.extend(
-                cells
-                    .iter()
-                    .map(|row| rate(row).map_or_else(none, |r| number(r, 3))),
-            );
+            // In brackets: not resolved.
+            let rate = |row: &Option<&Row>| match row.and_then(|r| Some((r, r.time()?.value))) {
+                Some((row, ms)) if row.resolved(context.resolved) => number(1e3 / ms, 3),
+                Some((_, ms)) => format!("({})", number(1e3 / ms, 3)),
+                None => none(),
+            };
+            record.extend(cells.iter().map(rate));
             let found = cells[0]
                 .zip(cells[2])
-                .and_then(|(first, last)| trend(first, last));
-            let ratio = found.map(|(_, ratio)| super::columns::Cell::Known(ratio).shown());
+                .and_then(|(first, last)| trend(first, last, context.resolved));
+            let ratio = found.map(|(_, ratio)| context.known(Some(ratio)).shown());
             record.extend([
                 ratio.unwrap_or_else(none),
                 found.map_or_else(none, |f| f.0.to_owned()),
@@ -177,9 +179,10 @@ mod tests {
         let slow = timed([20.0, 20.4, 19.8, 20.1]);
         let fast = timed([10.0, 10.1, 9.9, 10.2]);
         let noisy = timed([14.0, 30.0, 20.0, 24.0]);
-        assert_eq!(trend(&slow, &fast).unwrap().0, RISES);
-        assert_eq!(trend(&fast, &slow).unwrap().0, FALLS);
-        assert_eq!(trend(&slow, &noisy).unwrap().0, "no clear change");
+        assert_eq!(trend(&slow, &fast, 0.25).unwrap().0, RISES);
+        assert_eq!(trend(&fast, &slow, 0.25).unwrap().0, FALLS);
+        assert_eq!(trend(&slow, &noisy, 1.0).unwrap().0, "no clear change");
+        assert_eq!(trend(&slow, &noisy, 0.25).unwrap().0, "not resolved");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use revmap::settings::{DrawStage, Tolerance};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Over {
-    /// The RBM baseline in the same picture and stage.
+    /// The RBM baseline in the same picture, of [`baseline_stage`]: one time for both stages.
     Baseline,
     /// The default search in the same picture and stage: exact, one ray per pixel.
     Exact,
@@ -21,6 +21,11 @@ pub enum Over {
     First,
     /// A mesh of the same picture in the fragment stage.
     Mesh,
+    /// The same way in the fragment stage. Only rows in the compute stage have one.
+    Fragment,
+    /// The fastest other search in the same picture and stage whose depth errors are below a texel
+    /// (99th percentile). Only exact rows of the default search have one.
+    Rival,
 }
 
 impl Over {
@@ -31,13 +36,12 @@ impl Over {
         let find =
             |wanted: &dyn Fn(&Row) -> bool| rows.iter().find(|r| wanted(r) && r.time().is_some());
         match self {
-            Self::Baseline => find(&|r| is_rbm_baseline(&r.settings) && stage(r)),
-            Self::Exact => find(&|r| {
-                let s = &r.settings;
-                s.method == Method::DEFAULT
-                    && (s.tolerance, s.edges) == (Tolerance::EXACT, Edges::OneRay)
-                    && stage(r)
-            }),
+            Self::Baseline => {
+                let common = baseline_stage(rows);
+                let own = |s: &MethodSettings| is_rbm_baseline(s) && s.stage == common;
+                find(&|r| own(&r.settings) && same_picture(r, row))
+            }
+            Self::Exact => find(&|r| is_exact_default(r) && stage(r)),
             Self::One => {
                 let mut like = row.settings;
                 if like.method == Method::Floor {
@@ -55,8 +59,44 @@ impl Over {
                 })
             }
             Self::Mesh => mesh_row(rows, row, None),
+            Self::Fragment => {
+                let compute = row.settings.stage == DrawStage::Compute;
+                let like = MethodSettings {
+                    stage: DrawStage::Fragment,
+                    ..row.settings
+                };
+                find(&|r| compute && r.view == row.view && r.settings == like)
+            }
+            Self::Rival => {
+                let search = |m: Method| m != Method::DEFAULT && m != Method::Floor && !m.is_mesh();
+                let near = |r: &Row| r.errors.depth.is_none_or(|d| d.p99 <= 1.0);
+                let own = |r: &&Row| search(r.settings.method) && stage(r) && near(r);
+                let timed = rows.iter().filter(own);
+                let timed = timed.filter_map(|r| Some((r, r.time()?.value)));
+                let fastest = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(r, _)| r);
+                fastest.filter(|_| is_exact_default(row))
+            }
         }
     }
+}
+
+/// The stage of the one RBM baseline that all times of a run are put over: fragment, or compute in
+/// a run that drew no baseline in the fragment stage.
+#[must_use]
+pub fn baseline_stage(rows: &[Row]) -> DrawStage {
+    let baselines = rows.iter().map(|r| &r.settings);
+    let mut baselines = baselines.filter(|s| is_rbm_baseline(s)).peekable();
+    let none = baselines.peek().is_none();
+    match none || baselines.any(|s| s.stage == DrawStage::Fragment) {
+        true => DrawStage::Fragment,
+        false => DrawStage::Compute,
+    }
+}
+
+/// True for the default search without tolerance, one ray per pixel.
+fn is_exact_default(row: &Row) -> bool {
+    let s = &row.settings;
+    s.method == Method::DEFAULT && (s.tolerance, s.edges) == (Tolerance::EXACT, Edges::OneRay)
 }
 
 /// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no more.
@@ -129,6 +169,18 @@ pub fn over(rows: &[Row], over: Over) -> Vec<Ratio<'_>> {
         rivals.iter().filter_map(against).collect::<Vec<_>>()
     };
     ours.flat_map(of).collect()
+}
+
+/// The geometric mean of the times of rows, ms, with its interval over the passes that all have.
+#[must_use]
+pub fn mean_ms(rows: &[&Row]) -> Option<Interval> {
+    let medians: Vec<Vec<f64>> = rows.iter().map(|r| r.pass_medians()).collect();
+    let passes = medians.iter().map(Vec::len).min()?;
+    let in_pass = |pass: usize| {
+        let logs = medians.iter().map(|m| m[pass].ln());
+        (logs.sum::<f64>() / rows.len() as f64).exp()
+    };
+    stats::geometric(&(0..passes).map(in_pass).collect::<Vec<_>>())
 }
 
 /// True if the depth error of a row (99th percentile) is no more than that of another.
@@ -231,140 +283,4 @@ fn paired(a: &Row, b: &Row, pass: usize) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::super::plan::rbm_baseline;
-    use super::super::row::tests::row;
-    use super::super::view::tests::spindle;
-    use super::*;
-    use crate::method::Method;
-
-    fn papers(mut row: Row) -> Row {
-        row.settings = rbm_baseline(&spindle(), &row.settings);
-        row
-    }
-
-    /// A machine that slows down to a third within a pass and between passes changes no ratio.
-    #[test]
-    fn drift_of_the_machine_cancels() {
-        let ours = row(&[&[(None, 10.0), (None, 30.0)], &[(None, 20.0), (None, 11.0)]]);
-        let theirs = papers(row(&[
-            &[(None, 20.0), (None, 60.0)],
-            &[(None, 40.0), (None, 22.0)],
-        ]));
-        let rows = [ours, theirs];
-        let ratios = over(&rows, Over::Baseline);
-        assert_eq!(ratios.len(), 2);
-        let time = ratios[0].time;
-        assert!(
-            (time.value - 0.5).abs() < 1e-12 && (time.high - time.low) < 1e-9,
-            "{time:?}"
-        );
-        assert!((ratios[1].time.value - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn views_are_averaged_geometrically() {
-        let mut rows = Vec::new();
-        for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
-            let mut a = row(&[&[(None, ours)], &[(None, ours)]]);
-            let mut b = papers(row(&[&[(None, 20.0)], &[(None, 20.0)]]));
-            (a.view, b.view) = (view, view);
-            rows.extend([a, b]);
-        }
-        let ratio = &over(&rows, Over::Baseline)[0];
-        assert!((ratio.time.value - 0.5).abs() < 1e-12);
-        assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
-        assert_eq!(ratio.pairs.len(), 2);
-    }
-
-    #[test]
-    fn what_cannot_be_trusted_counts_for_nothing() {
-        let lies = row(&[&[(Some(0.04), 20.0)]]);
-        let fine = papers(row(&[&[(Some(20.0), 20.0)]]));
-        let rows = [lies.clone(), fine.clone()];
-        let ratios = over(&rows, Over::Baseline);
-        assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
-        // A rival that lies leaves nothing to compare with, and another stage or size is no rival.
-        assert!(over(&[row(&[&[(None, 20.0)]]), papers(lies)], Over::Baseline).is_empty());
-        let mut compute = row(&[&[(None, 20.0)]]);
-        compute.settings.stage = DrawStage::Compute;
-        assert_eq!(over(&[compute, fine], Over::Baseline).len(), 1);
-    }
-
-    /// 8 ms against 20 where 5 go without a search: 3 of the 20 are above the floor.
-    #[test]
-    fn the_floor_is_taken_off() {
-        let timed = |ms: f64| row(&[&[(None, ms)], &[(None, ms)]]);
-        let mut floor = timed(5.0);
-        floor.settings.method = Method::Floor;
-        let mut compute = timed(6.0);
-        compute.settings.stage = DrawStage::Compute;
-        let rows = [timed(8.0), floor, papers(timed(20.0)), compute];
-        let above = |k: usize| above_floor(&rows, &rows[k]).map(|ms| ms.round());
-        assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
-    }
-
-    /// A run that was ended in its second pass: the picture that lacks the pass must not shift the
-    /// mean.
-    #[test]
-    fn a_pass_that_was_ended_early_is_left_out() {
-        let mut rows = Vec::new();
-        for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
-            let passes: &[&[(Option<f64>, f64)]] = &[&[(None, ours)], &[(None, ours)]];
-            let count = if view == 0 { 2 } else { 1 };
-            let mut a = row(&passes[..count]);
-            let mut b = papers(row(
-                &[[(None, 20.0)].as_slice(), [(None, 20.0)].as_slice()][..count]
-            ));
-            (a.view, b.view) = (view, view);
-            rows.extend([a, b]);
-        }
-        let time = over(&rows, Over::Baseline)[0].time;
-        assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
-    }
-
-    /// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is
-    /// not.
-    #[test]
-    fn the_default_search_is_held_against_meshes() {
-        let depth = |p99| {
-            Some(crate::compare::Spread {
-                rms: p99,
-                p99,
-                max: p99,
-            })
-        };
-        let timed = |method, ms: f64, p99| {
-            let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
-            row.settings.method = method;
-            row.errors.depth = depth(p99);
-            row
-        };
-        let mesh = |n| Method::mesh(n, 2 * n).unwrap();
-        let rows = [
-            timed(Method::DEFAULT, 9.0, 0.01),
-            timed(mesh(64), 6.0, 0.5),
-            timed(mesh(512), 36.0, 0.009),
-            timed(mesh(256), 18.0, 0.01),
-        ];
-        let duels = over(&rows, Over::Mesh);
-        let told: Vec<_> = duels
-            .iter()
-            .map(|d| (d.mesh, (d.time.value * 100.0).round(), d.no_worse()))
-            .collect();
-        assert_eq!(
-            told,
-            [
-                (Some(mesh(64)), 150.0, 0),
-                (Some(mesh(512)), 25.0, 1),
-                (Some(mesh(256)), 50.0, 1),
-                (None, 50.0, 1)
-            ]
-        );
-        // Without a mesh that errs no more there is no such ratio, and without the default search
-        // none at all.
-        assert_eq!(over(&rows[..2], Over::Mesh).len(), 1);
-        assert!(over(&rows[1..], Over::Mesh).is_empty());
-    }
-}
+mod tests;

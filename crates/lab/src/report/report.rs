@@ -1,24 +1,23 @@
 //! The report of a run: its tables and charts as a page, as files beside it, and as text.
 
 use super::columns::{COLUMNS, Context};
-use super::exhibit::{self, Exhibit, Extra, Per};
+use super::exhibit::{self, Exhibit, Extra};
+use super::findings::{findings, unresolved};
 use super::flight::{self, FlightTimes};
 use super::folder::{excluded, keep_figure, write_text};
 use super::glossary;
 use super::machine::Machine;
 use super::measure::Measured;
-use super::names::{number, safe};
+use super::names::number;
 use super::page::Page;
-use super::picture_groups::{parts, pictures_of};
 use super::pictures::{Album, heat_key};
+use super::places::{Place, places};
 use super::plan::{Plan, PlanFile, variant};
-use super::ratios::{Over, over};
+use super::ratios::Over;
 use super::row::{CLOCKS_APART, Row};
 use super::series_style::SeriesStyles;
 use super::table::Table;
-use crate::method::Method;
 use revmap::error::Result;
-use revmap::settings::DrawStage;
 use std::path::Path;
 
 /// All that came out of a run.
@@ -37,22 +36,6 @@ pub struct Run<'a> {
     pub flights: &'a [FlightTimes],
     /// Figures in charts that are not rows.
     pub extra: Extra,
-}
-
-/// Rows that have tables and charts of their own, and how these are named.
-struct Place<'a> {
-    rows: Vec<&'a Row>,
-    /// The heading above them.
-    heading: Option<String>,
-    /// The values of the words in braces.
-    words: [(&'static str, String); 5],
-}
-
-impl Place<'_> {
-    fn fill(&self, text: &str) -> String {
-        let put = |text: String, (word, value): &(&str, String)| text.replace(word, value);
-        self.words.iter().fold(text.to_owned(), put)
-    }
 }
 
 impl Run<'_> {
@@ -76,6 +59,9 @@ impl Run<'_> {
         let context = self.context();
         let mut page = Page::new(self.file.title.as_str());
         findings(&mut page, &context);
+        if let Some(note) = unresolved(&context) {
+            page.note(&note);
+        }
         if self.measured.interrupted {
             page.note("The run was interrupted: what is missing below was not measured.");
         }
@@ -132,7 +118,7 @@ impl Run<'_> {
             begin(page);
         }
         let mut text = String::new();
-        for place in places(&rows, exhibit.per) {
+        for place in places(context, &rows, exhibit.per) {
             let mut heading = place.heading.clone();
             let mut head = |page: &mut Page| {
                 begin(page);
@@ -140,6 +126,14 @@ impl Run<'_> {
                     page.heading(&capital(&heading));
                 }
             };
+            for (k, answer) in exhibit.answers(context, &place.rows).iter().enumerate() {
+                if k == 0 {
+                    text += &place.above(exhibit);
+                }
+                head(page);
+                page.text(answer);
+                text += &format!("{answer}\n\n");
+            }
             for chart in &exhibit.chart {
                 self.chart(context, chart, &place, page, &mut head, folder)?;
             }
@@ -170,7 +164,8 @@ impl Run<'_> {
             }
             keep_figure(folder, &name, figure)?;
             head(page);
-            page.figure(figure, &place.fill(&chart.caption));
+            let caption = place.fill(&chart.caption) + &place.untimed();
+            page.figure(figure, &caption);
         }
         Ok(())
     }
@@ -209,11 +204,12 @@ impl Run<'_> {
         if !table.print {
             return Ok(String::new());
         }
-        let own = Some(&table.heading).filter(|h| !h.is_empty());
-        let above = own.or(place.heading.as_ref()).or(exhibit.chapter.as_ref());
-        let above = above
-            .map(|heading| format!("{heading}\n\n"))
-            .unwrap_or_default();
+        let above = match (table.heading.is_empty(), exhibit.question) {
+            (false, _) => format!("{}\n\n", table.heading),
+            (true, None) => place.above(exhibit),
+            // The answer has it above.
+            (true, Some(_)) => String::new(),
+        };
         Ok(format!("{above}{}\n", shown.aligned()))
     }
 
@@ -232,21 +228,29 @@ impl Run<'_> {
         page.chapter("How this was measured");
         page.facts(&self.machine.lines());
         let samples = measured.rows.iter().map(|r| r.frame_ms().len());
-        let passes = measured
-            .rows
-            .iter()
-            .map(|r| r.passes.len())
-            .max()
-            .unwrap_or(0);
+        let passes = || measured.rows.iter().map(|r| r.passes.len());
+        let (least, most) = (passes().min().unwrap_or(0), passes().max().unwrap_or(0));
+        let passes = match least == most {
+            true => least.to_string(),
+            false => format!("{least} to {most}"),
+        };
+        let wide = 100.0 * self.file.time.resolved;
+        let limit = self.file.time.limit().as_secs_f64();
+        let added = match self.file.time.is_fixed() {
+            true => String::new(),
+            false => format!(
+                " Passes were added to pictures with such a time until it was resolved or {} s had passed. Stopping so makes intervals a little too narrow.",
+                number(limit, 3)
+            ),
+        };
         page.text(&format!(
             "All ways of drawing one picture are drawn in turn, one frame each and there and back, so that a machine that slows down slows all of them; drivers' compilers \
              run before the first frame that counts. This is repeated in {passes} passes over all pictures, each with maps, buffers and pipelines made anew; {} to {} \
              frames of each row were timed in {} s. A time is the geometric mean of the passes' medians, its interval Student's over the passes, with 95 % confidence: it covers how this \
-             run would have come out again on this machine, not how another machine would. A time whose interval reaches more than {:.0} % to either side is not resolved.",
+             run would have come out again on this machine, not how another machine would. A time whose interval reaches more than {wide:.0} % to either side is not resolved.{added}",
             samples.clone().min().unwrap_or(0),
             samples.max().unwrap_or(0),
             number(measured.took.as_secs_f64(), 3),
-            100.0 * self.file.time.resolved,
         ));
         page.text(&format!(
             "The device's timestamps stand around the work of one frame in one stage alone; the wall clock counts from submission to completion, without reading back. Rows in \
@@ -266,106 +270,6 @@ impl Run<'_> {
             .map(|c| (name(c), c.meaning.to_owned()))
             .collect();
         page.facts(&facts);
-    }
-}
-
-/// The default's times over those of the RBM baseline and of the coarsest mesh as accurate: what a
-/// reader wants first.
-fn findings(page: &mut Page, context: &Context) {
-    let rows = context.rows;
-    let plain = |r: &super::ratios::Ratio| r.settings.method == Method::DEFAULT;
-    for (reference, name) in [
-        (Over::Baseline, "of the RBM baseline's"),
-        (
-            Over::Mesh,
-            "of that of the coarsest mesh that is at least as accurate",
-        ),
-    ] {
-        let all = over(rows, reference);
-        let own = all.iter().filter(|r| plain(r) && r.mesh.is_none());
-        let own: Vec<_> = own
-            .map(|r| {
-                let time = super::columns::Cell::Known(r.time).shown();
-                let way = context.styles.way(&r.settings);
-                format!(
-                    "{way}, {} stage: {time} over {}",
-                    r.settings.stage.name(),
-                    match r.pairs.len() {
-                        1 => "1 picture".to_owned(),
-                        count => format!("{count} pictures"),
-                    }
-                )
-            })
-            .collect();
-        if !own.is_empty() {
-            page.lead(format!(
-                "The default takes this part {name} time (95 % interval): {}.",
-                own.join("; ")
-            ));
-        }
-    }
-}
-
-fn places<'a>(rows: &[&'a Row], per: Per) -> Vec<Place<'a>> {
-    let place = |rows: Vec<&'a Row>, heading, part: (&str, String)| {
-        let first = rows.first();
-        let of = |value: Option<String>| value.unwrap_or_default();
-        let words = [
-            ("{scene}", of(first.map(|r| safe(&r.scene)))),
-            ("{size}", of(first.map(|r| r.size()))),
-            (
-                "{stage}",
-                of(first.map(|r| r.settings.stage.name().to_owned())),
-            ),
-            ("{views}", part.0.to_owned()),
-            ("{part}", part.1),
-        ];
-        Place {
-            rows,
-            heading,
-            words,
-        }
-    };
-    let all = || ("All views", String::new());
-    match per {
-        Per::Run => vec![place(rows.to_vec(), None, all())],
-        Per::Picture => {
-            let of = |group: Vec<&'a Row>| place(group, None, all());
-            pictures_of(rows).into_iter().map(of).collect()
-        }
-        Per::Part => {
-            let owned: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
-            let all = parts(&owned);
-            let of = |part: &super::picture_groups::Part| {
-                let own = rows
-                    .iter()
-                    .filter(|r| part.framing.is_none_or(|f| r.framing == f));
-                place(
-                    own.copied().collect(),
-                    Some(part.title()),
-                    (part.views(), part.ending(&all)),
-                )
-            };
-            all.iter().map(of).collect()
-        }
-        Per::Stage => {
-            let of = |stage: DrawStage| -> Vec<&'a Row> {
-                rows.iter()
-                    .filter(|r| r.settings.stage == stage)
-                    .copied()
-                    .collect()
-            };
-            let stages = [DrawStage::Fragment, DrawStage::Compute].map(of);
-            let own = stages.into_iter().filter(|rows| !rows.is_empty());
-            own.map(|rows| place(rows, None, all())).collect()
-        }
-        Per::Size => {
-            let sizes = super::plan::grouped(rows, |a, b| a.size() == b.size());
-            sizes
-                .into_iter()
-                .map(|rows| place(rows, None, all()))
-                .collect()
-        }
     }
 }
 

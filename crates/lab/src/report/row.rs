@@ -7,7 +7,7 @@ use crate::compare::{Comparison, PixelErrors};
 use crate::method::{Method, MethodSettings};
 use revmap::frame::Frame;
 use revmap::maps::MapSource;
-use revmap::scene::Offset;
+use revmap::scene::{Offset, Shadow};
 
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
@@ -90,6 +90,8 @@ pub struct Row {
     pub map_rows: Option<u32>,
     /// Source of the distances, where all objects have the same.
     pub source: Option<MapSource>,
+    /// Shadows in the scene.
+    pub shadow: Shadow,
     /// Solids in the scene, copies counted.
     pub solids: usize,
     /// The entries of the plan that it belongs to, as [`Case::sweeps`].
@@ -129,6 +131,7 @@ impl Row {
                 .or_else(|| one(objects.iter().map(|o| o.map_rows)))
                 .filter(|_| searched),
             source: searched.then(|| settings.map_source.unwrap_or_default()),
+            shadow: view.scene.shadow,
             solids: view.solids(),
             sweeps: case.sweeps,
             value: view.value,

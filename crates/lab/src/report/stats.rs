@@ -17,11 +17,35 @@ pub struct Interval {
     pub high: f64,
 }
 
+/// What the ratio of two times says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The whole interval is below 1.
+    Faster,
+    /// The whole interval is above 1.
+    Slower,
+    /// The interval holds 1: no difference is resolved.
+    Even,
+    /// The interval is wider than allowed.
+    Unresolved,
+}
+
 impl Interval {
     /// Half the width, relative to the value.
     #[must_use]
     pub fn relative(&self) -> f64 {
         (self.high - self.low) / (2.0 * self.value)
+    }
+
+    /// What the ratio of two times says; `resolved`: half the width, relative, that is allowed.
+    #[must_use]
+    pub fn verdict(&self, resolved: f64) -> Verdict {
+        match (self.relative() <= resolved, self.low, self.high) {
+            (false, ..) => Verdict::Unresolved,
+            (_, _, high) if high < 1.0 => Verdict::Faster,
+            (_, low, _) if low > 1.0 => Verdict::Slower,
+            _ => Verdict::Even,
+        }
     }
 
     /// Both ends, where they are known.

@@ -217,10 +217,9 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
                 .filter_map(|t| {
                     let judged = t.judged.as_ref().ok()?;
                     Some(Point {
-                        spread: None,
                         x: case.steps[t.step].value,
                         y: (100.0 * judged.share()).max(FLOOR),
-                        label: None,
+                        ..Point::default()
                     })
                 })
                 .collect();

@@ -1,14 +1,14 @@
 //! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it
 //! draws once, and what it keeps.
 
-use crate::stand_in::{Fault, LIMITS, StandIn, plan, run};
+use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_within};
 use revmap_lab::method::{Method, MethodSettings};
 use revmap_lab::report::exhibit::Extra;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::pictures::Album;
-use revmap_lab::report::plan::{Labels, embedded};
+use revmap_lab::report::plan::{Labels, TimeBudget, embedded};
 use revmap_lab::report::report::Run;
 use std::sync::atomic::AtomicBool;
 
@@ -27,6 +27,48 @@ fn samples_are_interleaved_and_passes_are_built_anew() {
         assert_eq!(pair[0], back.as_slice());
     }
     assert_ne!(rounds[0], rounds[1]);
+}
+
+/// A bout of other work makes a time of the first view unsure: passes are added to that view until
+/// the time is resolved, A B C and back as all others, and the other view has no more than planned.
+#[test]
+fn passes_are_added_until_times_are_resolved() {
+    let limits = TimeBudget {
+        passes: (2, 3),
+        ..LIMITS
+    };
+    let mut bench = StandIn::new(Fault::Bout);
+    let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
+    let passes: Vec<usize> = outcome.rows.iter().map(|r| r.passes.len()).collect();
+    assert!(
+        (5..12).contains(&passes[0]) && passes[1..3] == [passes[0]; 2] && passes[3..] == [3; 3],
+        "{passes:?}"
+    );
+    assert!(outcome.rows.iter().all(|r| r.resolved(limits.resolved)));
+    let frames = bench.frames.borrow();
+    // Steady times are known after five rounds.
+    let last: Vec<&[Method]> = frames[frames.len() - 5 * 3..].chunks(3).collect();
+    for pair in last.windows(2) {
+        let back: Vec<Method> = pair[1].iter().rev().copied().collect();
+        assert_eq!(pair[0], back.as_slice());
+    }
+}
+
+/// A time that no number of passes makes sure: the run ends at its limit, and says that it is not
+/// resolved.
+#[test]
+fn a_time_that_is_never_resolved_ends_at_the_limit() {
+    let limits = TimeBudget {
+        seconds: 0.05,
+        limit: Some(0.4),
+        passes: (2, 3),
+        ..LIMITS
+    };
+    let mut bench = StandIn::new(Fault::Grows);
+    let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
+    assert!(outcome.took.as_secs_f64() < 5.0, "{:?}", outcome.took);
+    let live = &outcome.rows[0];
+    assert!(live.passes.len() > 3 && !live.resolved(limits.resolved));
 }
 
 /// The reference is slow: it draws each view at each size once, whatever the number of ways, passes

@@ -28,6 +28,10 @@ pub enum Fault {
     BoxFace,
     /// The device's clock reads a hundredth.
     ClockLies,
+    /// In its first group and pass the search takes twice its time.
+    Bout,
+    /// The search takes twice as long in each pass as in the one before.
+    Grows,
     /// This way of drawing does not apply.
     Refuses,
     /// The device is gone.
@@ -51,6 +55,8 @@ struct Timed {
     gpu_ms: f64,
     frame_ms: f64,
     method: Method,
+    /// True on a machine without drift.
+    steady: bool,
     frames: Rc<RefCell<Vec<Method>>>,
     stop_after: Option<(usize, &'static AtomicBool)>,
 }
@@ -63,7 +69,10 @@ impl TimedRenderer for Timed {
             stop.fetch_or(frames.len() >= count, Ordering::Relaxed);
         }
         // The machine gets slower and faster again, by a third, as machines do.
-        let drift = 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin();
+        let drift = match self.steady {
+            true => 1.0,
+            false => 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin(),
+        };
         Ok(Sample {
             gpu_ms: Some(self.gpu_ms * drift),
             frame_ms: self.frame_ms * drift,
@@ -108,11 +117,17 @@ impl Bench for StandIn {
         } else {
             10.0
         };
-        let frame_ms = if live && self.fault == Fault::Sleeps {
-            base * 3.0
-        } else {
-            base
-        };
+        let frame_ms = base
+            * match self.fault {
+                Fault::Sleeps if live => 3.0,
+                Fault::Bout if live && self.made <= 3 => 2.0,
+                // Six are made in each pass.
+                Fault::Grows if live => {
+                    std::thread::sleep(std::time::Duration::from_millis(5));
+                    2f64.powf((self.made / 6) as f64)
+                }
+                _ => 1.0,
+            };
         let gpu_ms = if live && self.fault == Fault::ClockLies {
             frame_ms / 100.0
         } else {
@@ -122,6 +137,7 @@ impl Bench for StandIn {
             gpu_ms,
             frame_ms,
             method: settings.method,
+            steady: matches!(self.fault, Fault::Bout | Fault::Grows),
             frames: self.frames.clone(),
             stop_after: self.stop_after,
         }))
@@ -186,6 +202,7 @@ pub fn plan() -> Plan {
 /// Four passes of a few rounds, however long they take.
 pub const LIMITS: TimeBudget = TimeBudget {
     seconds: 60.0,
+    limit: None,
     passes: (4, 4),
     rounds: (3, 6),
     precision: 1e-9,
@@ -193,15 +210,20 @@ pub const LIMITS: TimeBudget = TimeBudget {
     resolved: 0.25,
 };
 
-/// Measures the plan.
+/// Measures the plan within [`LIMITS`].
 pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
+    run_within(&LIMITS, bench, stop)
+}
+
+/// Measures the plan.
+pub fn run_within(limits: &TimeBudget, bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
     let mut observer = Observer {
         stop,
         progress: &|_, _, _| {},
         picture: &mut |_| Ok(()),
         passed: &mut |_| Ok(()),
     };
-    measure(&plan(), bench, &LIMITS, &mut observer)
+    measure(&plan(), bench, limits, &mut observer)
 }
 
 /// Measures the plan with a fault.

@@ -1,7 +1,7 @@
 //! Charts of one value a line, each a marker on its interval: times and ratios side by side.
 
 use super::axis::{Axis, Scale};
-use super::legend::{EDGE, Sheet, TEXT, WIDTH, dot};
+use super::legend::{EDGE, Sheet, TEXT, WIDTH, dot, strike, unresolved};
 use super::letters::width;
 use super::style::{Dash, INK, PALE, Style};
 use super::{Anchor, Figure};
@@ -17,6 +17,18 @@ pub struct Line {
     pub value: Interval,
     /// How its marker looks.
     pub style: Style,
+    /// True if its interval is too wide: it is struck through, and its number in brackets.
+    pub unresolved: bool,
+}
+
+impl Line {
+    fn number(&self) -> String {
+        let value = number(self.value.value, 3);
+        match self.unresolved {
+            true => format!("({value})"),
+            false => value,
+        }
+    }
 }
 
 /// Lines under a common heading.
@@ -48,9 +60,10 @@ impl DotChart {
     #[must_use]
     pub fn figure(&self) -> Figure {
         let lines = || self.blocks.iter().flat_map(|b| &b.lines);
-        // An interval without an end says nothing and must not stretch the axis.
+        // An interval without an end or too wide must not stretch the axis.
         let ends = lines().flat_map(|l| {
-            let (low, high) = l.value.ends().unwrap_or((l.value.value, l.value.value));
+            let ends = l.value.ends().filter(|_| !l.unresolved);
+            let (low, high) = ends.unwrap_or((l.value.value, l.value.value));
             [low, l.value.value, high]
         });
         let scale = Scale::new(&self.axis, ends.chain(self.mark));
@@ -58,10 +71,10 @@ impl DotChart {
         let top = sheet.title(&self.title) + 6.0;
         let widest = |of: &dyn Fn(&Line) -> f64| lines().map(of).fold(0.0, f64::max);
         let names = widest(&|l| width(&l.name, TEXT));
-        let values = widest(&|l| width(&number(l.value.value, 3), TEXT));
+        let values = widest(&|l| width(&l.number(), TEXT));
         let left = (EDGE + names + 12.0).min(WIDTH * 0.55);
         let right = WIDTH - EDGE - values - 14.0;
-        let at = |v: f64| Some(left + scale.place(v)? * (right - left));
+        let at = |v: f64| Some((left + scale.place(v)? * (right - left)).clamp(left, right));
         let heads = self.blocks.iter().filter(|b| !b.name.is_empty()).count();
         let bottom = top + STEP * (heads + lines().count()) as f64 + 6.0;
         let mut end = f64::NEG_INFINITY;
@@ -76,9 +89,14 @@ impl DotChart {
         sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::Solid);
         self.lines(&mut sheet, (top, left), at);
         sheet.axis((left, right), bottom, &self.axis.label);
+        let mut end = bottom + 2.0 * TEXT + 16.0;
+        if lines().any(|l| l.unresolved) {
+            let (name, key) = unresolved();
+            end = sheet.legend(end + TEXT, &[(name, vec![key])]);
+        }
         Figure {
             width: WIDTH,
-            height: bottom + 2.0 * TEXT + 16.0 + EDGE,
+            height: end + EDGE,
             top: top - 6.0,
             title: self.title.clone(),
             marks: sheet.0,
@@ -97,9 +115,8 @@ impl DotChart {
                 y += STEP;
                 let level = y - STEP / 2.0 + 2.0;
                 let base = level + 0.35 * TEXT;
-                let value = number(line.value.value, 3);
                 sheet.word((left - 10.0, base), &line.name, Anchor::End, INK);
-                sheet.word((WIDTH - EDGE, base), &value, Anchor::End, INK);
+                sheet.word((WIDTH - EDGE, base), &line.number(), Anchor::End, INK);
                 let ends = line.value.ends();
                 if let Some((Some(a), Some(b))) = ends.map(|(low, high)| (at(low), at(high))) {
                     let width = if line.style.heavy { 3.0 } else { 2.0 };
@@ -112,6 +129,9 @@ impl DotChart {
                 }
                 if let Some(x) = at(line.value.value) {
                     sheet.0.push(dot(line.style, (x, level)));
+                    if line.unresolved {
+                        sheet.0.push(strike((x, level)));
+                    }
                 }
             }
         }
@@ -136,6 +156,7 @@ mod tests {
                 filled: k % 2 == 0,
                 ..Style::new(color::ALL[k], Marker::ALL[k])
             },
+            unresolved: k == 1,
         };
         DotChart {
             title: "Time over that of the RBM baseline".into(),

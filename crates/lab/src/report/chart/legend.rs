@@ -1,7 +1,8 @@
 //! Parts that charts of every kind share: sizes, a sheet to draw on, titles, legends.
 
 use super::letters::{width, wrap};
-use super::style::{Dash, GRID, INK, PAPER, Style};
+use super::style::color::GREY;
+use super::style::{Dash, GRID, INK, Marker, PAPER, Style};
 use super::{Anchor, Mark};
 
 /// Width of every chart, pixels: read well on a phone, where it is shown at four fifths of that.
@@ -20,12 +21,14 @@ pub enum Key {
     Dot(Style, bool),
     /// A line.
     Line(&'static str, Dash),
+    /// The stroke through what is not resolved.
+    Struck,
 }
 
 impl Key {
     fn width(self) -> f64 {
         match self {
-            Self::Dot(_, false) => 18.0,
+            Self::Dot(_, false) | Self::Struck => 18.0,
             Self::Dot(_, true) | Self::Line(..) => 30.0,
         }
     }
@@ -42,6 +45,22 @@ pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
         points: style.corners(x, y, MARKER),
         fill,
         stroke: Some(stroke),
+    }
+}
+
+/// The entry of a legend that explains the strokes.
+pub(super) fn unresolved() -> (String, Key) {
+    ("not resolved".to_owned(), Key::Struck)
+}
+
+/// The stroke through the marker of what is not resolved.
+pub(super) fn strike((x, y): (f64, f64)) -> Mark {
+    let reach = 0.75 * MARKER;
+    Mark::Line {
+        points: vec![(x - reach, y + reach), (x + reach, y - reach)],
+        color: INK,
+        width: 1.2,
+        dash: Dash::Solid,
     }
 }
 
@@ -123,6 +142,11 @@ impl Sheet {
                             self.line(ends, style.color, style.line(), style.dash);
                         }
                         self.0.push(dot(style, ((left + right) / 2.0 - 1.0, level)));
+                    }
+                    Key::Struck => {
+                        let middle = ((left + right) / 2.0 - 1.0, level);
+                        self.0.push(dot(Style::new(GREY, Marker::Disk), middle));
+                        self.0.push(strike(middle));
                     }
                     Key::Line(color, dash) => self.line(ends, color, 1.6, dash),
                 }

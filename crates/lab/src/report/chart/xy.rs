@@ -1,7 +1,7 @@
 //! Charts of points over two axes: series joined by lines, fronts, fitted laws.
 
 use super::axis::{Axis, Scale};
-use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, WIDTH, dot};
+use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, WIDTH, dot, strike, unresolved};
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
 use super::{Anchor, Bounds, Figure, Mark, overlap};
@@ -10,7 +10,7 @@ use super::{Anchor, Bounds, Figure, Mark, overlap};
 const SMALL: f64 = 12.0;
 
 /// A point of a series.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// Across.
     pub x: f64,
@@ -18,6 +18,11 @@ pub struct Point {
     pub y: f64,
     /// The ends of its interval across, where they are known.
     pub spread: Option<(f64, f64)>,
+    /// The ends of its interval up, where they are known.
+    pub rise: Option<(f64, f64)>,
+    /// True if its interval is too wide: it is struck through, and has no bars, which would fill the
+    /// plot.
+    pub unresolved: bool,
     /// A word beside it, where there is room.
     pub label: Option<String>,
 }
@@ -111,8 +116,15 @@ impl XyChart {
     #[must_use]
     pub fn figure(&self) -> Figure {
         let points = || self.series.iter().flat_map(|s| &s.points);
-        let x = Scale::new(&self.x, points().map(|p| p.x));
-        let y = Scale::new(&self.y, points().map(|p| p.y));
+        // Intervals that are too wide must not stretch an axis.
+        let ends = |p: &Point, ends: Option<(f64, f64)>| {
+            let own = ends.filter(|e| !p.unresolved && e.0 > 0.0);
+            own.map_or(Vec::new(), |(low, high)| vec![low, high])
+        };
+        let across = points().flat_map(|p| ends(p, p.spread));
+        let up = points().flat_map(|p| ends(p, p.rise));
+        let x = Scale::new(&self.x, points().map(|p| p.x).chain(across));
+        let y = Scale::new(&self.y, points().map(|p| p.y).chain(up));
         let mut drawing = Drawing::default();
         let top = drawing.sheet.title(&self.title) + 8.0;
         let words = y.ticks.iter().map(|(_, w)| width(w, TEXT));
@@ -149,8 +161,14 @@ impl XyChart {
             .iter()
             .filter(|g| drawn(g))
             .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
+        let mut points = self.series.iter().flat_map(|s| &s.points);
+        let struck = points.any(|p| p.unresolved).then(unresolved);
         let mut all: Vec<(String, Vec<Key>)> = Vec::new();
-        for (name, key) in series.chain(guides).filter(|(name, _)| !name.is_empty()) {
+        for (name, key) in series
+            .chain(guides)
+            .chain(struck)
+            .filter(|(name, _)| !name.is_empty())
+        {
             match all.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, keys)) if keys.contains(&key) => {}
                 Some((_, keys)) => keys.push(key),
@@ -178,8 +196,25 @@ impl Drawing {
         }
     }
 
+    /// The intervals of a point at `(x, y)`.
+    fn bars(&mut self, plot: &Plot, point: &Point, (x, y): (f64, f64), color: &'static str) {
+        let [left, top, right, bottom] = plot.bounds;
+        let across = |x: f64| Some((plot.at(x, point.y)?.0.clamp(left, right), y));
+        let up = |y: f64| Some((x, plot.at(point.x, y)?.1.clamp(top, bottom)));
+        let across = point.spread.map(|(a, b)| (across(a), across(b)));
+        let up = point.rise.map(|(a, b)| (up(b), up(a)));
+        for ends in [across, up] {
+            let Some((Some(a), Some(b))) = ends else {
+                continue;
+            };
+            self.taken
+                .push([a.0 - 1.0, a.1 - 1.0, b.0 + 1.0, b.1 + 1.0]);
+            self.sheet.line([a, b], color, 1.2, Dash::Solid);
+        }
+    }
+
     fn series(&mut self, plot: &Plot, all: &[Series]) {
-        let (mut labels, mut dots) = (Vec::new(), Vec::new());
+        let (mut labels, mut dots, mut struck) = (Vec::new(), Vec::new(), Vec::new());
         for series in all {
             let style = series.style;
             let points = series.points.iter();
@@ -192,12 +227,9 @@ impl Drawing {
                     .line(points, style.color, style.line(), style.dash);
             }
             for ((x, y), point) in places {
-                let [left, _, right, _] = plot.bounds;
-                let end = |x: f64| Some(plot.at(x, point.y)?.0.clamp(left, right));
-                if let Some((Some(a), Some(b))) = point.spread.map(|(a, b)| (end(a), end(b))) {
-                    self.taken.push([a, y - 1.0, b, y + 1.0]);
-                    self.sheet
-                        .line([(a, y), (b, y)], style.color, 1.2, Dash::Solid);
+                match point.unresolved {
+                    true => struck.push(strike((x, y))),
+                    false => self.bars(plot, point, (x, y), style.color),
                 }
                 let dot = dot(style, (x, y));
                 self.taken.push(dot.bounds());
@@ -209,6 +241,7 @@ impl Drawing {
         // is near.
         dots.sort_by_key(|(order, _)| *order);
         self.sheet.0.extend(dots.into_iter().map(|(_, dot)| dot));
+        self.sheet.0.extend(struck);
         for (place, label) in labels {
             if let Some(word) = beside(place, label, plot.bounds, &self.taken) {
                 self.taken.push(word.bounds());

@@ -48,7 +48,7 @@ fn every_column_is_defined_once_and_explained() {
     }
     assert_eq!(
         (COLUMNS[CONTRACT - 1].name, COLUMNS[RESULTS - 1].name),
-        ("driver", "resolved")
+        ("driver", "shadow")
     );
     assert!(named("nothing").is_err());
 }
@@ -89,6 +89,8 @@ fn a_record_has_the_columns_of_the_contract() {
         ("tolerance_px", ""),
         ("above_floor_ms", ""),
         ("resolved", "no"),
+        ("time_over_fragment", ""),
+        ("shadow", "off"),
     ] {
         assert_eq!(at(&fine, column), wanted, "{column}");
     }
@@ -152,4 +154,43 @@ fn planted_times_and_errors_are_shown() {
         super::super::exhibit::ways_table(context, &rows, Over::Exact, &names).unwrap()
     });
     assert_eq!(means.records[2], ["2", "2.5", "0.25 (0.25 to 0.25)", "1"]);
+}
+
+/// 5 ms in compute over 10 in the fragment stage, in files with its interval; a value whose
+/// interval is too wide says so in tables, and its file has a column for it.
+#[test]
+fn the_ratio_of_the_stages_and_what_is_not_resolved_are_in_files() {
+    let mut rows = [
+        row(&[&[(None, 10.0)], &[(None, 11.0)], &[(None, 10.0)]]),
+        row(&[&[(None, 5.0)], &[(None, 5.5)], &[(None, 5.0)]]),
+        row(&[&[(None, 5.0)], &[(None, 50.0)], &[(None, 5.0)]]),
+    ];
+    rows[1].settings.stage = revmap::settings::DrawStage::Compute;
+    rows[2].settings.max_steps = Some(7);
+    let table = csv_of(&rows, "dev", "drv");
+    let of = |name: &str| -> Vec<String> {
+        let place = table.column(name).unwrap();
+        table.records.iter().map(|r| r[place].clone()).collect()
+    };
+    for name in ["", "_low", "_high"] {
+        assert_eq!(of(&format!("time_over_fragment{name}")), ["", "0.5", ""]);
+    }
+    assert_eq!(of("resolved"), ["yes", "yes", "no"]);
+    let all: Vec<&Row> = rows.iter().collect();
+    let (page, file) = with_context(&rows, |context| {
+        (
+            context.page(&all, &["time_interval"]).unwrap(),
+            context.file(&all, &["time_interval"]).unwrap(),
+        )
+    });
+    assert!(page.records[2][0].ends_with(", not resolved"), "{page:?}");
+    assert_eq!(file.header, ["time_low_ms", "time_high_ms", "resolved"]);
+    assert_eq!((&*file.records[1][2], &*file.records[2][2]), ("yes", "no"));
+    let wide = Interval {
+        value: 1.0,
+        low: 0.5,
+        high: 2.0,
+    };
+    let cell = with_context(&rows, |context| context.known(Some(wide)));
+    assert_eq!(cell.shown(), "1 (0.5 to 2), not resolved");
 }

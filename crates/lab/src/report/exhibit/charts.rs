@@ -3,19 +3,18 @@
 use super::{check_column, tables};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
-use crate::report::chart::axis::Axis;
 use crate::report::chart::front::{WORTH, front, stairs};
-use crate::report::chart::style::{Marker, Style, color};
+use crate::report::chart::style::{Dash, Marker, Style, color};
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
 use crate::report::columns::{self, Cell, Context};
-use crate::report::growth::{growing, growth};
+use crate::report::growth::growing;
 use crate::report::map_error::MapError;
 use crate::report::plan::is_rbm_baseline;
-use crate::report::published;
 use crate::report::ratios::{Over, over};
 use crate::report::row::Row;
 use crate::report::series_style::{self, floor_line, of_source};
 use revmap::error::Result;
+use revmap::settings::DrawStage;
 
 /// A chart.
 #[derive(Clone, Debug, serde::Deserialize)]
@@ -99,8 +98,7 @@ struct Item {
     style: Style,
     point: Point,
     joined: bool,
-    /// True if its time is resolved.
-    resolved: bool,
+    stage: DrawStage,
 }
 
 impl Chart {
@@ -138,12 +136,7 @@ impl Chart {
         if items.is_empty() {
             return Ok(None);
         }
-        let known = items.iter().filter(|i| i.resolved);
-        let places: Vec<(f64, f64)> = known.map(|i| (i.point.x, i.point.y)).collect();
-        let best: Vec<_> = front(&places, WORTH)
-            .into_iter()
-            .map(|i| places[i])
-            .collect();
+        let fronts = fronts(&items);
         let mut series: Vec<Series> = Vec::new();
         for item in items {
             let same = |s: &&mut Series| s.name == item.name && s.style.filled == item.style.filled;
@@ -157,11 +150,17 @@ impl Chart {
                 }),
             }
         }
-        self.thin_labels(&mut series, &best);
-        let (x, y) = self.axes(&series, &floors)?;
+        self.thin_labels(&mut series, &fronts);
+        let (x, y) = self.axes(context, &series, &floors)?;
         let mut guides = Vec::new();
         if self.front {
-            guides.push(Guide::dashed("Pareto front", stairs(&best)));
+            guides.extend(fronts.iter().map(|(stage, best)| Guide {
+                dash: match stage {
+                    DrawStage::Fragment => Dash::Guide,
+                    DrawStage::Compute => Dash::DashDot,
+                },
+                ..Guide::dashed(&format!("Pareto front, {}", stage.name()), stairs(best))
+            }));
             guides.extend(floors);
         }
         guides.extend(self.guides(context, &rows, &series)?);
@@ -198,8 +197,6 @@ impl Chart {
             if (x <= 0.0 && !even_x) || (y <= 0.0 && !even_y && y_floor == 0.0) {
                 continue;
             }
-            let timed = self.x == "time_ms";
-            let resolved = !timed || row.resolved(context.resolved);
             let label = match self.series {
                 SeriesBy::Source => {
                     Some(format!("{} {}", s.method.name(), row.map_rows.unwrap_or(0)))
@@ -208,22 +205,23 @@ impl Chart {
                 SeriesBy::Way => s.method.is_mesh().then(|| label(context, s)).flatten(),
                 SeriesBy::Scene => None,
             };
-            let unresolved = || Some("not resolved".to_owned());
-            let spread = match (timed, &across) {
-                (true, _) => row.time().and_then(|t| t.ends()),
-                (false, Cell::Known(interval)) => interval.ends(),
-                _ => None,
+            let wide = |name: &str, cell: &Cell| match cell {
+                Cell::Known(_) | Cell::Unresolved(_) => matches!(cell, Cell::Unresolved(_)),
+                _ => is_timed(name) && !row.resolved(context.resolved),
             };
+            let unresolved = wide(&self.x, &across) || wide(&self.y, &up);
             items.push(Item {
                 name,
                 style,
                 joined,
-                resolved,
+                stage: s.stage,
                 point: Point {
                     x,
                     y,
-                    spread,
-                    label: if resolved { label } else { unresolved() },
+                    spread: ends(&self.x, &across, row),
+                    rise: ends(&self.y, &up, row),
+                    unresolved,
+                    label: label.filter(|_| !unresolved),
                 },
             });
         }
@@ -251,11 +249,13 @@ impl Chart {
                 name: context.line(s),
                 style: series_style::style(s),
                 joined: true,
-                resolved: ratio.time.relative() <= context.resolved,
+                stage: s.stage,
                 point: Point {
                     x: ratio.time.value,
                     y,
                     spread: ratio.time.ends(),
+                    rise: None,
+                    unresolved: ratio.time.relative() > context.resolved,
                     label: label(context, s),
                 },
             });
@@ -298,7 +298,7 @@ impl Chart {
 
     /// Keeps words at both ends of each line, at what is on the front, and at meshes of a summary;
     /// of all points the chart would drown in them.
-    fn thin_labels(&self, series: &mut [Series], best: &[(f64, f64)]) {
+    fn thin_labels(&self, series: &mut [Series], fronts: &[(DrawStage, Vec<(f64, f64)>)]) {
         for line in series {
             let last = line.points.len().saturating_sub(1);
             let joined = line.joined;
@@ -307,99 +307,43 @@ impl Chart {
                     SeriesBy::Way => k == last,
                     _ => joined && (k == 0 || k == last),
                 };
-                let on_front = self.front && best.contains(&(point.x, point.y));
-                let kept = |label: &String| {
-                    label == "not resolved" || (self.over.is_some() && label.contains('x'))
-                };
+                let mut best = fronts.iter().flat_map(|f| &f.1);
+                let on_front = self.front && best.any(|p| *p == (point.x, point.y));
+                let kept = |label: &String| self.over.is_some() && label.contains('x');
                 if !end && !on_front {
                     point.label = point.label.take().filter(kept);
                 }
             }
         }
     }
+}
 
-    fn axes(&self, series: &[Series], floors: &[Guide]) -> Result<(Axis, Axis)> {
-        let even = |label: &str, linear: bool| match linear {
-            true => Axis::linear(label),
-            false => Axis::log(label),
-        };
-        let mut x = match self.over {
-            Some(_) => Axis::log("time / time of the RBM baseline").with(1.0),
-            None => even(columns::named(&self.x)?.heading, self.linear[0]),
-        };
-        let name = self
-            .y
-            .split_once(' ')
-            .map_or(self.y.as_str(), |(_, column)| column);
-        let heading = match self.over {
-            Some(over) => tables::heading(&self.y, over)?,
-            None => columns::named(&self.y)?.heading.to_owned(),
-        };
-        let mut y = even(&heading, self.linear[1]);
-        if let Ok(column) = columns::named(name)
-            && column.floor > 0.0
-        {
-            y = y.from(column.floor);
-        }
-        if self.front {
-            for place in floors.iter().filter_map(|floor| floor.points.first()) {
-                x = x.with(place.0);
-            }
-        }
-        if self.ticks {
-            x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
-        }
-        for (_, rate) in self.published() {
-            y = y.with(rate);
-        }
-        Ok((x, y))
-    }
+/// The points that no other of their stage beats, among those that are resolved; a stage without one
+/// has no front.
+fn fronts(items: &[Item]) -> Vec<(DrawStage, Vec<(f64, f64)>)> {
+    let of = |stage: DrawStage| {
+        let own = items.iter().filter(|i| i.stage == stage);
+        let known = own.map(|i| &i.point).filter(|p| !p.unresolved);
+        let places: Vec<(f64, f64)> = known.map(|p| (p.x, p.y)).collect();
+        let best = front(&places, WORTH).into_iter().map(|i| places[i]);
+        (stage, best.collect::<Vec<_>>())
+    };
+    let stages = [DrawStage::Fragment, DrawStage::Compute].map(of);
+    stages.into_iter().filter(|f| !f.1.is_empty()).collect()
+}
 
-    /// The published line, in charts that have one.
-    fn published(&self) -> Vec<(f64, f64)> {
-        let mut words = self.guide.split(' ');
-        let table = match (words.next(), words.next()) {
-            (Some("published"), Some(number)) => published::table(number),
-            _ => None,
-        };
-        let size = words.next().unwrap_or("");
-        table.map_or(Vec::new(), |t| t.line(size, self.y == "rate_over_first"))
-    }
+/// True for columns that are as sure as the time of their row.
+fn is_timed(name: &str) -> bool {
+    name.starts_with("time") || name.starts_with("rate")
+}
 
-    /// Lines to compare points with, and fitted laws.
-    fn guides(&self, context: &Context, rows: &[&Row], series: &[Series]) -> Result<Vec<Guide>> {
-        let mut all = Vec::new();
-        if self.guide == "equal" {
-            let mut values: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
-            values.sort_by(f64::total_cmp);
-            let points = values
-                .into_iter()
-                .filter(|v| *v > 0.0)
-                .map(|v| (v, v))
-                .collect();
-            all.push(Guide::dashed("the tolerance", points));
-        }
-        let line = self.published();
-        if !line.is_empty() {
-            all.push(Guide::dashed("published, GeForce GT 630M", line));
-        }
-        if self.law {
-            let column = columns::named(&self.x)?;
-            for g in growth(rows, |row| (column.cell)(context, row).value()) {
-                let (Some(law), [first, .., last]) = (g.law, g.points.as_slice()) else {
-                    continue;
-                };
-                let style = context.styles.style(&g.way);
-                all.push(Guide {
-                    name: String::new(),
-                    points: [first, last].map(|p| (p.0, law.at(p.0))).to_vec(),
-                    color: style.color,
-                    dash: style.dash,
-                    width: style.line(),
-                });
-            }
-        }
-        Ok(all)
+/// The ends of the interval of a cell, where they are known.
+fn ends(name: &str, cell: &Cell, row: &Row) -> Option<(f64, f64)> {
+    let time = || row.time()?.ends();
+    match name {
+        "time_ms" => time(),
+        "rate" => time().map(|(low, high)| (1e3 / high, 1e3 / low)),
+        _ => cell.interval()?.ends(),
     }
 }
 
@@ -421,3 +365,6 @@ fn label(context: &Context, s: &MethodSettings) -> Option<String> {
         .unwrap_or(rest);
     (!rest.is_empty()).then(|| rest.to_owned())
 }
+
+#[cfg(test)]
+mod tests;

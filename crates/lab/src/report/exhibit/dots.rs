@@ -22,6 +22,7 @@ impl Chart {
                 name: context.styles.way(settings),
                 value,
                 style: context.styles.style(settings),
+                unresolved: value.relative() > context.resolved,
             };
             lines.push((block, line));
         };
@@ -60,8 +61,8 @@ impl Chart {
             }
         }
         let axis = match self.over {
-            Some(_) => "time / time of the RBM baseline (left is faster)",
-            None => "time of a frame (ms)",
+            Some(_) => format!("time / {}", context.baseline()),
+            None => "time of a frame (ms)".to_owned(),
         };
         let figure = |page: Vec<(String, Line)>| {
             let mut blocks: Vec<Block> = Vec::new();
@@ -76,7 +77,7 @@ impl Chart {
             }
             let chart = DotChart {
                 title: self.title.clone(),
-                axis: Axis::log(axis),
+                axis: Axis::log(axis.as_str()),
                 mark: self.over.map(|_| 1.0),
                 blocks,
             };

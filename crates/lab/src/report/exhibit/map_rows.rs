@@ -29,8 +29,7 @@ impl Chart {
             let point = Point {
                 x,
                 y,
-                spread: None,
-                label: None,
+                ..Point::default()
             };
             match series.iter_mut().find(|s| s.name == name) {
                 Some(known) => known.points.push(point),

@@ -1,11 +1,15 @@
-//! Tables and charts of a report, as TOML describes them: `exhibits.toml` holds the program's own, and
-//! a plan may add some. Each names columns; see [`columns`].
+//! Tables and charts of a report, as TOML describes them: the folder `own` holds the program's, and a
+//! plan may add some. Each names columns; see [`columns`].
 
+mod answers;
 mod charts;
 mod dots;
+mod guides;
 mod map_rows;
 mod tables;
 
+pub use answers::Question;
+pub(in crate::report) use answers::count;
 pub use charts::{Chart, Extra};
 pub use tables::{Records, Table, left, ways_table};
 
@@ -25,6 +29,8 @@ pub struct Exhibit {
     /// Paragraphs before the tables and charts.
     #[serde(default)]
     pub text: Vec<String>,
+    /// The question that it answers before them, in a sentence from the rows.
+    pub question: Option<Question>,
     /// The groups of rows that have tables and charts of their own.
     #[serde(default)]
     pub per: Per,
@@ -65,20 +71,27 @@ struct File {
     exhibit: Vec<Exhibit>,
 }
 
+/// The files of the program's own exhibits.
+const OWN: [&str; 3] = [
+    include_str!("own/times.toml"),
+    include_str!("own/accuracy.toml"),
+    include_str!("own/plans.toml"),
+];
+
 /// The program's own exhibits, then `more`.
 ///
 /// # Errors
 /// [`ErrorKind::Other`] if the program's own are damaged.
 pub fn all(more: &[Exhibit]) -> Result<Vec<Exhibit>> {
-    let own: File = toml::from_str(include_str!("exhibits.toml"))
-        .map_err(|e| Error::new(ErrorKind::Other, format!("exhibits.toml: {e}; report this")))?;
-    // A plan's exhibit takes the place of the program's of the same name.
-    let kept = |own: &Exhibit| !more.iter().any(|m| m.name == own.name);
-    Ok(more
-        .iter()
-        .cloned()
-        .chain(own.exhibit.into_iter().filter(kept))
-        .collect())
+    let mut all = more.to_vec();
+    for text in OWN {
+        let own: File = toml::from_str(text)
+            .map_err(|e| Error::new(ErrorKind::Other, format!("exhibits: {e}; report this")))?;
+        // A plan's exhibit takes the place of the program's of the same name.
+        let kept = |own: &Exhibit| !more.iter().any(|m| m.name == own.name);
+        all.extend(own.exhibit.into_iter().filter(kept));
+    }
+    Ok(all)
 }
 
 impl Exhibit {
@@ -104,6 +117,12 @@ impl Exhibit {
             table.check().map_err(at)?;
         }
         Ok(())
+    }
+
+    /// The answers of its question from these rows.
+    pub(super) fn answers(&self, context: &Context, rows: &[&Row]) -> Vec<String> {
+        let answers = |q: Question| q.answers(context, rows);
+        self.question.map(answers).unwrap_or_default()
     }
 
     /// The rows that count.

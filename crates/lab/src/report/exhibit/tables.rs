@@ -1,18 +1,20 @@
 //! Tables of a report.
 
-use super::check_column;
+use super::{answers, check_column};
+use crate::method::Method;
 use crate::report::chart::front::{WORTH, front};
 use crate::report::columns::{self, Cell, Context};
 use crate::report::growth::growth;
-use crate::report::names::number;
+use crate::report::names::{number, percent};
 use crate::report::picture_groups::pictures_of;
 use crate::report::plan::variant;
 use crate::report::published::published;
-use crate::report::ratios::{Over, Ratio, over};
+use crate::report::ratios::{Over, Ratio, mean_ms, over};
 use crate::report::row::Row;
 use crate::report::stats::{self, Interval};
 use crate::report::table::Table as Text;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap::settings::DrawStage;
 
 /// A table.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
@@ -23,7 +25,7 @@ pub struct Table {
     /// The heading above it.
     pub heading: String,
     /// Columns, by their names. In tables of ways also `ratio R`, `interval R`, `range R` of the
-    /// time over `R`, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
+    /// time over `R`, `known ms` for the mean time, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
     /// `pictures`, `total wrong`, `no worse`.
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
@@ -49,6 +51,10 @@ pub enum Records {
     Ways,
     /// Ways of drawing that are on Pareto fronts.
     Fronts,
+    /// Ways of drawing, the fragment and the compute stage side by side.
+    Stages,
+    /// The default search against the fastest other one, by shadows and size.
+    Rivals,
     /// Ways of drawing, and how their times grow.
     Growth,
     /// A published table, measured again.
@@ -63,8 +69,8 @@ const SUMS: [&str; 4] = ["mean", "worst", "average", "other"];
 pub(super) fn check_summary(name: &str) -> Result<()> {
     match name.split_once(' ') {
         Some((sum, column)) if SUMS.contains(&sum) => columns::named(column).map(|_| ()),
+        Some(("known", "ms") | ("total", "wrong") | ("no", "worse")) => Ok(()),
         Some(("ratio" | "interval" | "range" | "known", other)) => reference(other).map(|_| ()),
-        Some(("total", "wrong") | ("no", "worse")) => Ok(()),
         None if name == "pictures" || name == "pair" => Ok(()),
         _ => columns::named(name).map(|_| ()),
     }
@@ -115,6 +121,8 @@ impl Table {
                 ways_table(context, &own, over, &self.columns)
             }
             Records::Fronts => Ok(fronts(context, rows)),
+            Records::Stages => Ok(answers::stages_table(context, rows)),
+            Records::Rivals => Ok(answers::rivals_table(context, rows)),
             Records::Growth => growth_table(context, rows, &self.x),
             Records::Published => Ok(published(context, rows, &self.x)),
             Records::Flights => Ok(Text::default()),
@@ -159,6 +167,7 @@ pub fn ways_table(
 pub(super) fn heading(name: &str, over: Over) -> Result<String> {
     let head = |column: &str| columns::named(column).map(|c| c.heading);
     Ok(match name.split_once(' ') {
+        Some(("known", "ms")) => "time (ms)".to_owned(),
         Some(("ratio" | "known", other)) => match other {
             "baseline" => "time / RBM baseline".to_owned(),
             other => format!("time / {}", other.replace('-', " ")),
@@ -207,9 +216,17 @@ pub(super) fn cell(
         Ok(own.map(|r| (r.time, r.range)))
     };
     let first = ratio.pairs.first().map(|(row, _)| *row);
+    let floor = ratio.settings.method == Method::Floor;
     let found = match name.split_once(' ') {
+        // It has no surface to err from.
+        Some(("mean" | "worst" | "total", _)) if floor => Cell::Empty,
+        Some(("range", _)) if ratio.pairs.len() == 1 => Cell::Empty,
         Some(("ratio", other)) => Cell::number(time(other)?.map(|t| t.0.value)),
-        Some(("known", other)) => Cell::known(time(other)?.map(|t| t.0)),
+        Some(("known", "ms")) => {
+            let own: Vec<&Row> = ratio.pairs.iter().map(|(row, _)| *row).collect();
+            context.known(mean_ms(&own))
+        }
+        Some(("known", other)) => context.known(time(other)?.map(|t| t.0)),
         Some(("interval", other)) => {
             time(other)?.map_or(Cell::Empty, |t| Cell::Text(context.ends(&t.0)))
         }
@@ -241,10 +258,25 @@ pub(super) fn cell(
     Ok(found)
 }
 
-/// The ways of drawing that are on the front of depth error against time of at least one picture,
-/// the most frequent first.
+/// The ways of drawing that are on the front of depth error against time of at least one picture in
+/// their stage, the most frequent of each stage first.
 fn fronts(context: &Context, rows: &[&Row]) -> Text {
-    let groups = pictures_of(rows);
+    let stages = [DrawStage::Fragment, DrawStage::Compute];
+    let records = stages.iter().flat_map(|s| front_records(context, rows, *s));
+    let header = [
+        "method",
+        "stage",
+        "on the front of",
+        "worst depth p99 (h/512)",
+        "worst wrong pixels",
+    ];
+    Text::new(header, records.collect())
+}
+
+/// The records of one stage.
+fn front_records(context: &Context, rows: &[&Row], stage: DrawStage) -> Vec<Vec<String>> {
+    let own = rows.iter().filter(|r| r.settings.stage == stage);
+    let groups = pictures_of(&own.copied().collect::<Vec<_>>());
     let mut counts: Vec<(&Row, usize, f64, f64)> = Vec::new();
     for group in &groups {
         let place = |r: &&Row| {
@@ -268,20 +300,13 @@ fn fronts(context: &Context, rows: &[&Row]) -> Text {
     let record = |(row, count, depth, wrong): &(&Row, usize, f64, f64)| {
         vec![
             context.styles.way(&row.settings),
-            row.settings.stage.name().to_owned(),
+            stage.name().to_owned(),
             format!("{count} of {}", groups.len()),
             number(*depth, 3),
-            crate::report::names::percent(*wrong),
+            percent(*wrong),
         ]
     };
-    let header = [
-        "method",
-        "stage",
-        "on the front of",
-        "worst depth p99 (h/512)",
-        "worst wrong pixels",
-    ];
-    Text::new(header, counts.iter().map(record).collect())
+    counts.iter().map(record).collect()
 }
 
 fn growth_table(context: &Context, rows: &[&Row], x: &str) -> Result<Text> {
@@ -291,20 +316,23 @@ fn growth_table(context: &Context, rows: &[&Row], x: &str) -> Result<Text> {
         vec![
             context.styles.way(&g.way),
             g.way.stage.name().to_owned(),
+            format!("{} of {}", g.points.len(), g.measured),
             ends(g.points.first()),
             ends(g.points.last()),
-            Cell::known(g.exponent).shown(),
+            g.exponent.map_or(Cell::Empty, Cell::Known).shown(),
             Cell::number(g.last).shown(),
         ]
     };
     let header = [
         "method",
         "stage",
+        "resolved",
         "time at the least (ms)",
         "time at the most (ms)",
         "exponent (95 % interval)",
         "exponent of the last step",
     ];
-    let all = growth(rows, |row| (column.cell)(context, row).value());
+    let x = |row: &Row| (column.cell)(context, row).value();
+    let all = growth(rows, x, context.resolved);
     Ok(Text::new(header, all.into_iter().map(record).collect()))
 }

@@ -4,7 +4,7 @@ use super::PlanFile;
 use revmap::error::{Error, ErrorKind, Result};
 
 /// Names and files of the plans, in the order in which they are listed.
-pub const ALL: [(&str, &str); 12] = [
+pub const ALL: [(&str, &str); 13] = [
     ("usual", include_str!("../plans/usual.toml")),
     ("quick", include_str!("../plans/quick.toml")),
     ("full", include_str!("../plans/full.toml")),
@@ -16,6 +16,7 @@ pub const ALL: [(&str, &str); 12] = [
     ("tables", include_str!("../plans/tables.toml")),
     ("scaling", include_str!("../plans/scaling.toml")),
     ("budget", include_str!("../plans/budget.toml")),
+    ("sizes", include_str!("../plans/sizes.toml")),
     ("crowds", include_str!("../plans/crowds.toml")),
     ("antialiasing", include_str!("../plans/antialiasing.toml")),
     ("chart", include_str!("../plans/chart.toml")),

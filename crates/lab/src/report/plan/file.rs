@@ -334,6 +334,10 @@ impl PlanFile {
         let exactly = |given: Option<usize>, own| given.map_or(own, |n| (n, n));
         self.time.passes = exactly(given.passes, self.time.passes);
         self.time.rounds = exactly(given.rounds, self.time.rounds);
+        if let Some(seconds) = given.max_seconds {
+            self.time.limit = Some(seconds);
+            self.time.seconds = self.time.seconds.min(seconds);
+        }
     }
 
     /// The measurements.

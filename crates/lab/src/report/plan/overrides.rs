@@ -28,6 +28,8 @@ pub struct Overrides {
     pub passes: Option<usize>,
     /// How many rounds.
     pub rounds: Option<usize>,
+    /// Seconds after which no further pass begins.
+    pub max_seconds: Option<f64>,
 }
 
 /// Lists of an entry that the command line can replace.

@@ -7,9 +7,12 @@ use std::time::Duration;
 #[serde(deny_unknown_fields, default)]
 pub struct TimeBudget {
     /// Seconds that all is meant to take. The least number of rounds is drawn even if that takes
-    /// longer, and of passes unless it takes half as long again: drivers that compile slowly get
-    /// two.
+    /// longer, and of passes unless that takes longer than the limit: drivers that compile slowly
+    /// get two.
     pub seconds: f64,
+    /// Seconds after which no further pass begins; until then passes are added to pictures with a
+    /// time that is not resolved. Not given: twice `seconds`.
+    pub limit: Option<f64>,
     /// Least and most passes.
     pub passes: (usize, usize),
     /// Least and most rounds of a group in a pass.
@@ -30,6 +33,7 @@ impl Default for TimeBudget {
     fn default() -> Self {
         Self {
             seconds: 85.0,
+            limit: None,
             passes: (5, 10),
             rounds: (3, 20),
             precision: 0.01,
@@ -46,16 +50,27 @@ impl TimeBudget {
         Duration::try_from_secs_f64(self.seconds).unwrap_or(Duration::MAX)
     }
 
-    /// True if another pass as long as the `last` would take too long after `gone`, however few the
-    /// `passes` were. A number of passes that the command line names is kept.
+    /// The time after which no further pass begins.
+    #[must_use]
+    pub fn limit(&self) -> Duration {
+        let seconds = self.limit.unwrap_or(2.0 * self.seconds);
+        Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+    }
+
+    /// True if the command line names the number of passes, which is then kept.
+    pub(in crate::report) fn is_fixed(&self) -> bool {
+        self.passes.0 == self.passes.1
+    }
+
+    /// True if another pass as long as the `last` would end beyond the limit after `gone`, however
+    /// few the `passes` were.
     pub(in crate::report) fn would_overrun(
         &self,
         passes: usize,
         gone: Duration,
         last: Duration,
     ) -> bool {
-        let fixed = self.passes.0 == self.passes.1;
-        !fixed && passes >= FEWEST && (gone + last).as_secs_f64() > 1.5 * self.seconds
+        !self.is_fixed() && passes >= FEWEST && gone + last > self.limit()
     }
 }
 
@@ -70,8 +85,9 @@ mod tests {
             TimeBudget::default().would_overrun(passes, seconds(gone), seconds(last))
         };
         assert!(!over(1, 600, 600), "an interval takes two passes");
-        assert!(over(2, 90, 45) && !over(2, 60, 45));
-        assert!(!over(4, 80, 20) && over(4, 110, 20));
+        // The limit is 170 s.
+        assert!(over(2, 130, 45) && !over(2, 100, 45));
+        assert!(!over(4, 140, 20) && over(4, 160, 20));
         let fixed = TimeBudget {
             passes: (4, 4),
             ..TimeBudget::default()

@@ -3,6 +3,7 @@
 use crate::report::view::Framing;
 use revmap::error::Error;
 use revmap::maps::{MapFormat, MapSource};
+use revmap::scene::Shadow;
 use revmap::settings::{DrawStage, Tolerance};
 use serde::de::{Deserialize, Deserializer, Error as _};
 
@@ -55,6 +56,12 @@ pub(super) fn formats<'de, D: Deserializer<'de>>(
     from: D,
 ) -> std::result::Result<Vec<MapFormat>, D::Error> {
     named(from, &MapFormat::NAMES)
+}
+
+pub(super) fn shadows<'de, D: Deserializer<'de>>(
+    from: D,
+) -> std::result::Result<Vec<Shadow>, D::Error> {
+    named(from, &Shadow::NAMES)
 }
 
 pub(super) fn framings<'de, D>(from: D) -> std::result::Result<Vec<Framing>, D::Error>

@@ -3,11 +3,12 @@
 use super::arrange::{army, avenue, distant, field};
 use super::overrides::Overrides;
 use super::suite::{self, Extent};
-use super::values::framings;
+use super::values::{framings, shadows};
 use crate::report::view::{Framing, View};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, ColorMap, MapSource, ShapeMap};
-use revmap::scene::{Clip, Offset};
+use revmap::scene::{Clip, Offset, Shadow};
+use revmap::settings::name_of;
 use std::sync::Arc;
 
 /// An entry of a plan's views.
@@ -29,6 +30,9 @@ pub struct Views {
     pub copies: Vec<u32>,
     /// Forms of the surface; none: as the solid is.
     pub forms: Vec<Form>,
+    /// Shadows that the scene has; none: as the scene says.
+    #[serde(deserialize_with = "shadows")]
+    pub shadows: Vec<Shadow>,
     /// The view's name in results, in place of the solid's.
     pub call: Option<String>,
 }
@@ -43,6 +47,7 @@ impl Default for Views {
             arrange: Arrangement::Alone,
             copies: Vec::new(),
             forms: Vec::new(),
+            shadows: Vec::new(),
             call: None,
         }
     }
@@ -123,7 +128,9 @@ impl Views {
         for view in self.arranged(scenes)? {
             // Framings in their own order, whatever that of the list.
             for framing in Framing::ALL.iter().filter(|f| self.framings.contains(f)) {
-                all.extend(self.formed(&view.clone().in_framing(*framing))?);
+                for view in self.formed(&view.clone().in_framing(*framing))? {
+                    all.extend(self.shadowed(view));
+                }
             }
         }
         for view in &mut all {
@@ -167,6 +174,22 @@ impl Views {
             self.elevations.iter().map(from).collect::<Vec<_>>()
         };
         Ok(scenes.iter().flat_map(seen).collect())
+    }
+
+    /// A view with each kind of shadows; names end in all but `off`.
+    fn shadowed(&self, view: View) -> Vec<View> {
+        if self.shadows.is_empty() {
+            return vec![view];
+        }
+        let with = |&shadow: &Shadow| {
+            let mut view = view.clone();
+            view.scene.shadow = shadow;
+            if shadow != Shadow::Off {
+                view.name += &format!("-{}", name_of(&Shadow::NAMES, &shadow));
+            }
+            view
+        };
+        self.shadows.iter().map(with).collect()
     }
 
     fn formed(&self, view: &View) -> Result<Vec<View>> {

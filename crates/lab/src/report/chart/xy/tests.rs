@@ -12,10 +12,11 @@ fn crowded() -> XyChart {
         },
         points: (0..7)
             .map(|k| Point {
-                spread: None,
                 x: 10.0 * 1.05f64.powi(k + index as i32),
                 y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
                 label: Some(format!("{k} steps")),
+                unresolved: k == 2,
+                ..Point::default()
             })
             .collect(),
         joined: true,
@@ -37,10 +38,9 @@ fn no_words_cover_each_other_however_crowded() {
         chart.series.truncate(1);
         chart.series[0].points = [low, high]
             .map(|v| Point {
-                spread: None,
                 x: v,
                 y: v,
-                label: None,
+                ..Point::default()
             })
             .to_vec();
         assert_eq!(
@@ -80,7 +80,12 @@ fn series_of_one_name_share_an_entry() {
         .into_iter()
         .map(|(n, k)| (n, k.len()))
         .collect();
-    let wanted = [("hull", 2), ("live", 1), ("Pareto front", 1)];
+    let wanted = [
+        ("hull", 2),
+        ("live", 1),
+        ("Pareto front", 1),
+        ("not resolved", 1),
+    ];
     assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
     assert_eq!(chart.figure().faults(), Vec::<String>::new());
 }
@@ -98,8 +103,7 @@ fn points_stand_where_their_values_are() {
         .map(|(x, y)| Point {
             x,
             y,
-            spread: None,
-            label: None,
+            ..Point::default()
         })
         .to_vec();
     chart.guides.clear();
@@ -138,7 +142,7 @@ fn piled() -> XyChart {
             x: 2.0,
             y: 3.0,
             spread: Some((1.0, 4.0)),
-            label: None,
+            ..Point::default()
         }],
         joined: false,
     };
@@ -202,4 +206,28 @@ fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
     assert!(!words(&chart).contains(&"Pareto front".to_owned()));
     chart.guides[0].points.push((2.5, 3.0));
     assert!(words(&chart).contains(&"Pareto front".to_owned()));
+}
+
+/// Every unresolved point is struck through, and the legend says what that means; without one,
+/// nothing is.
+#[test]
+fn unresolved_points_are_struck_through() {
+    let strokes = |chart: &XyChart| {
+        let figure = chart.figure();
+        assert_eq!(figure.faults(), Vec::<String>::new());
+        let marks = figure.marks.iter();
+        let told = |m: &&Mark| matches!(m, Mark::Word { text, .. } if text == "not resolved");
+        let struck = |m: &&Mark| match m {
+            Mark::Line { points, .. } => points[0].0 != points[1].0 && points[0].1 != points[1].1,
+            _ => false,
+        };
+        let count = marks.clone().filter(struck).count();
+        (count, marks.filter(told).count())
+    };
+    let mut chart = piled();
+    assert_eq!(strokes(&chart), (0, 0));
+    chart.series[1].points[0].unresolved = true;
+    chart.series[0].points[0].rise = Some((2.0, 5.0));
+    // One in the plot and one in the legend.
+    assert_eq!(strokes(&chart), (2, 1));
 }

@@ -154,7 +154,7 @@ fn faults_name_the_line_the_key_and_what_is_allowed() {
         (
             "[\"ratios\"]",
             "[\"ratio\"]",
-            ["show", "give one of ratios, meshes"],
+            ["show", "give one of stages, stages-by-size"],
         ),
         (
             "views = [\"a\"]",
@@ -297,6 +297,40 @@ fn a_sweep_moves_one_axis_at_a_time() {
         all.iter().filter(|s| s.method == Solver::Quadric).count(),
         2
     );
+}
+
+/// Every picture of the plan `sizes` has the default and its two rivals in both stages, at five sizes
+/// with each kind of shadows.
+#[test]
+fn the_default_has_its_rivals_in_every_picture() {
+    let file = embedded::plan("sizes").unwrap();
+    let plan = file.plan(&Overrides::default()).unwrap();
+    assert_eq!((plan.views.len(), plan.cases.len()), (9, 9 * 5 * 3 * 2));
+    for group in plan.groups() {
+        let of = |k: &usize| plan.cases[*k].settings;
+        let mut ways: Vec<(String, &str)> = group
+            .iter()
+            .map(|k| (of(k).method.to_string(), of(k).stage.name()))
+            .collect();
+        ways.sort();
+        let methods = ["exact", "live", "quadric"];
+        let both = |m: &str| ["compute", "fragment"].map(|stage| (m.to_owned(), stage));
+        assert_eq!(ways, methods.map(both).concat());
+    }
+    let names: Vec<&str> = plan.views.iter().map(|v| v.name.as_str()).collect();
+    assert_eq!(names[..3], ["vase", "vase-hard", "vase-soft"]);
+}
+
+#[test]
+fn the_command_line_limits_the_time() {
+    let given = Overrides {
+        max_seconds: Some(20.0),
+        ..Overrides::default()
+    };
+    let mut file = embedded::plan("usual").unwrap();
+    assert_eq!(file.time.limit().as_secs_f64(), 170.0);
+    file.apply(&given);
+    assert_eq!((file.time.seconds, file.time.limit), (20.0, Some(20.0)));
 }
 
 #[test]

@@ -1,0 +1,368 @@
+//! Questions that a report answers in one sentence, and the tables behind the answers: fragment or
+//! compute, and whether another search than the default is faster.
+
+use crate::method::Method;
+use crate::report::columns::{Cell, Context};
+use crate::report::names::number;
+use crate::report::picture_groups::pictures_of;
+use crate::report::plan::{grouped, is_rbm_baseline};
+use crate::report::ratios::{Over, Ratio, between, mean_ms, over};
+use crate::report::row::Row;
+use crate::report::stats::{Interval, Verdict};
+use crate::report::table::Table;
+use revmap::scene::Shadow;
+use revmap::settings::{DrawStage, name_of};
+
+/// A question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Question {
+    /// Which stage draws the default search faster?
+    Stages,
+    /// Where is another search faster than the default?
+    Rivals,
+}
+
+impl Question {
+    /// The answers from these rows, a sentence or two each; none where the rows do not tell.
+    #[must_use]
+    pub fn answers(self, context: &Context, rows: &[&Row]) -> Vec<String> {
+        match self {
+            Self::Stages => stages(context, rows),
+            Self::Rivals => rivals(context, rows).into_iter().collect(),
+        }
+    }
+}
+
+/// `1 picture`, `4 pictures`.
+pub(in crate::report) fn count(number: usize, what: &str) -> String {
+    match number {
+        1 => format!("1 {what}"),
+        number => format!("{number} {what}s"),
+    }
+}
+
+fn owned(rows: &[&Row]) -> Vec<Row> {
+    rows.iter().map(|r| (*r).clone()).collect()
+}
+
+/// `0.97 to 1.07`.
+fn range((low, high): (f64, f64)) -> String {
+    format!("{} to {}", number(low, 3), number(high, 3))
+}
+
+/// The answer for each way of drawing by the default search; for other searches where the plan has
+/// it not.
+fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
+    let own = owned(rows);
+    let all = over(&own, Over::Fragment);
+    let default = |r: &&Ratio| r.settings.method == Method::DEFAULT;
+    let drawn = |stage: DrawStage| {
+        let own = |r: &Row| (r.settings.method, r.settings.stage) == (Method::DEFAULT, stage);
+        rows.iter().any(|r| own(r))
+    };
+    let both = drawn(DrawStage::Fragment) && drawn(DrawStage::Compute);
+    if both && !all.iter().any(|r| default(&r)) {
+        return vec![format!(
+            "On {} the stages cannot be compared for `{}`: in no picture do the clocks agree in both.",
+            context.device,
+            Method::DEFAULT.name()
+        )];
+    }
+    let other = |r: &&Ratio| r.settings.method != Method::Floor && !is_rbm_baseline(&r.settings);
+    let chosen = all
+        .iter()
+        .filter(|r| if both { default(r) } else { other(r) });
+    let sentence = |r: &Ratio| {
+        let pictures = r.pairs.len();
+        let spread = match pictures {
+            1 => String::new(),
+            _ => format!(", {} in single pictures", range(r.range)),
+        };
+        let verdict = match r.time.verdict(context.resolved) {
+            Verdict::Faster => "compute is faster".to_owned(),
+            Verdict::Slower => "the fragment stage is faster".to_owned(),
+            Verdict::Even => "no difference is resolved".to_owned(),
+            Verdict::Unresolved => format!(
+                "no difference is resolved, since the interval is wider than {:.0} % to either side",
+                100.0 * context.resolved
+            ),
+        };
+        format!(
+            "On {} compute takes {} of the fragment stage's time for `{}` ({}), over {}{spread}: {verdict}.",
+            context.device,
+            number(r.time.value, 3),
+            context.styles.way(&r.settings),
+            r.time.ends().map_or("interval unknown".to_owned(), range),
+            count(pictures, "picture"),
+        )
+    };
+    chosen.map(sentence).collect()
+}
+
+/// Ways of drawing, the times of both stages side by side, over the pictures that both drew.
+pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
+    let own = owned(rows);
+    let record = |r: &Ratio| {
+        let (compute, fragment): (Vec<&Row>, Vec<&Row>) = r.pairs.iter().copied().unzip();
+        let faster = match r.time.verdict(context.resolved) {
+            Verdict::Faster => "compute",
+            Verdict::Slower => "fragment",
+            Verdict::Even => "no difference resolved",
+            Verdict::Unresolved => "not resolved",
+        };
+        vec![
+            context.styles.way(&r.settings),
+            context.known(mean_ms(&fragment)).shown(),
+            context.known(mean_ms(&compute)).shown(),
+            Cell::Known(r.time).shown(),
+            faster.to_owned(),
+            match r.pairs.len() {
+                1 => Cell::Empty.shown(),
+                _ => range(r.range),
+            },
+            r.pairs.len().to_string(),
+        ]
+    };
+    let header = [
+        "method",
+        "fragment (ms)",
+        "compute (ms)",
+        "compute / fragment",
+        "faster",
+        "range over pictures",
+        "pictures",
+    ];
+    let records = over(&own, Over::Fragment);
+    Table::new(header, records.iter().map(record).collect())
+}
+
+/// A row of the default search, the fastest other search, and the ratio of their times.
+type Pair<'a> = (&'a Row, &'a Row, Interval);
+
+fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
+    let pair = |row: &&'a Row| {
+        let other = Over::Rival.of(context.rows, row)?;
+        Some((*row, other, between(row, other)?))
+    };
+    rows.iter().filter_map(pair).collect()
+}
+
+/// The pair whose ratio is largest, of those that are resolved.
+fn worst<'a, 'b>(context: &Context, pairs: &'b [Pair<'a>]) -> Option<&'b Pair<'a>> {
+    let known = |p: &&Pair| p.2.verdict(context.resolved) != Verdict::Unresolved;
+    let known = pairs.iter().filter(known);
+    known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
+}
+
+/// `vase:hard at 64x48 in the compute stage, against quadric`.
+fn named((row, other, _): &Pair) -> String {
+    format!(
+        "{} at {} in the {} stage, against `{}`",
+        row.scene,
+        row.size(),
+        row.settings.stage.name(),
+        other.settings.method
+    )
+}
+
+fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
+    let all = pairs(context, rows);
+    if all.is_empty() {
+        return None;
+    }
+    let of = |verdict: Verdict| {
+        let own = all
+            .iter()
+            .filter(|p| p.2.verdict(context.resolved) == verdict);
+        own.count()
+    };
+    let pictures = pictures_of(rows).len();
+    let Some(pair) = worst(context, &all) else {
+        return Some("No ratio to another search is resolved.".to_owned());
+    };
+    Some(format!(
+        "The default search takes at most {} of the time of the fastest other search: {}. It is faster in {} of {} measurements ({}), another search in {}; in {} no difference is resolved, and {} are not resolved.",
+        Cell::Known(pair.2).shown(),
+        named(pair),
+        of(Verdict::Faster),
+        all.len(),
+        count(pictures, "picture"),
+        of(Verdict::Slower),
+        of(Verdict::Even),
+        of(Verdict::Unresolved),
+    ))
+}
+
+/// For each kind of shadows and size the largest ratio of each stage, and which picture it is of.
+pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
+    let all = pairs(context, rows);
+    let key = |p: &Pair| (p.0.shadow, p.0.settings.width, p.0.settings.height);
+    let mut groups = grouped(&all, |a, b| key(a) == key(b));
+    let place = |shadow: Shadow| Shadow::NAMES.iter().position(|n| n.1 == shadow);
+    groups.sort_by_key(|g| (place(g[0].0.shadow), g[0].0.settings.width));
+    let record = |group: &Vec<Pair>| {
+        let first = group[0].0;
+        let mut record = vec![
+            name_of(&Shadow::NAMES, &first.shadow).to_owned(),
+            first.size(),
+        ];
+        for stage in [DrawStage::Fragment, DrawStage::Compute] {
+            let own = group.iter().filter(|p| p.0.settings.stage == stage);
+            let own: Vec<Pair> = own.copied().collect();
+            match (worst(context, &own), own.len()) {
+                (Some((row, other, time)), _) => record.extend([
+                    Cell::Known(*time).shown(),
+                    format!("{}, {}", other.settings.method, row.scene),
+                ]),
+                (None, 0) => record.extend(["–", "–"].map(str::to_owned)),
+                (None, _) => record.extend(["not resolved", "–"].map(str::to_owned)),
+            }
+        }
+        record
+    };
+    let header = [
+        "shadows",
+        "size",
+        "fragment: worst",
+        "against",
+        "compute: worst",
+        "against",
+    ];
+    Table::new(header, groups.iter().map(record).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::report::columns::tests::with_context;
+    use crate::report::row::tests::row;
+    use revmap::settings::Solver;
+
+    /// A row of a search in a stage of a picture; its passes take these times.
+    fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
+        let passes: Vec<_> = passes.iter().map(|ms| [(None, *ms)]).collect();
+        let mut row = row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>());
+        row.settings = crate::method::MethodSettings {
+            method,
+            stage,
+            ..crate::method::MethodSettings::default()
+        };
+        row.view = view;
+        row.scene = format!("scene{view}");
+        row
+    }
+
+    fn stages_of(rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
+        let all: Vec<&Row> = rows.iter().collect();
+        with_context(rows, |context| {
+            let table = stages_table(context, &all);
+            (Question::Stages.answers(context, &all), table.records)
+        })
+    }
+
+    /// Compute takes half the time of the fragment stage, over two pictures, while the machine
+    /// slows down between passes.
+    #[test]
+    fn a_planted_ratio_of_stages_is_answered_in_one_sentence() {
+        use DrawStage::{Compute, Fragment};
+        let rows = [
+            timed(Method::DEFAULT, Fragment, 0, &[8.0, 8.8, 8.1]),
+            timed(Method::DEFAULT, Compute, 0, &[4.0, 4.4, 4.05]),
+            timed(Method::DEFAULT, Fragment, 1, &[16.0, 17.6, 16.2]),
+            timed(Method::DEFAULT, Compute, 1, &[8.0, 8.8, 8.1]),
+            timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0, 10.0]),
+        ];
+        let (answers, records) = stages_of(&rows);
+        assert_eq!(
+            answers,
+            [
+                "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5), over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster."
+            ]
+        );
+        assert_eq!(records.len(), 1, "live was drawn in one stage");
+        assert!(
+            records[0][1].starts_with("11.7 (") && records[0][2].starts_with("5.86 ("),
+            "{records:?}"
+        );
+        assert_eq!(records[0][3..5], ["0.5 (0.5 to 0.5)", "compute"]);
+    }
+
+    #[test]
+    fn an_interval_that_holds_1_or_is_too_wide_has_no_winner() {
+        use DrawStage::{Compute, Fragment};
+        let answer = |compute: &[f64]| {
+            let steady = [10.0, 10.0, 10.0];
+            let rows = [
+                timed(Method::DEFAULT, Fragment, 0, &steady),
+                timed(Method::DEFAULT, Compute, 0, compute),
+            ];
+            let (answers, records) = stages_of(&rows);
+            (answers[0].clone(), records[0].clone())
+        };
+        let (even, record) = answer(&[9.9, 10.2, 10.1]);
+        assert!(even.ends_with("over 1 picture: no difference is resolved."));
+        assert_eq!(record[4], "no difference resolved");
+        let (wide, record) = answer(&[2.0, 10.0, 5.0]);
+        assert!(
+            wide.contains("since the interval is wider than 25 %"),
+            "{wide}"
+        );
+        assert!(record[2].ends_with(", not resolved"), "{record:?}");
+        assert_eq!(record[4], "not resolved");
+        let rows = [
+            timed(Method::DEFAULT, Fragment, 0, &[10.0, 10.0]),
+            timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0]),
+            timed(Solver::Live.into(), Compute, 0, &[5.0, 5.0]),
+        ];
+        assert!(stages_of(&rows).0[0].contains("0.5 of the fragment stage's time for `live`"));
+        let mut lies = rows[0].clone();
+        lies.settings.stage = Compute;
+        lies.passes[0][0].gpu_ms = Some(0.1);
+        let (answers, _) = stages_of(&[rows.to_vec(), vec![lies]].concat());
+        assert_eq!(answers.len(), 1);
+        assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
+        let (slower, record) = answer(&[15.0, 15.1, 15.0]);
+        assert!(slower.ends_with(": the fragment stage is faster."));
+        assert_eq!(record[4], "fragment");
+    }
+
+    /// The quadric search is faster in one picture; a wider interval with a larger ratio does not
+    /// count, and neither does a search that errs by more than a texel.
+    #[test]
+    fn the_worst_resolved_ratio_to_another_search_is_named() {
+        use DrawStage::{Compute, Fragment};
+        let quadric = Method::Search(Solver::Quadric);
+        let live = Method::Search(Solver::Live);
+        let mut wrong = timed(live, Fragment, 0, &[1.0, 1.0, 1.0]);
+        wrong.errors.depth = Some(crate::compare::Spread {
+            rms: 1.0,
+            p99: 1.5,
+            max: 9.0,
+        });
+        let rows = [
+            timed(Method::DEFAULT, Fragment, 0, &[5.0, 5.1, 5.0]),
+            timed(quadric, Fragment, 0, &[10.0, 10.2, 10.0]),
+            wrong,
+            timed(Method::DEFAULT, Compute, 0, &[6.0, 6.0, 6.0]),
+            timed(quadric, Compute, 0, &[5.0, 5.0, 5.0]),
+            timed(Method::DEFAULT, Fragment, 1, &[9.0, 40.0, 20.0]),
+            timed(quadric, Fragment, 1, &[5.0, 5.0, 5.0]),
+        ];
+        let all: Vec<&Row> = rows.iter().collect();
+        let (answers, records) = with_context(&rows, |context| {
+            let table = rivals_table(context, &all);
+            (Question::Rivals.answers(context, &all), table.records)
+        });
+        assert_eq!(
+            answers,
+            [
+                "The default search takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved."
+            ]
+        );
+        let wanted = ["off", "800x600", "0.5 (0.5 to 0.5)", "quadric, scene0"];
+        assert_eq!(records[0][..4], wanted);
+        assert_eq!(records[0][4..], ["1.2 (1.2 to 1.2)", "quadric, scene0"]);
+    }
+}

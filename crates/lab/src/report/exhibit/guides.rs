@@ -1,0 +1,107 @@
+//! Axes of charts, lines to compare points with, and fitted laws.
+
+use super::{Chart, tables};
+use crate::report::chart::axis::Axis;
+use crate::report::chart::xy::{Guide, Series};
+use crate::report::columns::{self, Context};
+use crate::report::growth::growth;
+use crate::report::published;
+use crate::report::row::Row;
+use revmap::error::Result;
+
+impl Chart {
+    pub(super) fn axes(
+        &self,
+        context: &Context,
+        series: &[Series],
+        floors: &[Guide],
+    ) -> Result<(Axis, Axis)> {
+        let even = |label: &str, linear: bool| match linear {
+            true => Axis::linear(label),
+            false => Axis::log(label),
+        };
+        let mut x = match self.over {
+            Some(_) => Axis::log(format!("time / {}", context.baseline())).with(1.0),
+            None => even(columns::named(&self.x)?.heading, self.linear[0]),
+        };
+        let name = self
+            .y
+            .split_once(' ')
+            .map_or(self.y.as_str(), |(_, column)| column);
+        let heading = match self.over {
+            Some(over) => tables::heading(&self.y, over)?,
+            None => columns::named(&self.y)?.heading.to_owned(),
+        };
+        let mut y = even(&heading, self.linear[1]);
+        if let Ok(column) = columns::named(name)
+            && column.floor > 0.0
+        {
+            y = y.from(column.floor);
+        }
+        if self.front {
+            for place in floors.iter().filter_map(|floor| floor.points.first()) {
+                x = x.with(place.0);
+            }
+        }
+        if self.ticks {
+            x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
+        }
+        for (_, rate) in self.published() {
+            y = y.with(rate);
+        }
+        Ok((x, y))
+    }
+
+    /// The published line, in charts that have one.
+    fn published(&self) -> Vec<(f64, f64)> {
+        let mut words = self.guide.split(' ');
+        let table = match (words.next(), words.next()) {
+            (Some("published"), Some(number)) => published::table(number),
+            _ => None,
+        };
+        let size = words.next().unwrap_or("");
+        table.map_or(Vec::new(), |t| t.line(size, self.y == "rate_over_first"))
+    }
+
+    /// Lines to compare points with, and fitted laws.
+    pub(super) fn guides(
+        &self,
+        context: &Context,
+        rows: &[&Row],
+        series: &[Series],
+    ) -> Result<Vec<Guide>> {
+        let mut all = Vec::new();
+        if self.guide == "equal" {
+            let mut values: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
+            values.sort_by(f64::total_cmp);
+            let points = values
+                .into_iter()
+                .filter(|v| *v > 0.0)
+                .map(|v| (v, v))
+                .collect();
+            all.push(Guide::dashed("the tolerance", points));
+        }
+        let line = self.published();
+        if !line.is_empty() {
+            all.push(Guide::dashed("published, GeForce GT 630M", line));
+        }
+        if self.law {
+            let column = columns::named(&self.x)?;
+            let x = |row: &Row| (column.cell)(context, row).value();
+            for g in growth(rows, x, context.resolved) {
+                let (Some(law), [first, .., last]) = (g.law, g.points.as_slice()) else {
+                    continue;
+                };
+                let style = context.styles.style(&g.way);
+                all.push(Guide {
+                    name: String::new(),
+                    points: [first, last].map(|p| (p.0, law.at(p.0))).to_vec(),
+                    color: style.color,
+                    dash: style.dash,
+                    width: style.line(),
+                });
+            }
+        }
+        Ok(all)
+    }
+}

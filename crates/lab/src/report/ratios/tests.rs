@@ -1,0 +1,171 @@
+#![allow(clippy::unwrap_used)]
+use super::super::plan::rbm_baseline;
+use super::super::row::tests::row;
+use super::super::view::tests::spindle;
+use super::*;
+use crate::method::Method;
+
+fn papers(mut row: Row) -> Row {
+    row.settings = rbm_baseline(&spindle(), &row.settings);
+    row
+}
+
+/// A machine that slows down to a third within a pass and between passes changes no ratio.
+#[test]
+fn drift_of_the_machine_cancels() {
+    let ours = row(&[&[(None, 10.0), (None, 30.0)], &[(None, 20.0), (None, 11.0)]]);
+    let theirs = papers(row(&[
+        &[(None, 20.0), (None, 60.0)],
+        &[(None, 40.0), (None, 22.0)],
+    ]));
+    let rows = [ours, theirs];
+    let ratios = over(&rows, Over::Baseline);
+    assert_eq!(ratios.len(), 2);
+    let time = ratios[0].time;
+    assert!(
+        (time.value - 0.5).abs() < 1e-12 && (time.high - time.low) < 1e-9,
+        "{time:?}"
+    );
+    assert!((ratios[1].time.value - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn views_are_averaged_geometrically() {
+    let mut rows = Vec::new();
+    for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
+        let mut a = row(&[&[(None, ours)], &[(None, ours)]]);
+        let mut b = papers(row(&[&[(None, 20.0)], &[(None, 20.0)]]));
+        (a.view, b.view) = (view, view);
+        rows.extend([a, b]);
+    }
+    let ratio = &over(&rows, Over::Baseline)[0];
+    assert!((ratio.time.value - 0.5).abs() < 1e-12);
+    assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
+    assert_eq!(ratio.pairs.len(), 2);
+}
+
+#[test]
+fn what_cannot_be_trusted_counts_for_nothing() {
+    let lies = row(&[&[(Some(0.04), 20.0)]]);
+    let fine = papers(row(&[&[(Some(20.0), 20.0)]]));
+    let rows = [lies.clone(), fine.clone()];
+    let ratios = over(&rows, Over::Baseline);
+    assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
+    // A baseline that lies leaves nothing to compare with; that of the fragment stage is the one of
+    // both stages.
+    assert!(over(&[row(&[&[(None, 20.0)]]), papers(lies)], Over::Baseline).is_empty());
+    let mut compute = row(&[&[(None, 20.0)]]);
+    compute.settings.stage = DrawStage::Compute;
+    assert_eq!(over(&[compute, fine], Over::Baseline).len(), 2);
+}
+
+/// 8 ms against 20 where 5 go without a search: 3 of the 20 are above the floor.
+#[test]
+fn the_floor_is_taken_off() {
+    let timed = |ms: f64| row(&[&[(None, ms)], &[(None, ms)]]);
+    let mut floor = timed(5.0);
+    floor.settings.method = Method::Floor;
+    let mut compute = timed(6.0);
+    compute.settings.stage = DrawStage::Compute;
+    let rows = [timed(8.0), floor, papers(timed(20.0)), compute];
+    let above = |k: usize| above_floor(&rows, &rows[k]).map(|ms| ms.round());
+    assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
+}
+
+/// A run that was ended in its second pass: the picture that lacks the pass must not shift the
+/// mean.
+#[test]
+fn a_pass_that_was_ended_early_is_left_out() {
+    let mut rows = Vec::new();
+    for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
+        let passes: &[&[(Option<f64>, f64)]] = &[&[(None, ours)], &[(None, ours)]];
+        let count = if view == 0 { 2 } else { 1 };
+        let mut a = row(&passes[..count]);
+        let mut b = papers(row(
+            &[[(None, 20.0)].as_slice(), [(None, 20.0)].as_slice()][..count]
+        ));
+        (a.view, b.view) = (view, view);
+        rows.extend([a, b]);
+    }
+    let time = over(&rows, Over::Baseline)[0].time;
+    assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
+}
+
+/// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is
+/// not.
+#[test]
+fn the_default_search_is_held_against_meshes() {
+    let depth = |p99| {
+        Some(crate::compare::Spread {
+            rms: p99,
+            p99,
+            max: p99,
+        })
+    };
+    let timed = |method, ms: f64, p99| {
+        let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+        row.settings.method = method;
+        row.errors.depth = depth(p99);
+        row
+    };
+    let mesh = |n| Method::mesh(n, 2 * n).unwrap();
+    let rows = [
+        timed(Method::DEFAULT, 9.0, 0.01),
+        timed(mesh(64), 6.0, 0.5),
+        timed(mesh(512), 36.0, 0.009),
+        timed(mesh(256), 18.0, 0.01),
+    ];
+    let duels = over(&rows, Over::Mesh);
+    let told: Vec<_> = duels
+        .iter()
+        .map(|d| (d.mesh, (d.time.value * 100.0).round(), d.no_worse()))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            (Some(mesh(64)), 150.0, 0),
+            (Some(mesh(512)), 25.0, 1),
+            (Some(mesh(256)), 50.0, 1),
+            (None, 50.0, 1)
+        ]
+    );
+    // Without a mesh that errs no more there is no such ratio, and without the default search
+    // none at all.
+    assert_eq!(over(&rows[..2], Over::Mesh).len(), 1);
+    assert!(over(&rows[1..], Over::Mesh).is_empty());
+}
+
+/// 10 ms over 20 in the fragment stage, 8 over 16 in compute: both times are put over the 20 of the
+/// fragment stage, whichever baseline is drawn first. Without it they are put over the 16.
+#[test]
+fn both_stages_are_put_over_one_baseline() {
+    let timed = |ms: f64, stage| {
+        let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+        row.settings.stage = stage;
+        row
+    };
+    use DrawStage::{Compute, Fragment};
+    let rows = [
+        papers(timed(16.0, Compute)),
+        timed(10.0, Fragment),
+        papers(timed(20.0, Fragment)),
+        timed(8.0, Compute),
+    ];
+    let found = |rows: &[Row]| -> Vec<f64> {
+        let ratios = over(rows, Over::Baseline);
+        ratios
+            .iter()
+            .map(|r| (r.time.value * 1e6).round() / 1e6)
+            .collect()
+    };
+    assert_eq!(baseline_stage(&rows), Fragment);
+    assert_eq!(found(&rows), [0.5, 1.0, 0.8, 0.4]);
+    let compute = [rows[0].clone(), rows[3].clone()];
+    assert_eq!(baseline_stage(&compute), Compute);
+    assert_eq!(found(&compute), [1.0, 0.5]);
+    // The same way in the other stage.
+    let stages = over(&rows, Over::Fragment);
+    let found: Vec<f64> = stages.iter().map(|r| r.time.value).collect();
+    assert_eq!(found, [0.8, 0.8]);
+    assert!((mean_ms(&[&rows[0], &rows[1]]).unwrap().value - 160f64.sqrt()).abs() < 1e-9);
+}
