@@ -33,7 +33,8 @@ use winit::event_loop::EventLoop;
 /// go nearer; drop a file to see it
 #[derive(Args)]
 pub struct View {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, read with profile_smooth =
+    /// "auto"
     scene: PathBuf,
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
