@@ -13,9 +13,10 @@ pub(super) const ROUGH: f64 = 0.005;
 /// Pixels of blur for each texel of roughness. The blur spreads the noise without moving the points
 /// less, so slopes are better in proportion to its width.
 const RATIO: f64 = 20.0;
-/// Least and largest blur that is chosen, pixels. A narrower one leaves the edge steeper than the
-/// trace can place; a wider one rounds corners more than noise moves them.
-const CHOSEN: [f64; 2] = [1.0, 4.0];
+/// Least and largest blur that is chosen, pixels. The least one makes every edge wider than the
+/// sums of coverage reach, so that all points of the outline are placed by interpolation: a mixture
+/// leaves kinks. A wider one than the largest rounds corners more than noise moves them.
+const CHOSEN: [f64; 2] = [1.25, 4.0];
 
 /// Width of the Gaussian blur that removes noise from a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub enum Smooth {
     /// Standard deviation in pixels of the picture: 0 for none, at most
     /// [`ProfileOptions::MOST_SMOOTH`](super::ProfileOptions::MOST_SMOOTH).
     Pixels(f64),
-    /// From the noise of the picture: 1 to 4 pixels, or none if the outline is not rough.
+    /// From the noise of the picture: 1.25 to 4 pixels, or none if the outline is not rough.
     Auto,
 }
 
