@@ -26,7 +26,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         return Err(full_fault("image"));
     }
     let mut profile = trace::profile(raster.clone(), split)?;
-    profile.warnings = reading::warnings(&raster, &profile.outline, options);
+    profile.warnings = reading::warnings(&raster, split, &profile.outline, options);
     Ok(profile)
 }
 

@@ -10,6 +10,7 @@ mod area;
 mod drawing;
 mod faults;
 pub(crate) mod image;
+mod noise;
 mod outline;
 #[cfg(feature = "drawing")]
 mod paint;
@@ -22,6 +23,7 @@ mod smooth;
 mod svg;
 mod trace;
 
+pub use noise::Smooth;
 pub use outline::Segment;
 pub use reading::ProfileOptions;
 

@@ -1,7 +1,9 @@
 //! Options for reading a picture: the grey level that is solid and the amount of noise that is
 //! blurred away. Also warnings about a picture that looks unintended.
 
+use super::noise::{ROUGH, Smooth};
 use super::outline::area;
+use super::trace::roughness;
 use super::{Outline, ProfileAxis, Raster};
 use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
@@ -17,10 +19,8 @@ pub struct ProfileOptions {
     /// Light is solid instead of dark, over black: transparent pixels stay empty. For pictures
     /// only.
     pub invert: bool,
-    /// Standard deviation, in pixels of the picture, of the Gaussian blur that removes noise before
-    /// the outline is traced. 0 for none, at most [`ProfileOptions::MOST_SMOOTH`]. For pictures
-    /// only.
-    pub smooth: f64,
+    /// Gaussian blur that removes noise before the outline is traced. For pictures only.
+    pub smooth: Smooth,
 }
 
 impl Default for ProfileOptions {
@@ -29,7 +29,7 @@ impl Default for ProfileOptions {
             axis: ProfileAxis::default(),
             threshold: 0.5,
             invert: false,
-            smooth: 0.0,
+            smooth: Smooth::default(),
         }
     }
 }
@@ -58,30 +58,33 @@ impl ProfileOptions {
             let message = format!("is {:?}; give a grey level between 0 and 1", self.threshold);
             return wrong("profile_threshold", message);
         }
-        if !(0.0..=Self::MOST_SMOOTH).contains(&self.smooth) {
+        if let Smooth::Pixels(pixels) = self.smooth
+            && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
+        {
             let most = Self::MOST_SMOOTH;
-            let message = format!("is {:?}; give pixels from 0 to {most}", self.smooth);
+            let message = format!("is {pixels:?}; give pixels from 0 to {most}, or \"auto\"");
             return wrong("profile_smooth", message);
         }
         Ok(())
     }
 
-    /// Refuses options that apply only to pictures.
+    /// Refuses options that apply only to pictures. [`Smooth::Auto`] is accepted, since a drawing
+    /// has no noise.
     #[cfg(feature = "drawing")]
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
         let plain = Self::from(self.axis);
         let key = match self {
             _ if self.threshold != plain.threshold => "profile_threshold",
             _ if self.invert => "profile_invert",
-            _ if self.smooth != plain.smooth => "profile_smooth",
+            _ if ![plain.smooth, Smooth::Auto].contains(&self.smooth) => "profile_smooth",
             _ => return Ok(self.axis),
         };
         let message = "counts for pictures alone; leave it out for a drawing";
         Err(Error::new(ErrorKind::Content, message).at_key(key))
     }
 
-    /// The darkness of a picture's half-plane as coverage, with the threshold at one half. `split`:
-    /// the axis is the middle of column 0.
+    /// The darkness of a picture's half-plane as coverage, with the threshold at one half and noise
+    /// blurred away. `split`: the axis is the middle of column 0.
     pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
         // Everything darker than this is solid.
         let edge = 1.0
@@ -100,53 +103,9 @@ impl ProfileOptions {
                 };
             }
         });
-        if self.smooth > 0.0 {
-            blur(&mut raster, self.smooth, split);
-        }
+        self.smooth.apply(&mut raster, split);
         raster
     }
-}
-
-/// Blurs by a Gaussian. The blur continues the picture with its mirror image left of the axis, and
-/// with its border pixels beyond the other borders.
-fn blur(raster: &mut Raster, sigma: f64, split: bool) {
-    let reach = (3.0 * sigma).ceil() as isize;
-    let weights: Vec<f32> = (-reach..=reach)
-        .map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp() as f32)
-        .collect();
-    let total: f32 = weights.iter().sum();
-    let (columns, rows) = (raster.columns as usize, raster.rows as usize);
-    let before = std::mem::take(&mut raster.coverage);
-    let mut across = vec![0.0f32; before.len()];
-    let mirrored = |i: isize| match i {
-        0.. => i as usize,
-        _ if split => -i as usize,
-        _ => (-i - 1) as usize,
-    };
-    across
-        .par_chunks_mut(columns)
-        .zip(before.par_chunks(columns))
-        .for_each(|(out, line)| {
-            for (i, value) in out.iter_mut().enumerate() {
-                let at = |k: isize| line[mirrored(i as isize + k).min(columns - 1)];
-                let sum: f32 = weights.iter().zip(-reach..).map(|(w, k)| w * at(k)).sum();
-                *value = sum / total;
-            }
-        });
-    let mut down = before;
-    down.par_chunks_mut(columns)
-        .enumerate()
-        .for_each(|(j, out)| {
-            out.fill(0.0);
-            for (w, k) in weights.iter().zip(-reach..) {
-                let row = (j as isize + k).clamp(0, rows as isize - 1) as usize;
-                let line = &across[row * columns..][..columns];
-                for (sum, value) in out.iter_mut().zip(line) {
-                    *sum += w / total * value;
-                }
-            }
-        });
-    raster.coverage = down;
 }
 
 /// Loops smaller than this many pixels are specks.
@@ -155,9 +114,10 @@ const SPECK: f64 = 9.0;
 const NOISE: usize = 8;
 
 /// Features of a picture and its outline that look unintended: one sentence each, with the key that
-/// changes it.
+/// changes it. `split`: the axis is the middle of column 0.
 pub(super) fn warnings(
     raster: &Raster,
+    split: bool,
     outline: &Outline,
     options: &ProfileOptions,
 ) -> Vec<String> {
@@ -178,6 +138,13 @@ pub(super) fn warnings(
         found.push(format!(
             "the picture is noisy: {specks} specks of less than {SPECK} pixels; profile_smooth = 2 blurs them away"
         ));
+    } else if options.smooth != Smooth::Auto {
+        let rough = roughness(raster, split);
+        if rough >= ROUGH {
+            found.push(format!(
+                "the outline is rough ({rough:.3} texels rms, by noise or compression); set profile_smooth = \"auto\""
+            ));
+        }
     }
     found
 }
@@ -304,7 +271,7 @@ mod tests {
             plain.warnings
         );
         let smooth = ProfileOptions {
-            smooth: 2.0,
+            smooth: Smooth::Pixels(2.0),
             ..ProfileOptions::default()
         };
         let profile = read(&noisy, smooth);
@@ -316,7 +283,7 @@ mod tests {
     fn a_blur_is_even_about_the_axis() {
         let clean = ball(|_, _, solid| if solid { 0 } else { 255 });
         let smooth = ProfileOptions {
-            smooth: 3.0,
+            smooth: Smooth::Pixels(3.0),
             ..ProfileOptions::default()
         };
         let profile = read(&clean, smooth);
@@ -345,7 +312,7 @@ mod tests {
         }
         for smooth in [-1.0, 101.0, f64::NAN] {
             let options = ProfileOptions {
-                smooth,
+                smooth: Smooth::Pixels(smooth),
                 ..ProfileOptions::default()
             };
             assert_eq!(key(options), "profile_smooth");

@@ -17,6 +17,10 @@
 //! [`smooth`](super::smooth) turns the chains into an [`Outline`]. Chains that cross afterwards are
 //! cut at their crossings.
 
+mod roughness;
+
+pub(super) use roughness::roughness;
+
 use super::faults::empty_fault;
 use super::region::{Rule, enclosed};
 use super::smooth::{Trail, smooth};

@@ -19,7 +19,7 @@
 //! | `object.N.profile_axis` | `"left"`: half a profile; `"center"`: a silhouette | `"center"` |
 //! | `object.N.profile_threshold` | pictures: grey level below which a pixel is solid, 0 black to 1 white | `0.5` |
 //! | `object.N.profile_invert` | pictures: whether light is solid instead | `false` |
-//! | `object.N.profile_smooth` | pictures: noise is blurred away by a Gaussian of this many texels (pixels of the picture) | `0` |
+//! | `object.N.profile_smooth` | pictures: noise is blurred away by a Gaussian of this many texels (pixels of the picture); `"auto"`: as many as the noise needs, none for a clean picture | `0` |
 //! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5`, or the largest `r` of the points if that is more |
 //! | `object.N.map_rows` | rows of the shape map | `512` |
 //! | `object.N.color` | linear RGB | `[0.8, 0.8, 0.8]` |
@@ -52,7 +52,7 @@ use super::values::{camera, light, offset, placement, specular};
 use super::{BumpForm, Camera, Clip, Object, Scene, Shadow, Texturing, overrides};
 use crate::error::{Error, ErrorKind, Result};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
-use crate::profile::{Profile, ProfileAxis, ProfileOptions};
+use crate::profile::{Profile, ProfileAxis, ProfileOptions, Smooth};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -130,7 +130,8 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture) gets a scene of its
-    /// own: all of it, seen from in front and a little above.
+    /// own: all of it, seen from in front and a little above. Noise of a picture is smoothed
+    /// ([`Smooth::Auto`]).
     ///
     /// # Errors
     /// [`ErrorKind::File`] for a file that cannot be read; the errors of a profile.
@@ -169,7 +170,11 @@ impl SceneFile {
     fn of_profile(file: &Path, folder: &Path) -> Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
-        let profile = reader.load_profile(file, ProfileOptions::default())?;
+        let options = ProfileOptions {
+            smooth: Smooth::Auto,
+            ..ProfileOptions::default()
+        };
+        let profile = reader.load_profile(file, options)?;
         // The distance at which a sphere about the box fills the picture's height.
         let reach = profile.radius.hypot(0.5) * 1.05;
         let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
@@ -180,6 +185,7 @@ impl SceneFile {
         camera.insert("target".into(), numbers(DVec3::new(0.0, 0.0, 0.5)));
         let mut object = Table::new();
         object.insert("profile".into(), Value::String(name.into_owned()));
+        object.insert("profile_smooth".into(), Value::String("auto".into()));
         let mut root = Table::new();
         root.insert("camera".into(), Value::Table(camera));
         root.insert("object".into(), Value::Array(vec![Value::Table(object)]));
@@ -328,7 +334,11 @@ impl Reader {
             axis: keys.one_of("profile_axis", &AXES)?.unwrap_or(plain.axis),
             threshold: keys.number("profile_threshold")?.unwrap_or(plain.threshold),
             invert: keys.flag("profile_invert")?.unwrap_or(plain.invert),
-            smooth: keys.number("profile_smooth")?.unwrap_or(plain.smooth),
+            smooth: match keys.number_or_auto("profile_smooth")? {
+                Some(Some(pixels)) => Smooth::Pixels(pixels),
+                Some(None) => Smooth::Auto,
+                None => plain.smooth,
+            },
         };
         let widths = polygon.iter().flatten().map(|[r, _]| *r);
         let widths = widths.filter(|r| r.is_finite());

@@ -66,6 +66,18 @@ impl<'a> Keys<'a> {
             .transpose()
     }
 
+    /// A number; `Some(None)` for the word `"auto"`.
+    pub(super) fn number_or_auto(&self, key: &str) -> Result<Option<Option<f64>>> {
+        match self.get(key) {
+            Some(Value::String(word)) if word == "auto" => Ok(Some(None)),
+            Some(v) => match as_number(v) {
+                Some(number) => Ok(Some(Some(number))),
+                None => Err(self.wrong(key, "a number or \"auto\"", v)),
+            },
+            None => Ok(None),
+        }
+    }
+
     pub(super) fn count(&self, key: &str) -> Result<Option<u32>> {
         self.get(key)
             .map(|v| {

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{BakeOptions, DisplacementMap, MapSource, Projection, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis, ProfileOptions};
+use revmap::profile::{Profile, ProfileAxis, ProfileOptions, Smooth};
 use revmap::scene::Object;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -47,9 +47,10 @@ pub struct Bake {
     /// Light is solid, dark is empty
     #[arg(long)]
     profile_invert: bool,
-    /// Blurs noise of a picture away by a Gaussian of this standard deviation
-    #[arg(long, value_name = "PIXELS", default_value_t = 0.0)]
-    profile_smooth: f64,
+    /// Blurs noise of a picture away by a Gaussian of this standard deviation; auto: as wide as the
+    /// noise needs, none for a clean picture
+    #[arg(long, value_name = "PIXELS|auto", default_value = "0", value_parser = smooth)]
+    profile_smooth: Smooth,
     /// Puts the projection of textures into the map's file name, as in vase.spherical.png
     #[arg(long, value_name = "NAME", value_parser = named(&PROJECTIONS))]
     projection: Option<Projection>,
@@ -127,6 +128,15 @@ impl Bake {
         if !self.quiet {
             output::result(line);
         }
+    }
+}
+
+/// A number of pixels, or `auto`.
+fn smooth(text: &str) -> std::result::Result<Smooth, String> {
+    match (text, text.parse()) {
+        ("auto", _) => Ok(Smooth::Auto),
+        (_, Ok(pixels)) => Ok(Smooth::Pixels(pixels)),
+        _ => Err("give a number of pixels, or auto".to_owned()),
     }
 }
 

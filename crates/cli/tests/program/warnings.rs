@@ -97,6 +97,41 @@ fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
 }
 
 #[test]
+fn noisy_pictures_are_named_and_smoothed() {
+    let bench = Bench::new();
+    bench.grey("noisy.png", 96, 96, |x, y| {
+        let ball = (f64::from(x) - 47.5).hypot(f64::from(y) - 47.5) - 30.0;
+        let noise = (x * 131 + y * 7919).wrapping_mul(2_654_435_761) >> 16 & 63;
+        let grey = 40.0 + 150.0 * (0.5 + 0.5 * ball).clamp(0.0, 1.0);
+        grey as u8 + noise as u8
+    });
+    bench.object("profile = \"noisy.png\"");
+    let found = warned(&bench, RENDER);
+    assert!(
+        found.len() == 1 && found[0].contains("object.0.profile: the outline is rough"),
+        "{found:?}"
+    );
+    assert!(found[0].contains("profile_smooth = \"auto\""), "{found:?}");
+    let auto = format!("{RENDER} --set object.0.profile_smooth=auto");
+    assert_eq!(warned(&bench, &auto), [""; 0]);
+    bench.refused(
+        &format!("{RENDER} --set object.0.profile_smooth=much"),
+        1,
+        &["object.0.profile_smooth", "\"auto\""],
+    );
+    // A picture in place of a scene is smoothed.
+    let alone = "render noisy.png -o out.png --size 32x24";
+    assert_eq!(warned(&bench, alone), [""; 0]);
+    let plain = format!("{alone} --set object.0.profile_smooth=0");
+    assert_eq!(warned(&bench, &plain).len(), 1);
+
+    let bake = "bake noisy.png -o map.png --map-rows 64";
+    assert_eq!(warned(&bench, bake).len(), 1);
+    let smooth = format!("{bake} --profile-smooth auto");
+    assert_eq!(warned(&bench, &smooth), [""; 0]);
+}
+
+#[test]
 fn faults_of_instances_name_file_and_line() {
     let bench = Bench::new();
     let cone =
