@@ -308,15 +308,20 @@ impl FramePlan {
             layer_of.push(layer as u32);
         }
         let mut dealt = TileWords::default();
+        let mut listed = false;
         for lists in [true, false] {
             let drawer = if with.compute {
                 Drawer::Groups { lists }
             } else {
                 Drawer::Fragments
             };
+            listed = lists;
             dealt = visible.deal(drawer, &layer_of, layers.len());
-            let words = |l: &LayerTiles| u64::from(list_words(l.listed.len() as u32));
-            if dealt.layers.iter().map(words).sum::<u64>() <= with.room() {
+            let count = |of: fn(u32) -> u32| -> u64 {
+                let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
+                dealt.layers.iter().map(counted).sum()
+            };
+            if count(list_words) <= with.room() && with.pays_to_list(count(|tiles| tiles)) {
                 break;
             }
         }
@@ -326,7 +331,7 @@ impl FramePlan {
             }
             let shows = !copies.is_empty();
             self.parts[n].tables = shows;
-            self.parts[n].patches = shows && visible.takes_lists(batch);
+            self.parts[n].patches = shows && listed && visible.takes_lists(batch);
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {

@@ -260,17 +260,20 @@ pub fn modules() -> Vec<Module> {
                     output,
                 });
             };
+            // Shadows and replicas walk the tree.
+            let on_patches = (features, output) != (Features::Full, O::Color);
             for search in SEARCHES.into_iter().filter(|s| has(*s, features, output)) {
                 add(Entry::Tree, search);
                 if shaded {
                     add(Entry::TileTree, search);
                     add(Entry::TileCopies, search);
                 }
-                if shaded && search == Search::Quadric {
+                if shaded && on_patches && search == Search::Quadric {
                     add(Entry::TilePatches, search);
                 }
             }
-            if has(Search::Quadric, features, output) && (shaded || features == Features::Plain) {
+            let shown = (shaded && on_patches) || features == Features::Plain;
+            if has(Search::Quadric, features, output) && shown {
                 add(Entry::Cells, Search::Quadric);
             }
         }

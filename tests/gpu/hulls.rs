@@ -279,7 +279,7 @@ fn all_that_the_box_draws() {
     ] {
         let mut lit = scene_of(shapes::vase(), eye(40.0, 2.4));
         lit.shadow = shadow;
-        all.push((name, lit, WRAPPED));
+        all.push((name, lit, WALKED));
     }
     // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the
     // hull's margin, too.

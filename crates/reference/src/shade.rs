@@ -151,6 +151,7 @@ mod tests {
 
     fn look(normal: [f64; 3], light: [f64; 3], direction: [f64; 3]) -> Shaded {
         let mut scene = tests::scene(vec![tests::object(samples::torus(), 0.5)]);
+        scene.lights.truncate(1);
         scene.lights[0].direction = light.into();
         let hit = Hit {
             t: 1.0,
@@ -200,7 +201,7 @@ mod tests {
             let found = visible(&reference, DVec3::ZERO, DVec3::Z, DVec3::Z, light.cap());
             let d: f64 = f64::clamp(-part, -1.0, 1.0);
             let segment = (d.acos() - d * (1.0 - d * d).sqrt()) / std::f64::consts::PI;
-            assert!((found - segment).abs() < 0.01, "{part}: {found}, {segment}");
+            assert!((found - segment).abs() < 0.02, "{part}: {found}, {segment}");
         }
         // Half of the disc is below the horizon.
         let clear = Reference::new(&tests::scene(Vec::new())).unwrap();
