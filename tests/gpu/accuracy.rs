@@ -1,4 +1,4 @@
-//! Pictures against the reference in double precision, and from where cameras seldom stand.
+//! Pictures compared with the reference in double precision, also from unusual viewpoints.
 
 use crate::common::{assert_sound, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
@@ -19,10 +19,10 @@ fn precise() -> Settings {
     }
 }
 
-/// Wrong pixels, depth p99 in texels, normals in degrees rms that a shape may have at most. The
-/// goal is 0.5 %, 0.5 and 2. Where a shape has more, creases and tips are why: within a texel of
-/// them a bilinear map rounds the surface, and a column of ridges or a stack of discs is little
-/// else. Those limits are measured (llvmpipe 22.3.6).
+/// Upper limits for a shape: share of wrong pixels, depth p99 in texels, normals in degrees rms.
+/// The goal is 0.5 %, 0.5 and 2. Higher limits are due to creases and tips: a bilinear map rounds
+/// the surface within a texel of them, and a column of ridges or a stack of discs is mostly
+/// creases. Those limits are measured (llvmpipe 22.3.6).
 const LIMITS: [(&str, f64, f64, f64); 8] = [
     ("sphere", 0.005, 0.5, 2.0),
     ("cone", 0.005, 0.5, 2.6),
@@ -62,7 +62,7 @@ fn circle_tracing_on_an_exact_map_is_accurate() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// From within the box, within the solid, on the axis and along it.
+/// Viewpoints within the box, within the solid, on the axis and along it.
 #[test]
 fn strange_viewpoints_give_right_pictures() {
     let middle = DVec3::new(0.0, 0.0, 0.5);
@@ -147,16 +147,17 @@ fn strange_viewpoints_give_right_pictures() {
                 c.ghost,
                 c.hits
             );
-            // Rays in the planes of discs graze them: a texel there (measured, llvmpipe 22.3.6).
+            // Rays in the planes of discs graze them: one texel is allowed (measured, llvmpipe
+            // 22.3.6).
             assert!(depth.p99 <= 1.0, "{name}: depth p99 {}", depth.p99);
-            // Straight down on a glass, or edge on to discs, much of what is seen lies at a crease
-            // (measured, llvmpipe 22.3.6).
+            // Many visible points are at a crease in a view straight down on a glass or edge on to
+            // discs (measured, llvmpipe 22.3.6).
             assert!(normal.rms <= 7.0, "{name}: normals {}", normal.rms);
         }
     }
 }
 
-/// Colour alone is the same picture as all planes, to the last of 8 bits but rounding.
+/// A colour-only picture equals that with all planes, up to rounding in the last of 8 bits.
 #[test]
 fn colour_alone_is_the_same_picture() {
     let scene = scene_of(shapes::vase(), eye(25.0, 1.8));

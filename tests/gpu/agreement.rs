@@ -1,4 +1,4 @@
-//! Fragment and compute pictures of one scene are the same bit for bit, in every channel.
+//! Fragment and compute pictures of one scene are equal bit for bit, in every channel.
 
 use crate::common::{draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
@@ -7,8 +7,8 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use std::sync::Arc;
 
-/// Ten scenes with different cameras, transforms, maps; several overlap, one is looked at from
-/// within.
+/// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
+/// is within an object.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut all = vec![
         ("side", scene_of(shapes::vase(), eye(0.0, 1.8))),
@@ -74,11 +74,11 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 fn fragment_and_compute_agree_bit_for_bit() {
     let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     let all: Vec<_> = scenes().into_iter().enumerate().collect();
-    // Every search once over all, so that each scene meets two or more; the patches meet every
-    // scene.
+    // Each scene is drawn by the patches and by a second search, and every search draws at least
+    // one scene.
     let pairs = all.iter().flat_map(|(n, scene)| {
         // Cone maps hold only some of these solids, and a hull is drawn by two different methods:
-        // both have tests of their own.
+        // both have their own tests.
         let others: Vec<_> = revmap_searches::ALL
             .into_iter()
             .filter(|s| !s.reads_own_table() && *s != Solver::Exact)
@@ -93,7 +93,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             map_format: formats[n % 3],
             solver,
             max_steps: Some(48),
-            // Cells and lists of patches start rays elsewhere, and tiles that are culled count no steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             proxy_min_pixels: u32::MAX,
             occlusion_culling: false,
             ..Settings::exact()
@@ -109,8 +109,8 @@ fn fragment_and_compute_agree_bit_for_bit() {
         let hits = fragment.distance.iter().filter(|d| d.is_finite()).count();
         assert!(hits > 200, "{name}: only {hits} pixels are hit");
         if *name == "crowd" {
-            // In compute the depths of other objects end a search of copies, in fragments the depth
-            // test comes after it.
+            // Depths of other objects end a search of copies in compute; the depth test comes after
+            // it in the fragment stage.
             fragment.steps.fill(0.0);
             compute.steps.fill(0.0);
         }
@@ -134,7 +134,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
     }
 }
 
-/// The comparison itself notices one bit.
+/// The comparison itself detects one bit.
 #[test]
 fn one_changed_bit_is_noticed() {
     let (_, scene) = scenes().remove(0);

@@ -1,4 +1,4 @@
-//! Fragment and compute pictures are the same bit for bit with all that covers and changes a solid.
+//! Fragment and compute pictures are equal bit for bit with all textures, bumps and offsets.
 
 use crate::common::{assert_sound, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
@@ -102,7 +102,7 @@ fn scenes() -> Vec<(String, Scene)> {
 fn fragment_and_compute_agree_bit_for_bit() {
     let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     for (n, (name, scene)) in scenes().into_iter().enumerate() {
-        let inset = scene.objects[0].offset.extend < 0.0; // which the papers' format cannot hold
+        let inset = scene.objects[0].offset.extend < 0.0; // the papers' format cannot hold this
         let settings = Settings {
             width: 200,
             height: 151,
@@ -113,7 +113,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             } else {
                 formats[(n + n / 3) % 3]
             },
-            // Cells and lists of patches start rays elsewhere, and tiles that are culled count no steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             proxy_min_pixels: u32::MAX,
             occlusion_culling: false,
             ..Settings::exact()
@@ -134,7 +134,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
         if let Some(difference) = fragment.first_difference(&draw(&scene, &compute)) {
             panic!("{name}: {difference}");
         }
-        // Colour alone: 8 bits, each encoded by its own stage's means.
+        // Colour only: 8 bits, encoded separately by each stage.
         let color = |stage| {
             draw(
                 &scene,

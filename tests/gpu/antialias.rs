@@ -1,5 +1,5 @@
-//! Smoothed silhouettes on a device: both stages, one object and several, colour alone and all
-//! planes give the picture that smoothing a frame afterwards gives.
+//! Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
+//! object and several, with colour only and with all planes.
 
 use crate::common::{draw, eye, scene_of, shapes};
 use glam::DVec3;
@@ -19,7 +19,7 @@ fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {
     }
 }
 
-/// Pixels of which a channel differs by more than 8 bits explain.
+/// Pixels with a channel that differs by more than the rounding to 8 bits.
 fn different(a: &Frame, b: &Frame) -> usize {
     let code = |v: f32| revmap::frame::srgb_from_linear(f64::from(v)) * 255.0;
     let differ = |a: &[f32; 4], b: &[f32; 4]| {
@@ -56,7 +56,7 @@ fn check(name: &str, scene: &Scene, stage: DrawStage) {
     assert!(changed > 200, "{name}: {changed} pixels are smoothed");
     let all = draw(scene, &settings(stage, Planes::All, true));
     assert!(all.first_difference(&expected).is_none(), "{name}");
-    // Depths come from the depth buffer: a line may be hidden by a rounding.
+    // Depths come from the depth buffer: rounding may hide a line.
     let color = draw(scene, &settings(stage, Planes::Color, true));
     let off = different(&color, &expected);
     assert!(

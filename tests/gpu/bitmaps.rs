@@ -1,5 +1,5 @@
-//! A picture of 512 rows drawn by the default search, against the drawing that it came from: beside
-//! the RBM baseline on the same pixels.
+//! A picture of 512 rows drawn by the default search, compared with its source drawing. The RBM
+//! baseline on the same pixels gives the scale.
 
 use crate::common::{draw, errors, eye, reference, scene_of};
 use revmap::maps::{MapFormat, MapSource};
@@ -14,7 +14,7 @@ fn drawing(name: &str) -> Profile {
     Profile::load(file, ProfileAxis::Center).unwrap()
 }
 
-/// The drawing's pixels: solid where more than half of one is covered.
+/// The drawing's pixels: a pixel is solid if more than half of it is covered.
 fn binary(profile: &Profile) -> Profile {
     let columns = (profile.radius * f64::from(ROWS)).round() as u32;
     let raster = profile.outline.rasterize(columns, ROWS).with_levels(2);
@@ -24,8 +24,8 @@ fn binary(profile: &Profile) -> Profile {
     }
 }
 
-/// The drawing as it would be known at best from those pixels: exact, but for level and upright
-/// faces, which binary pixels place no better than on their own edges.
+/// The best reconstruction of the drawing from those pixels. It is exact except for level and
+/// upright faces, which binary pixels locate only to their own edges.
 fn known_at_best(profile: &Profile) -> Profile {
     let mut outline = profile.outline.clone();
     let snap = |v: f64| (v * f64::from(ROWS)).round() / f64::from(ROWS);
@@ -50,15 +50,15 @@ fn known_at_best(profile: &Profile) -> Profile {
     Profile::new(outline, profile.radius)
 }
 
-/// Every view has at most half the wrong pixels. Errors of depth are another matter: where a level
-/// or an upright face lies within its texel binary pixels do not say, and seen at a slant that is
-/// most of the error. Were everything else known exactly, the 99th percentile would be half of the
-/// RBM baseline's in the middle of these views, and more in eleven of the twenty; what is drawn is
-/// held to that, and to the loop itself.
+/// Every view has at most half the wrong pixels of the RBM baseline. Depth has another limit:
+/// binary pixels do not show where a level or upright face is within its texel. At a slant this is
+/// most of the error. With all else exact, the 99th percentile would be half of the baseline's in
+/// the middle of these views, and more in eleven of the twenty. The picture is compared with this
+/// best case and with the loop itself.
 #[test]
 fn pictures_are_better_than_by_the_rbm_baseline() {
     let ours = Settings {
-        width: 800, // in smaller pictures too few pixels are wrong to say who has twice as many
+        width: 800, // smaller pictures have too few wrong pixels for a comparison
         height: 600,
         ..Settings::exact()
     };

@@ -1,4 +1,4 @@
-//! Bump mapping against the normal of the surface that is really displaced, by every projection.
+//! Bump mapping compared with the normal of the truly displaced surface, for every projection.
 
 use crate::common::{draw, eye, placement, scene_of};
 use glam::{DVec2, DVec3};
@@ -10,7 +10,7 @@ use revmap::settings::Settings;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Lower and upper rim of a cup's outside: the surface looked at is exactly this cone.
+/// Lower and upper rim of a cup's outside: the tested surface is exactly this cone.
 const RIMS: [[f64; 2]; 2] = [[0.22, 0.08], [0.4, 0.92]];
 
 fn cup() -> Profile {
@@ -18,7 +18,7 @@ fn cup() -> Profile {
     Profile::polygon(&[[0.0, low[1]], low, high, [0.0, high[1]]], 0.5).unwrap()
 }
 
-/// Low waves: what 16-bit slopes and filters add stays far below what is measured.
+/// Low waves: the error of 16-bit slopes and of filtering stays far below the measured quantity.
 fn height([u, v]: [f64; 2]) -> f64 {
     0.5 + 0.2 * (TAU * 2.0 * u + 0.4).sin() + 0.15 * (TAU * v).cos() * (TAU * u).cos()
 }
@@ -46,8 +46,8 @@ fn coordinates(projection: Projection, arc: &ArcLength, p: DVec3) -> [f64; 2] {
     }
 }
 
-/// The normal of `q = p + a H N` where `p` is the cone's point at azimuth `phi` and height `z`: by
-/// differences of `q` itself.
+/// The normal of `q = p + a H N`, where `p` is the cone's point at azimuth `phi` and height `z`. It
+/// is computed by finite differences of `q` itself.
 fn displaced_normal(projection: Projection, arc: &ArcLength, a: f64, phi: f64, z: f64) -> DVec3 {
     let [low, high] = RIMS.map(DVec2::from);
     let side = high - low;
@@ -64,8 +64,8 @@ fn displaced_normal(projection: Projection, arc: &ArcLength, a: f64, phi: f64, z
     around.cross(up).normalize()
 }
 
-/// Rms angle, radians, between what was shaded and the displaced surface's normal, and by how much
-/// bumps turn normals at all.
+/// Rms angle in radians between the shading normal and the displaced surface's normal, the rms
+/// angle by which bumps turn normals, and the number of pixels.
 fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize) {
     let object = &scene.objects[0];
     let place = object.placement;
@@ -77,7 +77,7 @@ fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize)
         let world = camera.eye + camera.pixel(x, y).normalize() * f64::from(frame.distance[index]);
         let p = place.rotation.conjugate() * (world - place.position) / place.scale;
         let on_side = (RIMS[0][1] + 0.03..RIMS[1][1] - 0.03).contains(&p.z);
-        // At rims a pixel covers much of a wave, whose mean is what it is right to see there.
+        // A pixel at a rim covers much of a wave, so its correct normal is the mean.
         let view = (camera.eye - world).normalize();
         let faces = vector(frame.normal[index]).dot(view) > 0.3;
         if !(on_side && faces) {
@@ -100,7 +100,7 @@ fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize)
     (rms(off), rms(turned), count as usize)
 }
 
-/// Half the depth, a quarter of the remainder.
+/// Half the depth gives a quarter of the remainder.
 #[test]
 fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
     let slopes = slopes(128);

@@ -1,15 +1,14 @@
-//! A layer of our own between the renderer and Vulkan: calls of a borrowed device that can be made
-//! to fail, and answers about a physical device that can be poorer than the truth. The renderer
-//! knows nothing of it.
+//! A test layer between the renderer and Vulkan. It can make calls of a borrowed device fail, and
+//! can report a poorer physical device than the real one. The renderer is unaware of it.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-/// One machine word: a handle, a pointer or a number. Each wrapped function takes up to six, which
-/// every 64-bit calling convention hands over in the same places whatever they are (on Windows from
-/// the fifth on the stack, in order).
+/// One machine word: a handle, a pointer or a number. Each wrapped function takes at most six.
+/// Every 64-bit calling convention passes them in the same places whatever their type (on Windows
+/// from the fifth on the stack, in order).
 type Word = usize;
 type Wrapped = unsafe extern "system" fn(Word, Word, Word, Word, Word, Word) -> vk::Result;
 
@@ -42,11 +41,11 @@ const CALLS: [&CStr; 26] = [
     c"vkQueueSubmit",
     c"vkWaitForFences",
 ];
-/// From here on what fails is no allocation.
+/// Failures from this index on are not allocation failures.
 const SUBMIT: usize = 24;
 const WAIT: usize = 25;
 
-/// What ends the life of something made by one of the calls, one each.
+/// The calls that destroy the objects made by [`CALLS`], one for each.
 const ENDS: [&CStr; 15] = [
     c"vkFreeMemory",
     c"vkDestroyBuffer",
@@ -74,7 +73,7 @@ static LOST: AtomicUsize = AtomicUsize::new(usize::MAX);
 static ALIVE: AtomicI64 = AtomicI64::new(0);
 static ONE: Mutex<()> = Mutex::new(());
 
-/// Whether a success of call `n` makes something that one of [`ENDS`] ends.
+/// Returns true if a successful call `n` makes an object that one of [`ENDS`] destroys.
 fn makes(n: usize) -> bool {
     let name = CALLS[n].to_str().unwrap();
     let alone = ["vkCreateQueryPool"].contains(&name);
@@ -97,8 +96,7 @@ unsafe extern "system" fn call<const N: usize>(
     if lost && N != WAIT {
         return vk::Result::ERROR_DEVICE_LOST;
     }
-    // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not looked
-    // at.
+    // SAFETY: the pointer is the driver's for this call; words beyond its parameters are not read.
     let result = unsafe {
         let real: Wrapped = std::mem::transmute(REAL[N].load(Ordering::SeqCst));
         real(a, b, c, d, e, f)
@@ -107,7 +105,7 @@ unsafe extern "system" fn call<const N: usize>(
         ALIVE.fetch_add(1, Ordering::SeqCst);
     }
     if lost {
-        // The work is over, as after a true loss, and no later work is taken.
+        // The work is complete, as after a true loss, and later submissions fail.
         LOST.store(SUBMIT, Ordering::SeqCst);
         return vk::Result::ERROR_DEVICE_LOST;
     }
@@ -130,7 +128,7 @@ macro_rules! each {
     ($function:ident: $($n:literal)*) => { [$($function::<$n> as *const c_void),*] };
 }
 
-/// The one test at a time that uses this layer. When it is dropped, nothing fails any more.
+/// Exclusive use of this layer by one test. Dropping it ends all failures.
 pub struct Layer {
     _one: MutexGuard<'static, ()>,
 }
@@ -159,7 +157,7 @@ impl Layer {
         let ends = each!(end: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
         let get = instance.fp_v1_0().get_device_proc_addr;
         let handle = device.handle();
-        // SAFETY: each wrapper takes and returns what the function that it stands for does.
+        // SAFETY: each wrapper has the parameters and result of the function that it replaces.
         unsafe {
             ash::Device::load_with(
                 |name| {
@@ -179,14 +177,14 @@ impl Layer {
         }
     }
 
-    /// Lets the `n`-th call from now on fail, of those that allocate or make something.
+    /// Makes the `n`-th call from now on fail, counting calls that allocate or create something.
     pub fn fail_at(&self, n: usize) {
         MADE.store(0, Ordering::SeqCst);
         FAILED.store(usize::MAX, Ordering::SeqCst);
         FAILS_AT.store(n, Ordering::SeqCst);
     }
 
-    /// How many such calls there were since.
+    /// The number of such calls since then.
     pub fn made(&self) -> usize {
         MADE.load(Ordering::SeqCst)
     }
@@ -198,19 +196,19 @@ impl Layer {
             .map(|name| name.to_str().unwrap())
     }
 
-    /// From now on the device is lost, which this call tells.
+    /// Loses the device from now on; the call `told_by` reports the loss.
     pub fn lose(&self, told_by: Option<&str>) {
         let told = |name: &&CStr| name.to_str().ok() == told_by;
         let n = CALLS.iter().position(told).unwrap_or(usize::MAX);
         LOST.store(n, Ordering::SeqCst);
     }
 
-    /// What was made and not destroyed, query pools aside.
+    /// The number of objects made and not destroyed, except query pools.
     pub fn alive(&self) -> i64 {
         ALIVE.load(Ordering::SeqCst)
     }
 
-    /// The instance, whose answers are those of a poorer device.
+    /// The instance, with the query results of a poorer device.
     pub fn instance(
         &self,
         entry: &ash::Entry,
@@ -243,7 +241,7 @@ impl Layer {
     }
 }
 
-/// What a physical device is made to lack.
+/// Features removed from a physical device.
 #[derive(Clone, Copy, Default)]
 pub struct Mask {
     pub version: bool,
@@ -251,11 +249,11 @@ pub struct Mask {
     pub anisotropy: bool,
     pub timestamps: bool,
     pub compute: bool,
-    /// Components between vertices and fragments: 64, as many as Vulkan promises.
+    /// Components between vertex and fragment shader beyond 64, the minimum in Vulkan.
     pub varyings: bool,
-    /// Corners placed more finely than at sixteenths of a pixel.
+    /// Sub-pixel precision finer than a sixteenth of a pixel.
     pub sub_pixels: bool,
-    /// Several samples a pixel.
+    /// More than one sample per pixel.
     pub samples: bool,
     pub format: Option<vk::Format>,
 }

@@ -1,5 +1,5 @@
-//! Boxes that grow with the offset (`clip = "none"`), against the reference, which moves the box's
-//! faces and nothing else; and boxes that cut (`clip = "box"`).
+//! Boxes that grow with the offset (`clip = "none"`), compared with the reference, which only moves
+//! the box's faces; and boxes that cut (`clip = "box"`).
 
 use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
@@ -27,12 +27,12 @@ fn with(profile: Profile, [extend, bevel, chamfer]: [f64; 3]) -> Scene {
         bevel,
         chamfer,
     };
-    // Turned, stretched and moved: the grown box has to stand so that the solid stays.
+    // Turned, stretched and moved: the grown box must keep the solid in place.
     scene.objects[0].placement = placement([0.1, -0.2, 0.05], [0.3, -0.2, 0.7], [1.1, 0.8, 0.9]);
     scene
 }
 
-/// A sphere that is extended is a larger sphere, all of it.
+/// An extended sphere is a larger sphere, and all of it is visible.
 #[test]
 fn an_extended_sphere_is_whole() {
     let scene = with(shapes::sphere(), [0.15, 0.0, 1.0]);
@@ -89,8 +89,7 @@ fn searches_agree_with_the_reference() {
                         c.depth.unwrap().p99
                     );
                     println!("{what}");
-                    // The exact searches by the bounds of those in boxes that cut; `live` by its
-                    // own.
+                    // The exact searches use the bounds for boxes that cut; `live` has its own.
                     let (most, p99) = match solver {
                         Solver::Live => (c.hits / 500, 0.5),
                         _ => (2, 0.02),
@@ -137,8 +136,8 @@ fn textures_stay_where_they_are() {
     }
 }
 
-/// A box that cuts does so at its faces; one that grows goes on by the offset, in steps, and not
-/// where the offset stays within.
+/// A clipping box cuts at its faces. A growing box grows by at least the offset, in steps, and not
+/// at all if the offset solid stays within.
 #[test]
 fn boxes_grow_by_what_offsets_need() {
     let rod = [[0.0, 0.0], [0.3, 0.0], [0.3, 1.0], [0.0, 1.0]];
@@ -164,7 +163,7 @@ fn boxes_grow_by_what_offsets_need() {
     object.repeat = [2, 1, 1];
     assert!(growth(&object).is_none());
     object.repeat = [1; 3];
-    // Whole pixels of a picture.
+    // The growth is a whole number of a picture's pixels.
     let raster = Raster {
         columns: 5,
         rows: 11,
@@ -188,7 +187,7 @@ fn boxes_grow_by_what_offsets_need() {
     assert!(hits(&whole) as f64 > 1.1 * hits(&cut) as f64);
 }
 
-/// The offset moves, the object is moved, copies come: the picture is that of a new renderer.
+/// Changes of offset, placement and copies give the picture of a new renderer.
 #[test]
 fn growing_follows_every_change() {
     let settings = settings(DrawStage::Fragment, Solver::Exact);

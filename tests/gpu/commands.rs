@@ -1,5 +1,5 @@
-//! Commands of a frame, counted between the renderer and Vulkan: they follow pipelines and sets of
-//! textures, whatever the number of objects and copies.
+//! The commands of a frame are counted between the renderer and Vulkan. Their number follows the
+//! pipelines and texture sets, whatever the number of objects and copies.
 
 use crate::common::host::memory::HostBuffer;
 use crate::common::host::{lent, open};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::SeqCst};
 
-/// Wraps commands: each counts its calls and passes them on.
+/// Wraps commands: each wrapper counts its calls and passes them on.
 macro_rules! counted {
     ($($command:ident($pointer:ty, $name:literal, $($parameter:ident: $of:ty),*);)*) => {
         /// Calls of each command in one frame.
@@ -34,7 +34,7 @@ macro_rules! counted {
 
                 pub unsafe extern "system" fn call($($parameter: $of),*) {
                     COUNT.fetch_add(1, SeqCst);
-                    // SAFETY: the driver's function of this name, with what the caller gave.
+                    // SAFETY: the driver's function of this name, with the caller's arguments.
                     unsafe {
                         let real: $pointer = std::mem::transmute(REAL.load(SeqCst));
                         real($($parameter),*);
@@ -43,7 +43,7 @@ macro_rules! counted {
             })*
         }
 
-        /// What was counted since the last call.
+        /// The counts since the last call.
         fn taken() -> Counts {
             Counts { $($command: calls::$command::COUNT.swap(0, SeqCst),)* }
         }
@@ -63,7 +63,7 @@ macro_rules! counted {
                     _ => real as *const c_void,
                 }
             };
-            // SAFETY: each wrapper takes what the function takes that it stands for.
+            // SAFETY: each wrapper has the signature of the function that it replaces.
             unsafe { ash::Device::load_with(load, handle) }
         }
     };
@@ -99,11 +99,11 @@ counted! {
 
 static ONE: Mutex<()> = Mutex::new(());
 
-/// Upper bound of a frame's barriers, those of the off-screen target among them.
+/// Upper bound on a frame's barriers, including those of the off-screen target.
 const MOST_BARRIERS: u32 = 6;
 
-/// On a square field that a camera above looks at: `copies` of each of `objects` solids that look
-/// alike and differ in size.
+/// A square field seen from above. It has `objects` solids of one look but different sizes, and
+/// `copies` of each.
 fn field(objects: u32, copies: u32) -> Scene {
     let mut scene = scene_of(shapes::vase(), DVec3::new(9.0, 2.0, 9.0));
     scene.camera.target = DVec3::ZERO;
@@ -132,7 +132,7 @@ fn field(objects: u32, copies: u32) -> Scene {
     scene
 }
 
-/// The commands of a frame whose camera has moved, and the pixels that it shows.
+/// The commands of a frame whose camera has moved, and the number of pixels hit.
 fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
     let settings = Settings {
         width: 160,
@@ -186,7 +186,7 @@ fn commands_follow_pipelines() {
             counts
         };
         of(1, 1);
-        // In compute tiles of several copies are one dispatch more.
+        // Tiles of several copies are one more dispatch in compute.
         let several = of(64, 1);
         assert!(several.pipelines <= 8, "{several:?}");
         for objects in [200, 1000] {
@@ -195,7 +195,7 @@ fn commands_follow_pipelines() {
         // Copies as small as a pixel have no tiles of their own.
         let (some, many) = (of(1, 100), of(1, 10_000));
         assert!(all(&many) <= all(&some), "{some:?}, {many:?}");
-        // One copy more than proxies are drawn for: no cliff of commands.
+        // One copy beyond the limit for proxies must not cause a jump in commands.
         let (below, above) = (of(1, 64), of(1, 65));
         assert!(
             all(&below).abs_diff(all(&above)) <= 4,
@@ -206,7 +206,7 @@ fn commands_follow_pipelines() {
     assert_silent(&host);
 }
 
-/// An update that is recorded through the layer is counted, and reaches the buffer.
+/// An update recorded through the layer is counted and takes effect in the buffer.
 #[test]
 fn an_update_is_noticed() {
     let _one = ONE

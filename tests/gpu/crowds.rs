@@ -1,4 +1,4 @@
-//! Crowds: copies that are proven hidden are left out, and no pixel differs for it.
+//! Crowds: copies proven hidden are left out, and no pixel changes.
 
 use crate::common::ways::{STAGES, apart};
 use crate::common::{device, shapes};
@@ -11,7 +11,7 @@ use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Spots as even as they are irregular.
+/// Positions that are irregular but evenly distributed.
 fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
     (0..count).map(move |k| {
         let part = |step: f64| (f64::from(k + 1000 * seed) * step).fract();
@@ -67,7 +67,7 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
     }
 }
 
-/// The same without lists of patches.
+/// The same settings without lists of patches.
 fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
     Settings {
         solver: Solver::Quadric,
@@ -87,15 +87,15 @@ fn draw(scene: &Scene, settings: &Settings) -> Frame {
 fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
     let differs = (0..a.pixels()).filter(|&i| {
         let bits = |f: &Frame| f.pixel(i).map(f32::to_bits);
-        // Look-ups are counted of hidden copies, too.
+        // Look-ups include those of hidden copies.
         let count = bits(a).len() - 1;
         bits(a)[..count] != bits(b)[..count]
     });
     assert_eq!(differs.count(), 0, "{what}");
 }
 
-/// Lists of patches, which compute has for copies that are large in a square, find what the tree
-/// finds but for roundings.
+/// Lists of patches give the hits of the tree up to rounding. Compute uses them for copies that are
+/// large in a square.
 #[track_caller]
 fn assert_near(a: &Frame, b: &Frame, what: &str) {
     let (hits, edge, far) = apart(a, b);
@@ -109,8 +109,8 @@ fn assert_near(a: &Frame, b: &Frame, what: &str) {
     );
 }
 
-/// From within, from above, from straight above and from afar, where most copies are less than a
-/// pixel.
+/// Views from within, from above, from straight above and from afar, where most copies are smaller
+/// than a pixel.
 const VIEWS: [(&str, DVec3, DVec3); 4] = [
     (
         "within",
@@ -134,7 +134,7 @@ const VIEWS: [(&str, DVec3, DVec3); 4] = [
     ),
 ];
 
-/// Bit for bit, whether copies are culled or not, and in either stage.
+/// Pictures are equal bit for bit, with and without culling, in either stage.
 #[test]
 fn culled_copies_are_not_missed() {
     for (name, eye, target) in VIEWS {
@@ -156,15 +156,15 @@ fn culled_copies_are_not_missed() {
             let listed = draw(&scene, &settings(DrawStage::Compute, cull));
             assert_near(&frames[0], &listed, &format!("{name}: lists, {cull}"));
         }
-        // In compute the nearest hits stop later copies from being searched, and those proven hidden
-        // are not even listed. Fragments of squares of one copy know nothing of other squares.
+        // The nearest hits in compute end the search of later copies, and copies proven hidden are
+        // not even listed. Fragments of single-copy squares have no data of other squares.
         let steps = |frame: &Frame| frame.steps.iter().map(|s| f64::from(*s)).sum::<f64>();
         assert!(steps(&frames[2]) <= steps(&frames[3]), "{name}");
     }
     device().check().unwrap();
 }
 
-/// The picture is that of the same copies as objects of their own, drawn by boxes and rectangles.
+/// The picture is that of the same copies as separate objects, drawn by boxes and rectangles.
 #[test]
 fn a_crowd_is_as_many_single_objects() {
     let scene = army(40);
@@ -190,8 +190,8 @@ fn a_crowd_is_as_many_single_objects() {
     device().check().unwrap();
 }
 
-/// What is hidden from the eye may still throw a shadow; and copies that come into view are there
-/// in the first frame.
+/// Copies hidden from the eye may still cast a shadow. Copies that come into view are visible in
+/// the first frame.
 #[test]
 fn hidden_copies_throw_shadows_and_come_back() {
     for stage in STAGES {
@@ -212,7 +212,7 @@ fn hidden_copies_throw_shadows_and_come_back() {
             let fresh = draw(&scene, &settings(stage, true));
             assert_same_bits(&moved, &fresh, &format!("{stage:?}, {name}"));
         }
-        // One object changes: what it hides of the others does, too.
+        // One object changes, and so does the part of the others that it hides.
         scene.objects[1].instances.truncate(3);
         offscreen.update(&scene).unwrap();
         offscreen.draw().unwrap();
@@ -226,7 +226,7 @@ fn hidden_copies_throw_shadows_and_come_back() {
     device().check().unwrap();
 }
 
-/// A crowd that stands behind the eye or beside the picture is not drawn at all.
+/// A crowd behind the eye or beside the picture is not drawn at all.
 #[test]
 fn what_is_out_of_view_is_nothing() {
     let mut scene = army(20);

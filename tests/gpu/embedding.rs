@@ -1,5 +1,5 @@
-//! The renderer in a host that owns device, pass, depth buffer and frames in flight: the one of
-//! `examples/engine`, with the validation layers' synchronization checks.
+//! The renderer in a host that owns device, pass, depth buffer and frames in flight. The host is
+//! that of `examples/engine`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
 use crate::common::{eye, host, scene_of, shapes};
@@ -63,7 +63,7 @@ pub fn order(options: &Options) -> DepthOrder {
     }
 }
 
-/// One frame of the host's.
+/// Draws one frame of the host.
 pub fn frame(
     stage: &mut Stage,
     renderer: &mut Renderer,
@@ -79,7 +79,7 @@ pub fn frame(
             meshes,
             // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
             |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
-            // SAFETY: the frame was prepared, the pass is of the output's formats.
+            // SAFETY: the frame was prepared, the pass has the output's formats.
             |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
         )
         .unwrap();
@@ -103,7 +103,7 @@ pub fn three() -> Scene {
     scene
 }
 
-/// What the host draws with this scene alone, seen as off screen.
+/// The host's picture of this scene only, from the off-screen camera.
 pub fn drawn(
     host: &Host,
     device: &Device,
@@ -162,8 +162,8 @@ fn alone_it_draws_the_off_screen_frame() {
         };
         let one = drawn(&host, &device, options, &scene, &view).0;
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
-        // Of four samples all go by the ray through the pixel's centre: away from silhouettes
-        // nothing differs.
+        // All four samples use the ray through the pixel's centre, so pixels away from silhouettes
+        // are equal.
         let samples = 4;
         let four = drawn(
             &host,
@@ -184,7 +184,7 @@ fn alone_it_draws_the_off_screen_frame() {
     assert_silent(&host);
 }
 
-/// Which of both is seen at a pixel: the solid, the host's sphere, or neither.
+/// The object visible at a pixel: the solid, the host's sphere, or neither.
 fn kind(pixel: &[u8]) -> u8 {
     match pixel[0] {
         255 => 1,
@@ -193,8 +193,8 @@ fn kind(pixel: &[u8]) -> u8 {
     }
 }
 
-/// The host's sphere stands in a cylinder of ours. Where one passes through the other is known
-/// exactly.
+/// The host's sphere intersects a cylinder drawn by the renderer. Their intersection curve has an
+/// exact formula.
 #[test]
 fn meshes_meet_solids_where_they_should() {
     let host = open();
@@ -278,7 +278,7 @@ fn meshes_meet_solids_where_they_should() {
                 }
                 continue;
             }
-            // A neighbour must be of this kind: the line is within a pixel.
+            // One neighbour must be of this kind: the curve is within a pixel.
             let (x, y) = ((n % w) as i64, (n / w) as i64);
             let near = (-1..=1).any(|dy| {
                 (-1..=1).any(|dx| {
@@ -292,7 +292,7 @@ fn meshes_meet_solids_where_they_should() {
         println!("reversed {reversed}, dynamic {dynamic}: {hits:?}, depth {worst:e}");
         assert!(hits[1] > 2000 && hits[2] > 1000, "{hits:?}");
         assert_eq!(off, 0, "reversed {reversed}, dynamic {dynamic}");
-        // One part in 2^20, as a host's own rasterised depths.
+        // Bound of one part in 2^20, as for a host's own rasterised depths.
         assert!(worst <= 2f64.powi(-20), "{worst:e}");
     }
     drop(device);
@@ -304,14 +304,14 @@ fn ball(o: DVec3, v: DVec3, radius: f64) -> f64 {
     let (a, b, c) = (v.dot(v), o.dot(v), o.dot(o) - radius * radius);
     let under = b * b - a * c;
     let roots = [(-b - under.sqrt()) / a, (-b + under.sqrt()) / a];
-    // The host culls nothing: from within the back is seen.
+    // The host culls nothing, so an eye within the sphere sees its back.
     roots
         .into_iter()
         .find(|t| *t >= 0.1)
         .unwrap_or(f64::INFINITY)
 }
 
-/// The same of the cylinder `x^2 + y^2 <= r^2, 0 <= z <= 1`; from within its back.
+/// The nearest hit of the cylinder `x^2 + y^2 <= r^2, 0 <= z <= 1`; its back for an eye within.
 pub fn upright(o: DVec3, v: DVec3, radius: f64) -> f64 {
     let (of, vf): (DVec2, DVec2) = (o.truncate(), v.truncate());
     let (a, b, c) = (vf.dot(vf), of.dot(vf), of.dot(of) - radius * radius);

@@ -17,8 +17,8 @@ fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
     object
 }
 
-/// A thousand objects come and go over 500 frames, two in flight; what is left is drawn as if
-/// nothing else had ever been.
+/// A thousand objects come and go over 500 frames, two in flight. The remaining objects are drawn
+/// like those of a new renderer.
 #[test]
 fn objects_come_and_go_between_frames() {
     let host = open();
@@ -47,7 +47,7 @@ fn objects_come_and_go_between_frames() {
         while there.len() > 60 {
             let (id, _) = there.remove((n as usize * 7) % there.len());
             crowd.remove(id).unwrap();
-            // It is gone, and stays so.
+            // A removed object stays removed.
             assert!(crowd.remove(id).is_err());
         }
         let (id, _) = there[n as usize % there.len()];
@@ -84,8 +84,8 @@ fn objects_come_and_go_between_frames() {
     assert_silent(&host);
 }
 
-/// Device memory after ten thousand frames is what it was after a hundred, although surfaces are
-/// made in every one.
+/// Device memory after ten thousand frames equals that after a hundred, although every frame builds
+/// surfaces.
 #[test]
 fn memory_stays_flat() {
     let host = open();

@@ -1,4 +1,4 @@
-//! What a host may have drawn besides a colour picture with depth: depth alone for its shadow maps,
+//! Outputs of a host other than a colour picture with depth: depth-only passes for its shadow maps,
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Records commands, submits them and waits.
 pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
     let device = &host.device;
-    // SAFETY: everything is made here, waited for, then destroyed.
+    // SAFETY: everything is created here, waited for, then destroyed.
     unsafe {
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
         let pool = device.create_command_pool(&pool, None).unwrap();
@@ -73,7 +73,7 @@ fn viewport() -> Viewport {
     }
 }
 
-/// A pass without colours.
+/// A pass without colour attachments.
 fn depth_pass(planes: Planes) -> Output {
     Output::Pass(PassFormats {
         begun: PassKind::Dynamic {
@@ -126,7 +126,7 @@ fn depths(
     };
     type Layout = vk::ImageLayout;
     once(host, |cmd| {
-        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass is of the
+        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass has the
         // output's formats.
         unsafe {
             let frame = renderer.prepare(cmd, 0, view).unwrap();
@@ -182,8 +182,8 @@ fn depths(
     bytemuck::pod_collect_to_vec(&read.bytes())
 }
 
-/// A light's view: depth alone is the depth of a colour picture bit for bit, along parallel rays it
-/// is the analytic one.
+/// A light's view: a depth-only pass equals the depth of a colour picture bit for bit. Its depth
+/// along parallel rays is the analytic depth.
 #[test]
 fn depth_alone_is_a_pictures_depth() {
     let host = open();
@@ -216,7 +216,7 @@ fn depth_alone_is_a_pictures_depth() {
         let at = |size: usize, k: usize| 2.0 * (k as f64 + 0.5) / size as f64 - 1.0;
         let (x, y) = (at(width, n % width), at(height, n / width));
         let [near, far] = [0.0, 1.0].map(|z| back.project_point3(DVec3::new(x, y, z)));
-        // `t` is the depth itself: 0 in the near plane, 1 in the far one.
+        // `t` is the depth itself: 0 in the near plane, 1 in the far plane.
         let t = upright(near, far - near, wide);
         if t.is_finite() && depth < 1.0 {
             hits += 1;
@@ -232,7 +232,7 @@ fn depth_alone_is_a_pictures_depth() {
     assert_silent(&host);
 }
 
-/// Along parallel rays.
+/// A projection of parallel rays.
 fn parallel() -> DMat4 {
     let (near, far) = (0.5, 6.0);
     DMat4::from_cols(
@@ -243,7 +243,8 @@ fn parallel() -> DMat4 {
     )
 }
 
-/// Depth alone of solids that their box cuts, by hulls and sides, is that of their boxes.
+/// Depth-only passes over solids cut by their box give the same depth by hulls and sides as by
+/// boxes.
 #[test]
 fn depth_alone_of_what_the_box_cuts() {
     let host = open();
@@ -288,8 +289,8 @@ fn depth_alone_of_what_the_box_cuts() {
     assert_silent(&host);
 }
 
-/// Compute into a host's buffer: where it is cleared the off-screen picture, where it holds nearer
-/// things they stay.
+/// Compute into a host's buffer gives the off-screen picture in cleared pixels. Nearer values
+/// already in the buffer are kept.
 #[test]
 fn compute_writes_to_a_hosts_buffer() {
     let host = open();
@@ -316,7 +317,7 @@ fn compute_writes_to_a_hosts_buffer() {
     };
     let pixels = (width * height) as usize;
     let nearer = 0x0102_0304u32;
-    // The left half is empty, in the right half something stands before everything.
+    // The left half is empty; the right half already holds a nearer depth.
     let is_empty = |n: usize| n % (width as usize) < width as usize / 2;
     let mut words: Vec<u32> = (0..pixels)
         .map(|n| if is_empty(n) { 1f32.to_bits() } else { 0 })
@@ -340,7 +341,8 @@ fn compute_writes_to_a_hosts_buffer() {
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
-    // SAFETY: the buffer is of the host's device, two words a pixel, and outlives the renderer.
+    // SAFETY: the buffer is of the host's device, has two words per pixel, and outlives the
+    // renderer.
     unsafe {
         let (words, images) = (buffer.raw, Vec::new());
         let target = ComputeTarget {
@@ -375,7 +377,7 @@ fn compute_writes_to_a_hosts_buffer() {
     assert_silent(&host);
 }
 
-/// A renderer of depth alone has no use for searches without an exact depth, nor for compute.
+/// A depth-only renderer refuses compute and searches without an exact depth.
 #[test]
 fn depth_alone_takes_exact_searches() {
     let device = crate::common::device();

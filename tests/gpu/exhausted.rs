@@ -7,7 +7,7 @@ use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_searches::{CIRCLE, LINEAR, SECANT};
 use std::sync::Arc;
 
-/// A solid, replicas, and copies beside each other: what is hidden is searched in fragments alone.
+/// A solid, replicas, and copies beside each other: only fragments search hidden surfaces.
 fn scenes() -> [Scene; 3] {
     let scene = scene_of(shapes::vase(), eye(15.0, 2.6));
     let mut several = Object::new("several", Arc::new(shapes::discs()));
@@ -37,13 +37,13 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
                 solver,
                 max_steps: Some(max_steps),
                 planes,
-                // Cells and lists of patches start rays elsewhere, and tiles that are culled count no steps.
+                // Cells and lists of patches change where rays start; culled tiles count no steps.
                 proxy_min_pixels: u32::MAX,
                 occlusion_culling: false,
                 ..Settings::exact()
             };
             let frames = scenes.each_ref().map(|scene| draw(scene, &settings));
-            // The bit that tells is no step.
+            // The bit that marks an exhausted ray is not counted as a step.
             assert!(frames.iter().all(|f| f.steps.iter().all(|&s| s < 1e5)));
             let hits = |f: &Frame| (0..f.pixels()).filter(|&i| f.hits(i)).count();
             let exhausted = frames.each_ref().map(|f| f.exhausted);
@@ -63,7 +63,7 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
         assert!(few > hits / 2 && more < few, "{solver:?}: {few}, {more}");
         assert!(hits > 5000 && enough == 0, "{solver:?}: {enough} of {hits}");
     }
-    // What has no budget cannot use it up; what is not counted is not told.
+    // A search without a budget cannot exhaust it; a picture without counts reports none.
     for solver in [Solver::Quadric, LINEAR, SECANT] {
         assert_eq!(count(solver, 3, Planes::All).0, 0, "{solver:?}");
     }

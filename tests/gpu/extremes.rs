@@ -1,5 +1,5 @@
-//! Places, distances and sizes that 32-bit world coordinates cannot hold; outlines and boxes that
-//! hulls cannot.
+//! Places, distances and sizes outside the range of 32-bit world coordinates; outlines and boxes
+//! that hulls do not support.
 
 use crate::common::{
     assert_sound, device, draw, errors, eye, placement, reference, scene_of, shapes,
@@ -23,8 +23,8 @@ fn settings(stage: DrawStage, solver: Solver) -> Settings {
     }
 }
 
-/// Pixels that only one of both hits are at most `most`; the 99th percentile of depth is at most
-/// `p99` texels of 512 rows.
+/// Asserts that at most `most` pixels are hit in only one of the frames, and that the 99th
+/// percentile of the depth error is at most `p99` texels of 512 rows.
 fn check(truth: &Frame, frame: &Frame, (most, p99): (usize, f64), what: &str) {
     assert_sound(frame, what);
     let found = errors(truth, frame, 512);
@@ -56,8 +56,8 @@ fn moved(mut scene: Scene, by: DVec3) -> Scene {
     scene
 }
 
-/// In the space of a box that is thin across the axis rays begin far off. Where one enters the
-/// cylinder about the solid must not be found from there, as the solid's wall is that cylinder.
+/// Rays begin far away in the space of a box that is thin across the axis. Their entry into the
+/// cylinder about the solid must not be computed from there: that cylinder is the solid's wall.
 #[test]
 fn thin_plates_have_no_holes() {
     let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.1, 0.9], [0.0, 0.9]];
@@ -85,7 +85,7 @@ fn small_solids_far_from_the_origin_are_drawn() {
     scene.camera.target *= size;
     scene.objects[0].placement = placement([0.0; 3], [0.0; 3], [size; 3]);
     let scene = moved(scene, DVec3::new(1e3, 0.0, 0.0));
-    // Distances are of the solid's size, too: a texel of it is 1.2e-8.
+    // Distances scale with the solid's size, too: its texel is 1.2e-8.
     in_both_stages(&scene, (3, 0.05 * size), "6e-6 large");
 }
 
@@ -120,7 +120,7 @@ fn far_solids_do_not_shade_themselves() {
     }
 }
 
-/// The ray of the middle pixel meets the tip to the last bit.
+/// The ray of the middle pixel hits the tip to the last bit.
 #[test]
 fn a_tip_has_a_normal() {
     let cone = || Profile::polygon(&[[0.0, 0.25], [0.25, 0.25], [0.0, 0.75]], 0.5).unwrap();
@@ -144,7 +144,7 @@ fn a_tip_has_a_normal() {
     }
 }
 
-/// How the first object is drawn in the fragment stage.
+/// The draw path of the first object in the fragment stage.
 fn path(scene: &Scene) -> DrawPath {
     let settings = Settings {
         width: 800,

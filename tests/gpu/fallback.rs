@@ -1,4 +1,4 @@
-//! A profile that has no contour is drawn by the search on the map, and the renderer says so.
+//! A profile without a contour is drawn by the search on the map, and the renderer adds a note.
 
 use crate::common::{device, draw, eye, scene_of, shapes};
 use glam::DVec2;
@@ -9,7 +9,7 @@ use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_searches::CONE;
 use std::sync::Arc;
 
-/// Two cylinders, one in the other, each by a loop of its own: twice solid in the middle.
+/// Two cylinders, one inside the other, each with its own loop: the middle is solid twice.
 fn crossing() -> Profile {
     let rectangle = |r0: f64, r1: f64, z1: f64| {
         [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
@@ -52,7 +52,7 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         let wanted = draw(&scene, &live);
         let hits = (0..wanted.pixels()).filter(|&i| wanted.hits(i)).count();
         assert!(hits > 3000, "{hits}");
-        // As the map's own search draws it, but for roundings; the ball keeps its search.
+        // The picture is that of the map's own search up to rounding; the ball keeps its search.
         let far = |&i: &usize| {
             let (a, b) = (wanted.distance[i], drawn.frame.distance[i]);
             a.is_finite() != b.is_finite() || (a - b).abs() >= 1e-3
@@ -60,16 +60,16 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         let far = (0..wanted.pixels()).filter(far).count();
         assert!(far <= 10, "{far} of {hits}");
     }
-    // Once, however often it is drawn.
+    // The note appears once, however often the scene is drawn.
     let settings = Settings::exact();
     let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
     scene.camera.eye.x += 0.1;
     renderer.update(&scene).unwrap();
     renderer.draw().unwrap();
     assert_eq!(renderer.notes().len(), 1);
-    // Nor is it tried again.
+    // The contour is not tried again.
     assert_eq!(renderer.rebuild_count(), 2);
-    // What has a contour has nothing to say.
+    // Objects with a contour add no note.
     scene.objects.remove(0);
     assert!(
         gpu::draw(device(), &scene, &settings)
@@ -81,8 +81,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     device().check().unwrap();
 }
 
-/// A line on the axis has no surface to follow, and encloses nothing. Searches on the map draw
-/// nothing of it, others say that they cannot.
+/// A line on the axis has no surface to follow and encloses nothing. Searches on the map draw
+/// nothing; other searches report that they cannot draw it.
 #[test]
 fn what_has_no_surface_is_drawn_from_the_map() {
     let line = [0.1, 0.5, 0.9].map(|z| DVec2::new(0.0, z)).to_vec();
@@ -113,7 +113,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
                 wanted.hits(i) == drawn.frame.hits(i) && (a == b || (a - b).abs() < 1e-3)
             };
             let same = (0..wanted.pixels()).filter(same).count();
-            // The search of the sphere is another than the default's, with `quadric`.
+            // The sphere's search with `quadric` differs from the default.
             assert!(same + 3 >= wanted.pixels(), "{same} of {}", wanted.pixels());
         }
         {

@@ -1,4 +1,4 @@
-//! The gallery's scenes: each has its picture and its place in the documentation, and maps no
+//! The gallery's scenes: each has a picture and a place in the documentation, and its maps are no
 //! larger than the papers claim.
 
 use crate::common::device;
@@ -44,14 +44,14 @@ fn every_scene_has_its_picture_and_its_words() {
     assert!(bytes < 4_000_000, "pictures take {bytes} bytes");
 }
 
-/// Article of 2025: at most 10 MB for shapes, 4 MB for a displacement map. What a scene's solids
-/// share is there once.
+/// Article of 2025: at most 10 MB for shapes, 4 MB for a displacement map. Data shared by a scene's
+/// solids counts once.
 #[test]
 fn maps_are_as_small_as_the_papers_claim() {
     let settings = Settings {
         width: 32,
         height: 24,
-        solver: Solver::Live, // which reads maps
+        solver: Solver::Live, // this search reads maps
         planes: Planes::Color,
         ..Settings::exact()
     };

@@ -1,14 +1,14 @@
-//! A picture of each real profile, looked at and kept. `REVMAP_BLESS=1 cargo test --test gpu
-//! golden` keeps new ones: look at them before they are committed. A picture that is missing fails.
+//! A picture of each real profile, inspected and stored. `REVMAP_BLESS=1 cargo test --test gpu
+//! golden` stores new ones: inspect them before the commit. A missing picture fails.
 
 use crate::common::draw;
 use revmap::scene::file;
 use revmap::settings::Settings;
 use std::path::PathBuf;
 
-/// Of 8-bit channels, how far one may be off, and how many of all may be off by more: drivers round
-/// differently, and a silhouette may fall to either side of a pixel's centre (measured: llvmpipe
-/// 22.3.6 against SwiftShader).
+/// The allowed difference of an 8-bit channel, and the share of all channels that may exceed it.
+/// Drivers round differently, and a silhouette may fall to either side of a pixel's centre
+/// (measured: llvmpipe 22.3.6 against SwiftShader).
 const TOLERANCE: (u8, f64) = (3, 0.002);
 
 #[test]

@@ -1,6 +1,6 @@
-//! Where rays begin elsewhere than at the box, or meet a part of a solid alone: cells in the
-//! fragment stage, tiles in compute. They draw what the same search draws from the box's sides, in
-//! every case that they take and in every case that they leave to the box.
+//! Rays that begin elsewhere than at the box, or search only a part of a solid: cells in the
+//! fragment stage, tiles in compute. They give the picture that the same search gives from the
+//! box's sides, both in the cases that they draw and in those that they leave to the box.
 
 use crate::common::ways::{STAGES, WALKED, WRAPPED, Ways, apart, draw_by};
 use crate::common::{device, draw, errors, eye, placement, scene_of, shapes};
@@ -12,22 +12,22 @@ use revmap::scene::{Clip, Offset, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_lab::compare::Spread;
 
-/// A search with its hulls and beams, and what draws the same from the box.
+/// A search with its hulls and beams, and the equivalent search from the box.
 pub struct Search {
     pub solver: Solver,
     from_box: Solver,
     /// Share of the pixels hit, beyond 2, that may differ.
     tolerated: f64,
-    /// Of the angles between normals that which is bounded, and its bound, degrees.
+    /// The bounded statistic of the angles between normals, and its bound in degrees.
     normals: (fn(&Spread) -> f64, f64),
 }
 
-/// The default: hulls of the exact boundary. What may differ: silhouettes of grazing rays, and at a
-/// crease either face's normal is right.
+/// The default: hulls of the exact boundary. Silhouettes of grazing rays may differ, and the normal
+/// of either face is right at a crease.
 ///
 /// Measured on lavapipe 22.3.6, over all views of this file and of `proxy_hulls.rs`: 1 pixel, of
 /// 38,661 of the torus from its rim; normals 0.98 degrees rms on the many creases of the discs from
-/// below (fragments), 0.54 elsewhere. The bound on pixels is for other devices' roundings.
+/// below (fragments), 0.54 elsewhere. The bound on pixels allows for other devices' rounding.
 pub const EXACT: Search = Search {
     solver: Solver::Exact,
     from_box: Solver::Quadric,
@@ -35,11 +35,11 @@ pub const EXACT: Search = Search {
     normals: (|spread| spread.rms, 1.0),
 };
 
-/// The search for live parameters, in tiles. Rays that begin elsewhere take other steps, of which
-/// each may pass a chord of a texel.
+/// The search for live parameters, in tiles. Rays that begin elsewhere take other steps, and each
+/// step may pass a chord of a texel.
 ///
 /// Measured on lavapipe 22.3.6, over all views of this file: 2 pixels (`REVMAP_MEASURE=1` prints
-/// each view's); normals 0.04 degrees (p99) at most, on the glass that is thinned.
+/// each view's); normals 0.04 degrees (p99) at most, on the thinned glass.
 const LIVE: Search = Search {
     solver: Solver::Live,
     from_box: Solver::Live,
@@ -47,7 +47,7 @@ const LIVE: Search = Search {
     normals: (|spread| spread.p99, 0.1),
 };
 
-/// However small the solid.
+/// Settings that use proxies for solids of any size.
 pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
         width: 320,
@@ -60,7 +60,7 @@ pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
 }
 
 impl Search {
-    /// Both stages against the box.
+    /// Compares both stages with the box.
     #[track_caller]
     pub fn assert_same(&self, name: &str, scene: &Scene, ways: Ways) {
         // A map has no cells.
@@ -96,7 +96,7 @@ impl Search {
 }
 
 /// Undercuts, cavities, a torus, ridges: from below, level, above, and from straight above into
-/// what is open.
+/// openings.
 #[test]
 fn every_shape_from_all_sides() {
     for (name, profile) in shapes::all() {
@@ -109,7 +109,7 @@ fn every_shape_from_all_sides() {
     }
 }
 
-/// A slider: the offset moves from frame to frame. It grows the hull, and may grow the solid past
+/// A slider: the offset changes from frame to frame. It grows the hull, and may grow the solid past
 /// its box, which then cuts it.
 #[test]
 fn offsets_in_motion() {
@@ -123,7 +123,7 @@ fn offsets_in_motion() {
                     bevel,
                     chamfer,
                 };
-                // A cone whose foot is moved out by the whole bevel reaches past a box that cuts.
+                // The bevel moves a cone's foot out, past a box that cuts.
                 if (name, bevel) == ("cone", 0.12) {
                     scene.objects[0].clip = Clip::Box;
                 }
@@ -137,8 +137,9 @@ fn offsets_in_motion() {
     }
 }
 
-/// What the sides of a turned and stretched box cut, an axis beside the box's middle or not: the
-/// hull within the sides, and of these what may be solid, or close to it.
+/// Solids cut by the sides of a turned and stretched box, with the axis in the box's middle or not.
+/// The hull covers the part within the sides, and the parts of the sides that may be solid or close
+/// to it.
 #[test]
 fn what_the_box_cuts() {
     for (name, profile) in shapes::all() {
@@ -162,7 +163,7 @@ fn what_the_box_cuts() {
     }
 }
 
-/// The same of flat boxes, looked at along a side.
+/// The same for flat boxes, viewed along a side.
 #[test]
 fn what_a_flat_box_cuts_along_its_side() {
     for (name, profile) in shapes::all() {
@@ -184,7 +185,7 @@ fn what_a_flat_box_cuts_along_its_side() {
 }
 
 /// Eyes in the hull, in a cavity, in the solid, on the axis; near planes that cut it. An eye close
-/// to a solid, but outside of all its shells, is none of them.
+/// to a solid but outside all its shells counts as outside.
 #[test]
 fn eyes_anywhere() {
     for (name, profile) in [
@@ -213,9 +214,9 @@ fn eyes_anywhere() {
     }
 }
 
-/// From near to far, in compute: tiles whose rays may meet few patches, many, and more than the
-/// longest list holds, which the tree is walked for. Pixels count as steps what they test: a list's
-/// length, or what they met of the tree.
+/// Distances from near to far, in compute: the rays of a tile may hit few patches, many, or more
+/// than the longest list holds, which needs the tree walk. Pixels count tested patches as steps: a
+/// list's length, or the patches visited in the tree.
 #[test]
 fn lists_of_every_length() {
     let lengths = [8.0, 16.0, 32.0, 48.0];
@@ -244,9 +245,9 @@ fn lists_of_every_length() {
     );
 }
 
-/// What box and search do as before: a solid cut by its box; turned and flattened ones; copies that
-/// pass through one another; coarse maps, whose texels are as large as their solid's parts;
-/// shadows, whose rays begin on the solid.
+/// Cases left to the box and the search: a solid cut by its box; turned and flattened solids;
+/// intersecting copies; coarse maps with texels as large as the solid's parts; shadows, whose rays
+/// begin on the solid.
 #[test]
 fn all_that_the_box_draws() {
     let mut cut = scene_of(shapes::vase(), eye(25.0, 2.4));
@@ -281,15 +282,15 @@ fn all_that_the_box_draws() {
         lit.shadow = shadow;
         all.push((name, lit, WALKED));
     }
-    // Grown through the box's ceiling, which is seen at two degrees: on lavapipe right without the
-    // hull's margin, too.
+    // An offset beyond the box's ceiling, seen at two degrees. Lavapipe draws it right even without
+    // the hull's margin.
     let drum = Profile::polygon(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]], 0.5).unwrap();
     let mut ceiling = scene_of(drum, eye(15.0, 2.2));
     ceiling.objects[0].offset.extend = 0.15;
     all.push(("cut by the ceiling", ceiling.clone(), WRAPPED));
     ceiling.camera.eye.z = 1.08;
     all.push(("along the ceiling", ceiling, WRAPPED));
-    // What grows into the box from outside is in no texel.
+    // Texels hold nothing of a solid that grows into the box from outside.
     let points = [[0.0, -0.5], [0.4, -0.5], [0.4, -0.05], [0.0, -0.05]];
     let mut below = scene_of(Profile::polygon(&points, 0.5).unwrap(), eye(25.0, 2.2));
     below.objects[0].offset.extend = 0.15;
@@ -299,7 +300,7 @@ fn all_that_the_box_draws() {
     }
 }
 
-/// From afar roundings of `t` are as large as texels.
+/// Rounding of `t` from afar is as large as a texel.
 #[test]
 fn from_afar() {
     for distance in [20.0, 400.0] {
@@ -309,7 +310,7 @@ fn from_afar() {
     }
 }
 
-/// Eight bits bound nothing, and settings may ask for boxes.
+/// Eight-bit maps give no bounds, and settings may select boxes.
 #[test]
 fn where_there_is_none() {
     let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));
@@ -342,7 +343,7 @@ fn where_there_is_none() {
     draw_by("small", &small, &small_enough, WALKED);
 }
 
-/// The comparison notices a solid that is a fiftieth larger, and rays that begin a twentieth of the
+/// The comparison detects a solid that is a fiftieth larger, and rays that begin a twentieth of the
 /// solid's height too late.
 #[test]
 fn a_wrong_solid_is_noticed() {

@@ -1,5 +1,5 @@
-//! Offsets as large as they may be, and larger than a renderer's maps: cut by the box or by the
-//! map, never with a hole.
+//! The largest valid offsets, and offsets larger than a renderer's maps: the box or the map cuts
+//! the solid, never with a hole.
 
 use crate::common::passing::count;
 use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
@@ -30,7 +30,7 @@ fn with(scene: &Scene, extend: f64, bevel: f64, chamfer: f64) -> Scene {
     scene
 }
 
-/// Maps reach as far as an offset asks for, and what goes beyond the box is cut by it.
+/// Maps reach as far as an offset needs, and the box cuts the solid beyond its faces.
 #[test]
 fn what_reaches_beyond_its_box_is_cut_and_closed() {
     for (name, profile) in [("sphere", shapes::sphere()), ("discs", shapes::discs())] {
@@ -56,7 +56,7 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
                 (0, 0),
                 "{name}, {extend}, {bevel}"
             );
-            // Silhouettes of large faces: hardly a pixel is a rounding's.
+            // Silhouettes of large faces: rounding changes only a few pixels.
             assert!(
                 found.missed + found.ghost <= 5 + found.hits / 500,
                 "{name}: {found:?}"
@@ -65,8 +65,8 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
     }
 }
 
-/// Where an offset grows beyond what a map was baked for, a wider one is baked: every search cuts
-/// the solid by the box alone.
+/// An offset beyond the range of a baked map causes a wider map to be baked: only the box cuts the
+/// solid, in every search.
 #[test]
 fn beyond_its_map_a_solid_gets_a_wider_one() {
     let plain = scene_of(shapes::sphere(), eye(25.0, 2.2));
@@ -108,7 +108,7 @@ fn beyond_its_map_a_solid_gets_a_wider_one() {
     device().check().unwrap();
 }
 
-/// What makes no sense is refused while parameters move, too, and what a map cannot hold.
+/// Updates refuse invalid parameters, too, and those that a map cannot hold.
 #[test]
 fn a_renderer_refuses_what_a_file_would_not_say() {
     let plain = scene_of(shapes::vase(), eye(25.0, 2.2));
@@ -130,11 +130,11 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
     refused("object.0.repeat", &scene);
     scene.objects[0].repeat = [10_000, 1, 1];
     refused("object.0.repeat", &scene);
-    // And goes on drawing.
+    // The renderer continues to draw.
     renderer.update(&with(&plain, 0.01, 0.1, 1.0)).unwrap();
     renderer.draw().unwrap();
 
-    // The papers' format knows distances outside alone.
+    // The papers' format holds only distances outside the solid.
     let papers = Settings {
         map_format: MapFormat::Rgba8,
         solver: Solver::Live,

@@ -1,4 +1,4 @@
-//! What is drawn on a device, with the validation layers' every message a failure.
+//! Tests that draw on a device; every message of the validation layers is a failure.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../common/mod.rs"]

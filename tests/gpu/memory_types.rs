@@ -1,5 +1,5 @@
-//! Which memory buffers and images get on a device with six types of it, which are planted: drivers
-//! of tests have one. Memory that is not coherent is never mapped, so nothing needs to be flushed.
+//! Memory types chosen for buffers and images on a device with six simulated types: test drivers
+//! have only one. Non-coherent memory is never mapped, so nothing needs a flush.
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
@@ -13,7 +13,7 @@ use std::ffi::c_void;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::SeqCst};
 use vk::MemoryPropertyFlags as Flags;
 
-/// What the host sees without coherence comes first wherever it fits, too.
+/// Host-visible types without coherence come before every coherent type that fits.
 const TYPES: [Flags; 6] = {
     let (local, seen) = (Flags::DEVICE_LOCAL.as_raw(), Flags::HOST_VISIBLE.as_raw());
     let (coherent, cached) = (Flags::HOST_COHERENT.as_raw(), Flags::HOST_CACHED.as_raw());
@@ -29,12 +29,12 @@ const TYPES: [Flags; 6] = {
 
 /// Bytes allocated of each type.
 static ALLOCATED: [AtomicU64; TYPES.len()] = [const { AtomicU64::new(0) }; TYPES.len()];
-/// The driver's type that stands for all of them.
+/// The driver's type that replaces all of them.
 static TRUE_TYPE: AtomicUsize = AtomicUsize::new(0);
 static REAL: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 
 /// # Safety
-/// `F` is the type of the function that is kept at `n`.
+/// `F` is the type of the function stored at `n`.
 unsafe fn real<F: Copy>(n: usize) -> F {
     let pointer = REAL[n].load(SeqCst);
     // SAFETY: a pointer to a function.
@@ -105,7 +105,7 @@ unsafe extern "system" fn allocate(
 fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     let _alone = Layer::take();
     let host = open();
-    // SAFETY: a plain query; each function below stands for the one of its name.
+    // SAFETY: a plain query; each function below replaces the one of its name.
     let (instance, raw) = unsafe {
         let all = host
             .instance
@@ -165,7 +165,7 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     let before = device.memory_use();
     drawn.read().unwrap();
     let after = device.memory_use();
-    // Images and the words of pixels; blocks, instances and tables; staging; what is read back.
+    // Images and pixel words; blocks, instances and tables; staging; readback.
     let pixels = 64 * 48;
     assert!(before.device >= (4 * 16 + 8) * pixels, "{before:?}");
     assert!(before.visible > 0 && before.host > 0, "{before:?}");

@@ -1,5 +1,5 @@
-//! Extended, beveled and chamfered solids: what the searches miss and make up, and whether normals
-//! are right.
+//! Extended, beveled and chamfered solids: surfaces missed or made up by the searches, and the
+//! accuracy of normals.
 
 use crate::common::passing::{Count, counts};
 use crate::common::{device, eye, scene_of, shapes};
@@ -25,8 +25,9 @@ fn offset(extend: f64, bevel: f64, chamfer: f64) -> Offset {
     }
 }
 
-/// The widest first: maps reach as far as the scene that they are made for. Outwards and inwards;
-/// bevels gentle, and steep on an inset solid; chamfers, one of them steeper than 45 degrees.
+/// The widest setting comes first, because maps reach as far as their first scene needs. The list
+/// has outward and inward offsets, gentle bevels, a steep bevel on an inset solid, and chamfers,
+/// one of them steeper than 45 degrees.
 fn settings() -> [(&'static str, Offset); 6] {
     [
         ("e = -0.1, b = 1.6, c = 0.3", offset(-0.1, 1.6, 0.3)),
@@ -38,12 +39,12 @@ fn settings() -> [(&'static str, Offset); 6] {
     ]
 }
 
-/// The conservative rules, and the papers'.
+/// The conservative rules, and the papers' rule.
 const SOLVERS: [Solver; 3] = [Solver::Live, Solver::Quadric, CIRCLE];
 
 const VIEWS: [f64; 3] = [4.0, 38.0, -30.0];
 
-/// `scene`, its profile shared, with another offset and seen from another height.
+/// `scene` with the same profile but another offset, seen from another elevation.
 fn with(scene: &Scene, offset: Offset, elevation: f64) -> Scene {
     let mut scene = scene.clone();
     scene.camera.eye = eye(elevation, 2.3);
@@ -62,7 +63,7 @@ fn searched(solver: Solver, width: u32, height: u32) -> Settings {
     }
 }
 
-/// Shape, setting, then each of `SOLVERS`, all views together.
+/// Shape, setting, then a count for each of `SOLVERS`, summed over the views.
 fn table(width: u32, height: u32) -> Vec<(&'static str, &'static str, [Count; 3])> {
     let solvers = SOLVERS.map(|s| searched(s, width, height));
     let mut rows = Vec::new();
@@ -81,7 +82,7 @@ fn table(width: u32, height: u32) -> Vec<(&'static str, &'static str, [Count; 3]
     rows
 }
 
-/// With conservative steps nothing is passed by more than a texel, and nothing made up.
+/// Conservative steps pass no surface by more than a texel and make up none.
 #[test]
 fn the_conservative_rule_passes_nothing() {
     let rows = table(64, 48);
@@ -98,7 +99,7 @@ fn the_conservative_rule_passes_nothing() {
         }
     }
     assert!(failures.is_empty(), "{failures}");
-    // The count can find something: the papers' rule does pass surfaces.
+    // The count is not trivially zero: the papers' rule does pass surfaces.
     assert!(papers.passed > 0, "{papers:?}");
 }
 
@@ -140,9 +141,9 @@ fn write_the_table() {
     std::fs::write(file, page).unwrap();
 }
 
-/// Rms angle in degrees between the normals of frame and truth, and over how many pixels: those
-/// around which, two texels to eight sides, the truth's normals turn by less than 8 degrees (facets
-/// of the rounder polygons meet at up to 5.6).
+/// Rms angle in degrees between the normals of frame and truth, and the number of pixels. Counted
+/// pixels are those around which the truth's normals turn by less than 8 degrees, two texels away
+/// in eight directions (facets of the rounder polygons meet at up to 5.6 degrees).
 fn smooth_error(scene: &Scene, frame: &Frame, texel: f64) -> (f64, usize) {
     let solids = Reference::new(scene).unwrap();
     let (width, height) = (frame.width, frame.height);
@@ -182,8 +183,8 @@ fn smooth_error(scene: &Scene, frame: &Frame, texel: f64) -> (f64, usize) {
     )
 }
 
-/// Under every offset normals are right within 2 degrees away from creases. What there is of error
-/// comes with 16-bit floats, which hold far distances in coarser steps.
+/// Normals are right within 2 degrees away from creases, for every offset. The error comes from
+/// 16-bit floats, whose steps are coarser at large distances.
 #[test]
 fn normals_follow_bevel_and_chamfer() {
     let mut failures = String::new();
@@ -208,7 +209,7 @@ fn normals_follow_bevel_and_chamfer() {
                     "{map_format:?} {shape:7} {name:27} {rms:6.3} degrees rms over {count} pixels"
                 );
                 println!("{what}");
-                // An inset by more than half their thickness leaves of the discs a thin spindle.
+                // An inset of more than half their thickness reduces the discs to a thin spindle.
                 let enough = count >= 20 || (shape, name) == ("discs", "e = -0.02");
                 if rms > 2.0 || !enough {
                     writeln!(failures, "{what}").unwrap();

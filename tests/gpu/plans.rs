@@ -1,4 +1,4 @@
-//! Frames that are prepared ahead: each slot keeps the plan of its view, whatever is prepared or set
+//! Frames prepared ahead: each slot keeps the plan of its view, whatever is prepared or changed
 //! before it is recorded.
 
 use crate::common::host::memory::HostBuffer;
@@ -15,7 +15,7 @@ use revmap::scene::{Camera, Object, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings};
 use std::sync::Arc;
 
-/// Slots of these renderers: of each of the host's frames in flight, one for either view.
+/// Slots of these renderers: two views for each of the host's frames in flight.
 const SLOTS: usize = 2 * host::FRAMES;
 
 fn small() -> Options {
@@ -37,7 +37,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Square fields of this many copies a side.
+/// A square field with `side` copies along each side.
 fn rows(side: u32) -> Vec<Placement> {
     let at = |k: u32| 3.0 * f64::from(k) / f64::from(side) - 1.5;
     let place = |n: u32| placement([at(n % side), at(n / side), -0.6], [0.0; 3], [0.3; 3]);
@@ -61,9 +61,9 @@ fn add(renderer: &mut Renderer, scene: &Scene) -> Vec<ObjectId> {
     scene.objects.iter().map(add).collect()
 }
 
-/// Draws with a renderer of its own, in one stage or the other.
+/// Draws with its own renderer, in one of the two stages.
 trait Drawn {
-    /// Prepares by `prepare` and records the frame that it returns; the picture.
+    /// Calls `prepare`, records the frame that it returns, and returns the picture.
     fn draw(
         &mut self,
         prepare: &mut dyn FnMut(&mut Renderer, vk::CommandBuffer, usize) -> PreparedFrame,
@@ -106,7 +106,7 @@ impl Drawn for Fragments<'_> {
                 Vec3::Z,
                 &[],
                 |cmd, slot| Ok(prepare(&mut renderer.borrow_mut(), cmd, slot)),
-                // SAFETY: the frame was prepared, the pass is of the output's formats.
+                // SAFETY: the frame was prepared, the pass has the output's formats.
                 |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
             )
             .unwrap();
@@ -130,7 +130,8 @@ impl<'a> Compute<'a> {
         let output = Output::Compute(Planes::Color);
         let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), SLOTS).unwrap();
         let words = Self::cleared(host);
-        // SAFETY: two words a pixel, of the host's device; it outlives the renderer.
+        // SAFETY: the buffer has two words per pixel, is of the host's device, and outlives the
+        // renderer.
         unsafe {
             renderer.set_compute_target(ComputeTarget {
                 words: words.raw,
@@ -163,7 +164,7 @@ impl Drawn for Compute<'_> {
         let slot = self.next;
         self.next = (slot + 1) % host::FRAMES;
         let words = Self::cleared(self.host);
-        // SAFETY: as in `new`; every frame before is done, as `once` waits.
+        // SAFETY: as in `new`; every frame before is complete, as `once` waits.
         unsafe {
             self.renderer.set_compute_target(ComputeTarget {
                 words: words.raw,
@@ -205,10 +206,10 @@ fn in_both_stages(test: impl Fn(&mut dyn Drawn, &[ObjectId], &str)) {
     assert_silent(&host);
 }
 
-/// The picture of one view that is prepared just before it is recorded.
+/// The picture of one view, prepared just before it is recorded.
 fn plainly(drawn: &mut dyn Drawn, view: &View) -> Vec<u8> {
     drawn.draw(&mut |renderer, cmd, slot| {
-        // SAFETY: `cmd` is recording, and the slot's frame before is done.
+        // SAFETY: `cmd` is recording, and the slot's previous frame is complete.
         unsafe { renderer.prepare(cmd, slot, view) }.unwrap()
     })
 }
@@ -228,7 +229,7 @@ fn a_slot_keeps_the_plan_of_its_view() {
         assert!(differ(&wanted[0], &wanted[1]) > 2000, "{stage}");
         for k in [0, 1, 0] {
             let found = drawn.draw(&mut |renderer, cmd, slot| {
-                // SAFETY: as in `plainly`; the slots behind the host's are of this frame, too.
+                // SAFETY: as in `plainly`; the slots after the host's belong to this frame, too.
                 let frames = [0, 1].map(|n| unsafe {
                     let slot = slot + n * host::FRAMES;
                     renderer.prepare(cmd, slot, &views[n]).unwrap()
@@ -249,7 +250,7 @@ fn what_is_set_after_prepare_takes_effect_next_time() {
         let found = drawn.draw(&mut |renderer, cmd, slot| {
             // SAFETY: as in `plainly`.
             let frame = unsafe { renderer.prepare(cmd, slot, &view) }.unwrap();
-            // More copies, fewer, and none of another object.
+            // More copies, fewer copies, and another object removed.
             renderer.set_instances(ids[1], rows(40)).unwrap();
             renderer.set_instances(ids[1], rows(3)).unwrap();
             renderer.remove(ids[2]).unwrap();
@@ -261,7 +262,7 @@ fn what_is_set_after_prepare_takes_effect_next_time() {
             differ(&after, &wanted) > 200,
             "{stage}: nothing has changed"
         );
-        // As if it had always been so.
+        // The result equals a renderer that always had this state.
         let all = drawn.renderer();
         all.remove(ids[0]).unwrap();
         all.remove(ids[1]).unwrap();
@@ -278,7 +279,7 @@ fn what_is_set_after_prepare_takes_effect_next_time() {
 fn a_token_is_of_its_renderer_and_of_its_slots_last_frame() {
     in_both_stages(|drawn, _, stage| {
         let view = views()[0];
-        // Uploads belong to the commands of the prepare that recorded them.
+        // Uploads belong to the commands of the `prepare` call that recorded them.
         plainly(drawn, &view);
         let mut stale = None;
         drawn.draw(&mut |renderer, cmd, slot| {
@@ -290,7 +291,7 @@ fn a_token_is_of_its_renderer_and_of_its_slots_last_frame() {
         });
         let stale = stale.unwrap();
         let renderer = drawn.renderer();
-        // SAFETY: what is refused records nothing.
+        // SAFETY: a refused call records nothing.
         let refused = unsafe {
             let none = vk::CommandBuffer::null();
             if stage == "compute" {
@@ -303,7 +304,7 @@ fn a_token_is_of_its_renderer_and_of_its_slots_last_frame() {
     });
 }
 
-/// Twenty thousand objects take ten times the device memory of two thousand, and can be removed.
+/// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
 #[test]
 fn objects_by_the_ten_thousand() {
     let host = open();

@@ -1,5 +1,5 @@
 //! Hulls of patches and their beams, the default: crowds in one depth buffer, copies, slivers,
-//! faces of the box, and the truth itself.
+//! faces of the box, and comparison with the reference.
 
 use super::hulls::{EXACT, settings};
 use crate::common::ways::{STAGES, WALKED, WRAPPED, draw_by};
@@ -11,7 +11,7 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use std::sync::Arc;
 
-/// Several objects, some copied, through one another in one depth buffer: hulls beside boxes.
+/// Several intersecting objects, some copied, in one depth buffer: hulls beside boxes.
 #[test]
 fn a_crowd_in_one_depth_buffer() {
     let mut crowd = Scene::new(Camera::new(
@@ -31,7 +31,7 @@ fn a_crowd_in_one_depth_buffer() {
             ]
             .into();
         }
-        // Copies too small for lists of tiles of their own.
+        // Copies too small for tile lists of their own.
         if n == 4 {
             object.instances = (0..7)
                 .map(|k| {
@@ -59,8 +59,8 @@ fn a_crowd_in_one_depth_buffer() {
     EXACT.assert_same("crowd", &crowd, ways.each_ref().map(Vec::as_slice));
 }
 
-/// Copies of the only object of a scene hide one another too, in every frame anew; beyond 64 copies
-/// they share tiles.
+/// Copies of a scene's only object hide one another, too, and each frame starts anew. More than 64
+/// copies share tiles.
 #[test]
 fn copies_of_a_lone_object() {
     let copies = |count: usize, size: f64| {
@@ -86,7 +86,7 @@ fn copies_of_a_lone_object() {
     beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);
     EXACT.assert_same("one beside the picture", &beside, WRAPPED);
 
-    // The depths of a frame are none of the next one's business.
+    // The depths of one frame must not affect the next.
     for stage in STAGES {
         let settings = settings(Solver::Exact, stage);
         let mut renderer = Offscreen::new(device(), &few, &settings).unwrap();
@@ -105,8 +105,8 @@ fn copies_of_a_lone_object() {
     device().check().unwrap();
 }
 
-/// Against the truth itself, with the bar of the searches: a fiftieth of a texel for 99 of 100
-/// pixels. Measured: 0.0055 (vase) and 0.0004 (jewel), and no wrong pixel.
+/// Comparison with the reference, with the limit of the searches: a fiftieth of a texel for 99 of
+/// 100 pixels. Measured: 0.0055 (vase) and 0.0004 (jewel), and no wrong pixel.
 #[test]
 fn the_reference_is_met() {
     for (name, profile) in [("vase", shapes::vase()), ("jewel", shapes::jewel())] {
@@ -124,7 +124,7 @@ fn the_reference_is_met() {
     }
 }
 
-/// Nothing to wrap, and a sliver of a solid.
+/// A sliver of a solid, with almost nothing for a hull to wrap.
 #[test]
 fn slivers() {
     let sliver = Profile::polygon(&[[0.0, 0.5], [0.45, 0.501], [0.0, 0.502]], 0.5).unwrap();
@@ -132,9 +132,9 @@ fn slivers() {
     EXACT.assert_same("sliver", &scene, WRAPPED);
 }
 
-/// Level faces in the box's own faces, from afar and flattened: where the start of a ray is known
-/// worst. Measured: at most 1 wrong pixel. A walk of the tree without slack for that passes 423 of
-/// 36,056, a hull that takes no hit below the floor 276 of 15,044.
+/// Level faces in the box's own faces, from afar and flattened: the start of a ray is least precise
+/// here. Measured: at most 1 wrong pixel. A tree walk without slack for this misses 423 of 36,056
+/// pixels; a hull without hits below the floor misses 276 of 15,044.
 #[test]
 fn faces_of_the_box_itself() {
     let cylinder = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]];

@@ -1,5 +1,5 @@
-//! What a renderer refuses when it is made, or before it records, and by which kind: nothing
-//! reaches Vulkan that validation would complain about.
+//! Errors that a renderer returns when it is made or before it records, and their kinds. No invalid
+//! call is passed to Vulkan.
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
@@ -48,7 +48,7 @@ fn dynamic(
     pass(begun, samples, planes)
 }
 
-/// The kind of the refusal; none where a renderer is made.
+/// The kind and key of the refusal; `None` if a renderer is made.
 fn refused(device: &Device, output: Output) -> Option<(ErrorKind, Option<String>)> {
     let made = Renderer::new(device, output, &SearchSettings::exact(), 1);
     made.err().map(|error| (error.kind, error.key))
@@ -164,7 +164,7 @@ fn samples_that_the_device_has_not_are_refused() {
     }
     let layer = Layer::take();
     let host = open();
-    // SAFETY: the system's loader, as of the host.
+    // SAFETY: the system's loader, as in the host.
     let entry = unsafe { ash::Entry::load() }.unwrap();
     let mask = Mask {
         samples: true,
@@ -178,7 +178,7 @@ fn samples_that_the_device_has_not_are_refused() {
     // SAFETY: the host's own handles; the device is dropped before the host.
     let poorer = unsafe { Device::borrow(&lent) }.unwrap();
     let own = PassKind::RenderPass {
-        // Refused before anything is done with it.
+        // The renderer refuses this handle before any use.
         pass: vk::RenderPass::from_raw(1),
         subpass: 0,
     };
@@ -210,7 +210,7 @@ fn all_planes_need_their_feature_and_their_buffer() {
     let device = borrow(&host);
     let camera = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
     let view = View::from_camera(&camera, (16, 16), [1.0, 4.0]).unwrap();
-    // Refused before anything is done with them.
+    // The renderer refuses these handles before any use.
     let (words, image) = (vk::Buffer::from_raw(1), vk::ImageView::from_raw(1));
     let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
     let compute = Output::Compute;
@@ -258,7 +258,7 @@ fn all_planes_need_their_feature_and_their_buffer() {
     assert_silent(&host);
 }
 
-/// Two renderers count their objects alike.
+/// Two renderers number their objects alike.
 #[test]
 fn another_renderers_object_is_refused() {
     let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);

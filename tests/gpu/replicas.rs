@@ -1,4 +1,4 @@
-//! Replicas in a box are as many single solids.
+//! Replicas in a box give the same picture as the same number of single solids.
 
 use crate::common::passing::count;
 use crate::common::{draw, reference, scene_of, shapes};
@@ -24,10 +24,10 @@ fn settings(solver: Solver) -> Settings {
     }
 }
 
-/// Turned upside down within its box.
+/// The profile turned upside down within its box.
 fn flipped(profile: &Profile) -> Profile {
     let turn = |points: &Vec<glam::DVec2>| {
-        // The other way round again, so that loops keep their sense.
+        // Reversing the order of points keeps the orientation of loops.
         let turned = points
             .iter()
             .rev()
@@ -38,7 +38,7 @@ fn flipped(profile: &Profile) -> Profile {
     Profile::new(Outline { loops }, profile.radius)
 }
 
-/// The box's cells as objects of their own, one for each way of being reflected, an instance for
+/// The box's cells as separate objects: one object for each kind of reflection, one instance for
 /// each cell.
 fn singles(replicas: &Object) -> Vec<Object> {
     let n = COUNT.map(f64::from);
@@ -94,7 +94,7 @@ fn singles(replicas: &Object) -> Vec<Object> {
     objects
 }
 
-/// Pixels that differ: in being hit, by more than a texel of depth, by more than 2 degrees of
+/// Pixels that differ: by a hit, by more than a texel of depth, or by more than 2 degrees of
 /// normal.
 fn differences(a: &Frame, b: &Frame, texel: f64) -> [usize; 3] {
     let mut found = [0; 3];
@@ -168,7 +168,7 @@ fn replicas_are_as_many_single_solids() {
     for (name, scene) in cases() {
         let mut alone = scene.clone();
         alone.objects = singles(&scene.objects[0]);
-        // Cells cut.
+        // Each cell cuts its solid.
         alone.objects.iter_mut().for_each(|o| o.clip = Clip::Box);
         let copies: usize = alone.objects.iter().map(|o| o.instances.len()).sum();
         assert_eq!(copies, 18, "{name}");
@@ -184,7 +184,7 @@ fn replicas_are_as_many_single_solids() {
             let found = differences(&together, &apart, texel / 3.0);
             let what = format!("{name}, {}: {hits} hits; differ: {found:?}", solver.name());
             println!("{what}");
-            // What differs at all, a rounding decides: neither picture is wrong by more than a
+            // The remaining differences come from rounding: neither picture is wrong by more than a
             // texel.
             assert!(found.iter().sum::<usize>() <= hits / 500, "{what}");
             if scene.objects[0].placement == Placement::default() {
@@ -198,7 +198,7 @@ fn replicas_are_as_many_single_solids() {
     }
 }
 
-/// Each replica has the whole texture, the same as a single solid has.
+/// Each replica has the whole texture, like a single solid.
 #[test]
 fn textures_are_laid_on_each_replica() {
     let (_, scene) = cases().remove(0);
@@ -222,7 +222,8 @@ fn textures_are_laid_on_each_replica() {
         "{off} of {}",
         both.len()
     );
-    // Of a single solid that fills the box they would run once from 0 to 1 over its height.
+    // The coordinates of a single solid in the whole box would run once from 0 to 1 over its
+    // height.
     let low = both.iter().filter(|&&i| together.uv[i][1] < 0.3).count();
     let high = both.iter().filter(|&&i| together.uv[i][1] > 0.7).count();
     assert!(low > 500 && high > 500);

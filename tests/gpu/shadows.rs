@@ -1,5 +1,5 @@
-//! Shadows that solids throw on one another: each as its own offset and its own replicas make it,
-//! whatever receives it.
+//! Shadows between solids: each follows the caster's own offset and replicas, whatever the
+//! receiver.
 
 use crate::common::{assert_sound, draw, placement, reference, shapes};
 use glam::DVec3;
@@ -68,8 +68,8 @@ fn cases() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Pixels whose light differs by more than a rounding, of those that both hit at one depth; and
-/// those that the light does not reach in the first.
+/// Counts pixels hit by both frames at the same depth: those whose light differs by more than
+/// rounding, and those unlit in the first frame.
 fn otherwise_lit(a: &Frame, b: &Frame) -> (usize, usize) {
     let (mut off, mut dark) = (0, 0);
     for i in 0..a.pixels() {
@@ -100,17 +100,16 @@ fn shadows_are_the_references() {
                 "{name}, {}: {off} pixels lit otherwise, {dark} dark",
                 solver.name()
             );
-            // Edges of shadows fall within a pixel of where they should (rays start a texel and a
-            // half off the surface), and `live` rounds the table's rim. The shadow of a caster
-            // without its offset or its replicas differs in a quarter and more.
+            // Shadow edges are within a pixel of their place (rays start a texel and a half off the
+            // surface), and `live` rounds the table's rim. A caster without its offset or its
+            // replicas changes a quarter of its shadow or more.
             assert!(dark > 1500, "{name}: {dark}");
             assert!(
                 8 * off <= dark,
                 "{name}, {}: {off} of {dark}",
                 solver.name()
             );
-            // Cells and lists of patches start rays elsewhere, and tiles that are culled count no
-            // steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             let fragment = Settings {
                 proxy_min_pixels: u32::MAX,
                 occlusion_culling: false,
@@ -126,14 +125,14 @@ fn shadows_are_the_references() {
     }
 }
 
-/// The root mean square of the difference of the light, of pixels that both frames hit at one
-/// depth and that are partly lit in the first; and how many these are.
+/// Root mean square difference of the light, and the number of pixels. Counted pixels are hit by
+/// both frames at the same depth and partly lit in the first.
 fn penumbra_error(truth: &Frame, frame: &Frame, lit: &Frame) -> (f64, usize) {
     let (mut sum, mut count) = (0.0, 0);
     for i in 0..truth.pixels() {
         let here =
             truth.hits(i) && frame.hits(i) && (truth.distance[i] - frame.distance[i]).abs() < 2e-3;
-        // The part of the light above the ambient light.
+        // The share of the light above the ambient light.
         let part = |f: &Frame| f64::from((f.color[i][1] - 0.16) / (lit.color[i][1] - 0.16));
         if here && lit.color[i][1] > 0.3 && (0.02..0.98).contains(&part(truth)) {
             sum += (part(truth) - part(frame)).powi(2);
@@ -143,7 +142,7 @@ fn penumbra_error(truth: &Frame, frame: &Frame, lit: &Frame) -> (f64, usize) {
     ((sum / f64::max(count as f64, 1.0)).sqrt(), count)
 }
 
-/// Sixteen rays to a disc differ from hundreds by a few hundredths. A hard shadow, or a disc of
+/// Sixteen rays per disc differ from hundreds by a few hundredths. A hard shadow, or a disc of
 /// another size, differs by much more.
 #[test]
 fn soft_shadows_are_the_references() {
@@ -182,7 +181,7 @@ fn soft_shadows_are_the_references() {
     }
 }
 
-/// Pixels that both frames hit and light otherwise, by their column in tiles of 8.
+/// Pixels hit by both frames with different light, by their column in tiles of 8.
 fn otherwise_by_column(a: &Frame, b: &Frame) -> [usize; 8] {
     let mut columns = [0; 8];
     for k in (0..a.pixels()).filter(|&k| a.hits(k) && b.hits(k)) {
@@ -192,8 +191,8 @@ fn otherwise_by_column(a: &Frame, b: &Frame) -> [usize; 8] {
     columns
 }
 
-/// Two objects, three lights, soft shadows, pictures that end within a tile: no column of a
-/// workgroup may take its light from its neighbour's objects.
+/// Two objects, three lights, soft shadows, pictures that end within a tile. No column of a
+/// workgroup may use the light of its neighbour's objects.
 #[test]
 fn every_column_of_a_tile_is_lit_alike() {
     let mut scene = scene(vec![caster(shapes::jewel(), &|_| {})]);
@@ -221,10 +220,11 @@ fn every_column_of_a_tile_is_lit_alike() {
                 let (one, other) = (draw(&scene, &fragment), draw(&scene, &compute));
                 let columns = otherwise_by_column(&one, &other);
                 let name = format!("{shadow:?}, {width} x {height}, {}", solver.name());
-                // Rays of `live` start elsewhere in the two stages, which a silhouette shows.
+                // Rays of `live` start elsewhere in the two stages, which is visible at a
+                // silhouette.
                 let few = usize::from(solver == Solver::Live);
                 assert!(columns.iter().all(|&n| n <= few), "{name}: {columns:?}");
-                // The fault that this is for: the first column lit in the shadow.
+                // The fault that this test detects: the first column is lit inside the shadow.
                 let mut planted = other;
                 let first = |k: &usize| (k % width as usize).is_multiple_of(8);
                 for k in (0..planted.pixels()).filter(first) {

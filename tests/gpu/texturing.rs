@@ -1,4 +1,4 @@
-//! Texture coordinates against their formulas, the seam, the colours of the reference.
+//! Texture coordinates compared with their formulas, the seam, the colours of the reference.
 
 use crate::common::{draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
@@ -22,14 +22,14 @@ fn settings() -> Settings {
     }
 }
 
-/// The point that a pixel shows, by its distance.
+/// The point visible at a pixel, computed from its distance.
 fn point(scene: &Scene, frame: &Frame, index: usize) -> DVec3 {
     let camera = CameraFrame::new(&scene.camera, frame.width, frame.height).unwrap();
     let (x, y) = (index as u32 % frame.width, index as u32 / frame.width);
     camera.eye + camera.pixel(x, y).normalize() * f64::from(frame.distance[index])
 }
 
-/// `p` from the axis at the box's floor.
+/// `p` is relative to the axis at the box's floor.
 fn formula(projection: Projection, arc: &ArcLength, p: DVec3, axis: [f64; 2]) -> [f64; 2] {
     let r = p.x.hypot(p.y);
     let xi = (PI + p.y.atan2(p.x)) / TAU;
@@ -47,8 +47,8 @@ fn round(d: f64) -> f64 {
     (d - d.round()).abs()
 }
 
-/// From the front, at the seam, down on the upper pole and up at the lower one, near enough to see
-/// a pole in many pixels.
+/// Views of the front, the seam, the upper pole from above and the lower one from below, near
+/// enough for a pole to cover many pixels.
 fn views() -> [DVec3; 5] {
     let middle = DVec3::new(0.0, 0.0, 0.5);
     [
@@ -96,7 +96,8 @@ fn coordinates_are_their_formulas() {
                         (v - wanted[1]).abs()
                     };
                     let r = p.x.hypot(p.y);
-                    // Nearer to the axis than this the distance's 24 bits do not tell the azimuth.
+                    // The 24 bits of the distance do not determine the azimuth closer to the axis
+                    // than this.
                     let known = planar || r > 3e-4;
                     assert!(
                         (du <= HALF[0] || !known) && dv <= HALF[1],
@@ -116,7 +117,7 @@ fn coordinates_are_their_formulas() {
     }
 }
 
-/// A map whose value is a wave around and a wave along, without a jump where it repeats.
+/// A map whose value is a wave around and a wave along, continuous where it repeats.
 fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
     let code = |x: f64| (255.0 * x).round() as u8;
     let texels = (0..width * height)
@@ -138,8 +139,8 @@ fn srgb(linear: f32) -> f64 {
     revmap::frame::srgb_from_linear(f64::from(linear))
 }
 
-/// Left and right of the azimuth's jump the colours go on as they do elsewhere, and where the
-/// texture repeats so often that small levels are read.
+/// Colours are continuous across the jump of the azimuth, also with so many repeats that small mip
+/// levels are read.
 #[test]
 fn the_seam_is_not_seen() {
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
@@ -149,7 +150,7 @@ fn the_seam_is_not_seen() {
             scene.objects[0].texturing.repeat = [repeat; 2];
             let colors = |side: f64| {
                 let mut scene = scene.clone();
-                // Four waves around: a quarter turn on, the picture is the same, without the seam.
+                // Four waves around: a quarter turn gives the same picture without the seam.
                 scene.camera.eye = DVec3::new(-side, side - 1.0, 0.05).normalize() * 1.3;
                 scene.camera.eye.z += 0.5;
                 draw(
@@ -181,8 +182,8 @@ fn the_seam_is_not_seen() {
     }
 }
 
-/// Within a cavity, too, bumps stand the right way up by every projection: lengths along the
-/// profile run the other way round there.
+/// Bumps in a cavity have the right sign in every projection. Lengths along the profile run in the
+/// opposite direction there.
 #[test]
 fn bumps_within_a_cavity_are_the_references() {
     let can = [
@@ -231,8 +232,8 @@ fn bumps_within_a_cavity_are_the_references() {
     }
 }
 
-/// Colours, bumped normals and coordinates of a turned and stretched solid are the reference's, by
-/// every projection.
+/// Colours, bumped normals and coordinates of a turned and stretched solid equal the reference's,
+/// in every projection.
 #[test]
 fn colours_and_bumps_are_the_references() {
     let heights: Vec<f32> = (0..64 * 64)
@@ -245,8 +246,8 @@ fn colours_and_bumps_are_the_references() {
     let slopes = Arc::new(slopes.unwrap());
     for projection in Projection::ALL {
         for (form, bump) in [("surface-gradient", 0.03), ("papers", 0.01)] {
-            // From where the texture is not squeezed into lines: the reference has no smaller
-            // levels.
+            // The view avoids places where the texture is squeezed into lines: the reference has no
+            // smaller mip levels.
             let planar = projection == Projection::Planar;
             let mut scene = scene_of(shapes::vase(), eye(if planar { 80.0 } else { 15.0 }, 2.0));
             let object = &mut scene.objects[0];
@@ -290,8 +291,8 @@ fn colours_and_bumps_are_the_references() {
                 angles.len()
             );
             println!("{what}");
-            // Measured (llvmpipe 22.3.6): what is left comes of smaller levels at slanting rims,
-            // which the reference has none of.
+            // Measured (llvmpipe 22.3.6): the rest comes from smaller mip levels at slanting rims,
+            // which the reference lacks.
             assert!(half.0 < 0.15 && half.1 < 0.012, "{what}");
             assert!(most.0 < 0.4 && most.1 < 0.025, "{what}");
         }

@@ -1,4 +1,4 @@
-//! Levels of surfaces: errors stay below the tolerance, and pictures follow from the view alone.
+//! Levels of surfaces: errors stay below the tolerance, and pictures depend only on the view.
 
 use crate::common::{device, draw, eye, placement, reference, scene_of, shapes};
 use revmap::gpu::{Device, INSTANCE_BYTES, Offscreen};
@@ -47,7 +47,7 @@ fn errors_stay_below_the_tolerance() {
                         "{name} from {distance} at {elevation}, {stage:?}, {pixels}: {cost:?}, {found:?}"
                     );
                     println!("{what}");
-                    // A silhouette moves by no more than is proven, and roundings.
+                    // A silhouette moves by no more than the proven bound plus rounding.
                     let right = found.p999 <= pixels && found.contour_max <= most + 0.01;
                     if !right || cost.level == Some(0) && pixels == 2.0 {
                         failures.push(what);
@@ -59,7 +59,7 @@ fn errors_stay_below_the_tolerance() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// There and back again: the same bits, and nothing made a second time.
+/// A camera that moves away and back gives the same bits, and nothing is made twice.
 #[test]
 fn a_picture_follows_from_the_view_alone() {
     for stage in STAGES {
@@ -97,7 +97,7 @@ fn a_picture_follows_from_the_view_alone() {
     }
 }
 
-/// Nothing is coarser with a tolerance of 0, and patches of coarser levels are fewer.
+/// A tolerance of 0 uses no coarser level, and coarser levels have fewer patches.
 #[test]
 fn no_tolerance_is_the_exact_level() {
     let scene = scene_of(shapes::vase(), eye(25.0, 20.0));
@@ -116,7 +116,8 @@ fn no_tolerance_is_the_exact_level() {
     assert_eq!(all[0].instance_bytes, INSTANCE_BYTES);
 }
 
-/// What does not fit fails with the numbers; what fitted goes on, and all is given back.
+/// A renderer beyond the budget fails, and the error has the numbers. Existing renderers continue,
+/// and all memory is freed in the end.
 #[test]
 fn a_memory_budget_is_kept() {
     let device = Device::open_validated(None).unwrap();
@@ -136,7 +137,7 @@ fn a_memory_budget_is_kept() {
     device.check().unwrap();
 }
 
-/// A shadow may fall nearer to the eye than what casts it: all objects take the level of the
+/// A shadow may fall nearer to the eye than its caster, so all objects use the level of the
 /// nearest.
 #[test]
 fn shadows_share_the_finest_level() {

@@ -1,5 +1,5 @@
 //! Device trouble: no memory, a lost device, poorer devices, several renderers on one device, and
-//! many one after another.
+//! many in sequence.
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
@@ -36,8 +36,7 @@ fn borrow(host: &Host, raw: &ash::Device, instance: &ash::Instance) -> revmap::R
     }
 }
 
-/// A solid that is searched by its surface, and one whose map is read; in the second picture
-/// something is changed.
+/// One solid searched by its surface and one by its map. The second scene has some changes.
 fn scenes() -> [Scene; 2] {
     let before = scene_of(shapes::vase(), eye(25.0, 3.0));
     let mut after = before.clone();
@@ -92,7 +91,7 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
                 "{failed}: {error}"
             );
             let message = error.to_string();
-            // The allocator's own calls are told in its words.
+            // Errors of the allocator's own calls have its wording.
             let named = message.contains(failed) || message.contains("memory");
             assert!(named, "{stage:?}, call {n}, {failed}: {message}");
             assert_eq!(
@@ -108,7 +107,7 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
     assert_silent(&host);
 }
 
-/// After memory is there again the same renderer goes on where an update succeeds.
+/// A renderer works again after a failed update, once memory is available and an update succeeds.
 #[test]
 fn a_renderer_survives_a_failed_update() {
     let layer = Layer::take();
@@ -172,7 +171,7 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
     assert_silent(&host);
 }
 
-/// What the allocator finds out is a lost device, too, and no lack of memory.
+/// A loss detected by the allocator is reported as a lost device, not as lack of memory.
 #[test]
 fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
     let layer = Layer::take();
@@ -208,12 +207,12 @@ fn assert_same(a: &Frame, b: &Frame) {
     assert_eq!(differ, 0, "pixels differ");
 }
 
-/// Without what is needed, a device is refused by the name of what it lacks.
+/// A device without a required feature is refused, and the error names the feature.
 #[test]
 fn a_device_without_what_is_needed_is_refused() {
     let layer = Layer::take();
     let host = open();
-    // SAFETY: the system's loader, as of the host.
+    // SAFETY: the system's loader, as in the host.
     let entry = unsafe { ash::Entry::load() }.unwrap();
     let formats = [
         (vk::Format::R16_SFLOAT, "sampled 16-bit float images"),
@@ -271,7 +270,7 @@ fn a_device_without_what_is_needed_is_refused() {
     assert_silent(&host);
 }
 
-/// The report says of hulls what is drawn: none where corners are placed coarsely.
+/// The report on hulls matches the drawing: no hulls on devices with coarse sub-pixel precision.
 #[test]
 fn the_report_and_the_features_asked_for_agree() {
     let layer = Layer::take();
@@ -296,7 +295,7 @@ fn the_report_and_the_features_asked_for_agree() {
     assert_silent(&host);
 }
 
-/// Without what is merely used, the same picture is drawn.
+/// A device without optional features draws the same picture.
 #[test]
 fn a_device_without_what_is_optional_draws_the_same() {
     let layer = Layer::take();
@@ -333,7 +332,7 @@ fn a_device_without_what_is_optional_draws_the_same() {
             let times = drawn.draw().unwrap();
             assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
             if mask.varyings && stage == DrawStage::Fragment {
-                // Cells pass more than that: tiles are drawn, and the same solids are seen.
+                // Cells need more varyings, so tiles are drawn; the visible solids are the same.
                 let paths = drawn.draw_paths();
                 assert!(
                     paths.iter().all(|path| *path == DrawPath::Tiles),
@@ -366,7 +365,7 @@ fn colour_is_drawn_on_a_device_opened_without_features() {
         planes: Planes::Color,
         ..settings(DrawStage::Fragment)
     };
-    // Without points of several pixels the squares of a crowd are triangles.
+    // The squares of a crowd are triangles on devices without points of several pixels.
     let mut crowd = three();
     for (number, object) in (0..).zip(&mut crowd.objects) {
         let base = object.placement;
@@ -388,7 +387,7 @@ fn colour_is_drawn_on_a_device_opened_without_features() {
     device().check().unwrap();
 }
 
-/// Two threads, each with a renderer of its own on the one device.
+/// Two threads, each with its own renderer on the same device.
 #[test]
 fn renderers_on_one_device_do_not_disturb_each_other() {
     let [one, other] = scenes();
@@ -412,8 +411,7 @@ fn renderers_on_one_device_do_not_disturb_each_other() {
     device().check().unwrap();
 }
 
-/// A thousand renderers one after another, the device's part kept: nothing that one has made
-/// outlives it.
+/// A thousand renderers in sequence on one device. No object made by a renderer outlives it.
 #[test]
 fn a_thousand_renderers_leave_nothing_behind() {
     let layer = Layer::take();
@@ -430,7 +428,8 @@ fn a_thousand_renderers_leave_nothing_behind() {
             ..settings(stage)
         };
         let mut drawn = Offscreen::new(&device, &scenes[cycle / 2 % 2], &settings).unwrap();
-        // Each kind of picture at first, then some: what a frame makes goes with the renderer, too.
+        // Each kind of picture at first, then some: objects made by a frame end with the renderer,
+        // too.
         if cycle < 4 || cycle % 50 < 4 {
             drawn.draw().unwrap();
         }

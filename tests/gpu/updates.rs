@@ -1,5 +1,5 @@
-//! A renderer from update to update: what fails leaves nothing half done, and nothing is made again
-//! that has not changed.
+//! A renderer from update to update: a failed update leaves nothing half done, and unchanged parts
+//! are not made again.
 
 use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::ErrorKind;
@@ -17,7 +17,7 @@ fn settings(stage: DrawStage) -> Settings {
     Settings {
         width: 160,
         height: 120,
-        proxy_min_pixels: 0, // however small
+        proxy_min_pixels: 0, // a proxy for solids of any size
         stage,
         ..Settings::exact()
     }
@@ -32,7 +32,7 @@ fn vase() -> Scene {
     scene_of(shapes::vase(), eye(25.0, 2.2))
 }
 
-/// What is refused before anything is touched: the frame before is drawn on, to the last bit.
+/// A change refused before any work leaves the previous frame, to the last bit.
 #[test]
 fn what_is_refused_changes_nothing() {
     type Case = (&'static str, Solver, fn(&mut Scene));
@@ -47,7 +47,7 @@ fn what_is_refused_changes_nothing() {
             s.objects.push(s.objects[0].clone());
             s.objects[1].offset.extend = f64::NAN;
         }),
-        // Two more instances, and no cones for any of them.
+        // Two more instances, all without cones.
         ("single-valued", CONE, |s| {
             s.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3]); 3].into();
             s.objects[0].profile = shapes::glass().into();
@@ -76,8 +76,8 @@ fn what_is_refused_changes_nothing() {
     device().check().unwrap();
 }
 
-/// A binary map of a solid thinner than a texel is empty, which shows only when it is baked. The
-/// frame before is drawn on.
+/// A binary map of a solid thinner than a texel is empty, which is detected only when it is baked.
+/// The renderer continues to draw the previous frame.
 #[test]
 fn a_map_that_cannot_be_baked_changes_nothing() {
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
@@ -105,8 +105,8 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
     device().check().unwrap();
 }
 
-/// Objects come and go, change their profile and number of copies: the same frame as a new one
-/// draws.
+/// Objects come and go, change their profile and number of copies. The frame equals that of a new
+/// renderer.
 #[test]
 fn other_objects_are_taken_over() {
     type Change = (&'static str, fn(&mut Scene));
@@ -143,7 +143,7 @@ fn other_objects_are_taken_over() {
     device().check().unwrap();
 }
 
-/// A vase, the same again, and a sphere, side by side.
+/// A vase, a second equal vase, and a sphere, side by side.
 fn three() -> Scene {
     let mut scene = scene_of(shapes::vase(), eye(25.0, 4.0));
     let twin = scene.objects[0].clone();
@@ -155,8 +155,8 @@ fn three() -> Scene {
     scene
 }
 
-/// Contours are cut for what has changed, once for each profile and offset; and what is kept is
-/// drawn like what is new.
+/// Contours are cut only for changes, once for each profile and offset. Kept parts are drawn like
+/// new ones.
 #[test]
 fn only_what_has_changed_is_cut() {
     for (solver, stage) in [
@@ -207,10 +207,10 @@ fn only_what_has_changed_is_cut() {
         updated(&scene, 4, "what was forgotten");
         scene.objects[2].offset.extend = 0.02;
         updated(&scene, 5, "the other profile");
-        // Each takes the other's place.
+        // The two objects exchange places.
         scene.objects.swap(1, 2);
         updated(&scene, 5, "their order");
-        // What is not seen is left to the rasteriser, or has no tiles.
+        // Solids out of view are left to the rasteriser or have no tiles.
         for object in &mut scene.objects {
             object.placement.position.x += 100.0;
         }
@@ -224,11 +224,10 @@ fn only_what_has_changed_is_cut() {
     device().check().unwrap();
 }
 
-/// Parameters, lights and the eye move; every pipeline that they lead to was there from the
-/// beginning.
+/// Parameters, lights and the eye move; every pipeline that they need exists from the start.
 #[test]
 fn no_update_compiles_a_pipeline() {
-    // Of its own: other tests compile on theirs.
+    // A separate device, because other tests compile on theirs.
     let device = Device::open_validated(None).unwrap();
     type Move = (&'static str, fn(&mut Scene));
     let moves: [Move; 10] = [
@@ -269,7 +268,8 @@ fn no_update_compiles_a_pipeline() {
     device.check().unwrap();
 }
 
-/// Nor does an offset that moves a solid past the sides of its box, which cut it from then on.
+/// An offset that moves a solid past the sides of its box compiles no pipeline, although the box
+/// then cuts the solid.
 #[test]
 fn no_cut_compiles_a_pipeline() {
     let device = Device::open_validated(None).unwrap();
@@ -297,12 +297,12 @@ fn no_cut_compiles_a_pipeline() {
     device.check().unwrap();
 }
 
-/// Tables near the limit of a uniform buffer have pipelines for both sides of it.
+/// Tables near the limit of a uniform buffer have pipelines for sizes below and above it.
 #[cfg(feature = "scene-file")]
 #[test]
 fn pipelines_of_large_tables_are_compiled() {
     let device = Device::open_validated(None).unwrap();
-    // Larger than any uniform buffer that is used: 1,700 patches of two vectors and a half.
+    // Larger than any uniform buffer in use: 1,700 patches of two and a half vectors.
     let groove = |n: u32| [0.3 + 0.002 * f64::from(n % 2), f64::from(n) / 1700.0];
     let mut points = vec![[0.0, 0.0]];
     points.extend((0..=1700).map(groove));
@@ -327,7 +327,7 @@ fn pipelines_of_large_tables_are_compiled() {
         renderer.draw().unwrap();
         assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}");
         assert!(renderer.object_costs()[0].table_bytes > least);
-        // Many copies are drawn by other pipelines, which differ by the size of tables, too.
+        // Many copies use other pipelines, which also depend on the size of tables.
         let mut crowd = scene.clone();
         crowd.objects[0].instances = (0..70)
             .map(f64::from)
