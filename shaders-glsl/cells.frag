@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Solves the patches of a fragment's cell.
+// Intersects a fragment's ray with the patches of its cell.
 #include "search/cell.glsl"
 #include "stage/outputs.glsl"
 

@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Proxies without patches, whose fragments walk the tree: vertices 0 to 13 are the shape box, as a strip that an index
-// list unrolls; four more a strip of the box's sides follow, where these cut the solid or a shell of its cells. Why no
-// more of the sides is drawn: src/surface/hull.rs.
+// Vertices of proxies without patches; their fragments search the tree. Vertices 0 to 13 are the shape box, a strip
+// that an index list unrolls. Strips of the box's sides follow, four vertices each, where a side cuts the solid or a
+// shell of its cells. src/surface/hull.rs explains why the rest of the sides is not drawn.
 #include "stage/vertex.glsl"
 #include "stage/tree_varyings.glsl"
 #include "core/patch_tables.glsl"
@@ -16,13 +16,13 @@ vec4 box_corner(Instance i, uint vertex)
     vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale;
     float depth = middle_depth(i);
     float reach = dot(abs(forward), half_size);
-    // The ray decides where the box ends; the raster covers a little more, so that it never decides first.
+    // The ray test sets the exact border of the box. The rasterized box is slightly larger, so it never clips first.
     half_size += 0.05 * frame.dir_00.w * max(depth, reach) / scale + 1e-5;
-    // A box that the near plane cuts is drawn by its back faces, at no depth, and so is one around the eye.
+    // If the near plane cuts the box or the eye is inside it, the back faces are drawn at the near plane's depth.
     bool inside = depth - dot(abs(forward), half_size) <= frame.clip_y.w;
     uint bit = 1u << vertex;
     vec3 corner = vec3((0x287au & bit) != 0u, (0x02afu & bit) != 0u, (0x31e3u & bit) != 0u) * 2.0 - 1.0;
-    corner.x = inside ? -corner.x : corner.x; // mirrored, the faces turn round
+    corner.x = inside ? -corner.x : corner.x; // mirroring reverses the winding
     vec4 clip = clip_of(i, corner * half_size + vec3(0.0, 0.0, 0.5));
     clip.z = inside ? frame.ambient.w * clip.w : clip.z;
     return clip;
@@ -34,14 +34,14 @@ vec4 strip_corner(Instance i, uint vertex)
     uint corner = vertex & 3u;
     uint side = strip & 3u;
     vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]); // lowest and highest z, largest radius
-    // The axis of the side's normal comes first, the horizontal one second.
+    // Component 0 is along the side's normal, component 1 is the horizontal one across it.
     bool along_x = side < 2u;
     float sense = (side & 1u) == 0u ? 1.0 : -1.0;
     float R = solid.bounds.x;
     vec2 axis = along_x ? solid.axis.xy : solid.axis.yx;
     float away = R - sense * axis.x;
     float reach = sqrt(max(row.z * row.z - away * away, 0.0));
-    // Wider by so much that the raster never decides first. A row that does not reach the side is nothing.
+    // The strip is widened so that the raster never clips first. A row that does not reach the side has zero width.
     vec3 grow = reach > 0.0 ? fraction_of_pixel(i) : vec3(0.0);
     float wider = along_x ? grow.y : grow.x;
     vec2 ends = clamp(axis.y + vec2(-reach, reach), -R, R) + vec2(-wider, wider);
@@ -50,7 +50,8 @@ vec4 strip_corner(Instance i, uint vertex)
     vec2 xy = vec2(sense * R, right == turned ? ends.y : ends.x);
     float z = corner >= 2u ? row.y + grow.z : row.x - grow.z;
     vec4 clip = clip_of(i, vec3(along_x ? xy : xy.yx, z));
-    // A little nearer, as no hit may be before its triangle. Not outwards: rays along a side would miss its edge.
+    // The triangle moves slightly nearer, since no hit may be before it. An outward move would lose rays along the
+    // side.
     clip.z += (frame.clip_x.w != 0.0 ? -1e-5 : 1e-5) * frame.dir_y.w;
     return clip;
 }

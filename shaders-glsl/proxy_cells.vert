@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// A proxy of cells: two rings of HULL_SIDES corners for every frustum of their shells, with the patches of its cell.
-// CLIPPED: triangles end at the box's sides, from where proxy_boxes.vert draws on.
+// Vertices of a proxy of cells: two rings of HULL_SIDES corners for each frustum, with the patches of its cell.
+// CLIPPED: triangles end at the box's sides; proxy_boxes.vert draws the strips there.
 #include "stage/vertex.glsl"
 #include "stage/cell_varyings.glsl"
 #include "core/patch_tables.glsl"
@@ -29,7 +29,7 @@ void main()
         hull_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
     }
 #if CLIPPED
-    // No triangle is taken away that begins within the sides, as they are drawn.
+    // The clip planes are outside the sides by a margin, so that no triangle that begins within the sides is lost.
     vec2 side = solid.bounds.x + max(fraction_of_pixel(i).xy, 1e-3);
     gl_ClipDistance[0] = side.x - corner.x;
     gl_ClipDistance[1] = side.x + corner.x;

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Searches the pixels of tiles in which several copies may show.
+// Traces the pixels of tiles in which several copies may be visible.
 #include "stage/copies.glsl"
 
 void main()

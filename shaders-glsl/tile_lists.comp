@@ -1,17 +1,17 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Lists, for each tile of one copy, the patches that its rays may meet. A work group has 64 records. Where all are of one
-// copy, its invocations first share the patches out and keep those that the group's rays may meet; of these each then
-// takes its own tile's.
+// Lists the patches that the rays of each single-copy tile may hit. A work group processes 64 records. If all records
+// have the same instance, the invocations first test all patches against a beam around the whole group. Each invocation
+// then tests only the remaining patches against its own tile.
 #include "stage/patch_runs.glsl"
 #include "stage/beam.glsl"
 #include "core/meridian.glsl"
 
 const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
 const uint RECORDS = GROUP_PIXELS * GROUP_PIXELS;
-shared uint met[MET_WORDS]; // a bit a patch
-shared uint low_x, low_y, high_x, high_y; // the group's tiles
-shared uint copies; // of how many instances, where not of one
+shared uint met[MET_WORDS]; // one bit per patch
+shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles, pixels
+shared uint copies; // 1 if the group has several instances, else 0
 
 void main()
 {
@@ -67,8 +67,8 @@ void main()
     barrier();
 
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
-    // Where the box cuts the solid, a ray that may have been in it before the box's sides may meet a cut: its tile walks
-    // the tree.
+    // If the box cuts the solid, a ray may be inside the solid before it enters the box, and then hits the cut face.
+    // The tile of such a ray uses the tree.
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);

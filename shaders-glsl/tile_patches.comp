@@ -1,13 +1,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Solves the pixels of tiles whose patches are listed.
+// Intersects the pixels of a tile with its listed patches.
 #include "search/listed.glsl"
 
 void main()
 {
     begin_frame();
     if (ONE_SOLID != 0u) {
-        take_solid(pushed.solid); // before barriers: see take_frame()
+        take_solid(pushed.solid); // before any barrier: see take_frame()
     }
     share_record();
     barrier();

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// A tile in which one copy may show. Its fragments search that copy as in a box.
+// Vertices of a quad in which one copy may be visible. Its fragments search that copy like those of a box.
 #include "stage/vertex.glsl"
 #include "stage/tree_varyings.glsl"
 #include "stage/quad.glsl"
@@ -11,7 +11,7 @@
 void main()
 {
     Quad quad = this_quad();
-    // A draw that warms pipelines up may read any record.
+    // A draw that only warms up pipelines may read any record.
     Instance i = begin(min(quad.instance, uint(instances.length()) - 1u));
     place_quad(quad);
     hand_over(i, frame.dir_00.w);

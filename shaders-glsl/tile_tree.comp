@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Searches the pixels of tiles of one copy as in a box.
+// Traces the pixels of single-copy tiles through the tree, like the fragments of a box.
 #include "stage/tile.glsl"
 #include "core/replicas.glsl"
 
@@ -10,7 +10,7 @@ void main()
     take_record();
     take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
     begin_tile();
-    // Tiles of the last list bring the span; those in their own order do not.
+    // Records of the last list contain the span. Records in tile order do not.
     vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Nearest nearest;

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Searches a fragment of a box, of a strip of its sides or of a tile.
+// Traces a fragment of a box, of a strip of its sides or of a tile.
 #include "stage/tree_varyings.glsl"
 #include "stage/fragment.glsl"
 #include "core/replicas.glsl"

@@ -1,5 +1,5 @@
-// What the CPU gives the GPU for each frame, object and instance. src/gpu/resources/blocks.rs has the
-// same; a test compares the offsets.
+// Blocks that the CPU writes for each frame, object and instance. src/gpu/resources/blocks.rs has the same layout; a
+// test compares the offsets.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
 #include "core/variant.glsl"
@@ -10,15 +10,15 @@ struct Light {
 };
 
 struct Frame {
-    vec4 clip_x;  // clip x of a way in the world; w: 1 where rays are parallel
+    vec4 clip_x;  // clip x of a world vector; w: 1 where rays are parallel
     vec4 clip_y;  // clip y; w: depth of the near plane
-    vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel's size at unit depth
-    vec4 dir_x;   // its change from column to column; w: depth = w + dir_y.w / t
-    vec4 dir_y;   // its change from row to row
-    vec4 forward; // unit; w: sense of depth, 1 where it grows away from the eye, -1 where it falls
+    vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel width at unit depth
+    vec4 dir_x;   // change of the ray per column; w: depth = w + dir_y.w / t
+    vec4 dir_y;   // change of the ray per row
+    vec4 forward; // unit; w: sense of depth, 1 where depth grows away from the eye, else -1
     vec4 ambient; // linear RGB; w: depth value of the near plane
     uvec4 size;   // width, height, number of lights, unused
-    vec4 pixels;  // clip x = x of a pixel's corner * x + y; clip y = y of it * z + w
+    vec4 pixels;  // clip x = x * (x of a pixel's corner) + y; clip y = z * (y of a pixel's corner) + w
     Light lights[MAX_LIGHTS];
 };
 
@@ -26,39 +26,39 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
     Frame frame_block;
 };
 
-// What is traced and seen at present. Software drivers read a uniform buffer lane by lane in fragments and wherever
-// lanes may have left, and only at a compute shader's very beginning all at once. So entry files take over its members,
-// one by one, before anything else; those that nothing reads cost nothing. What fragments need most comes to them in
-// flat varyings.
-Frame frame; // without the lights
+// Current frame. Software drivers read uniform buffers lane by lane in fragment shaders and wherever lanes may be
+// inactive; only at the very start of a compute shader do they read once for all lanes. Entry files therefore first
+// copy the members one by one. Unused copies cost nothing. Fragments receive their most frequent inputs as flat
+// varyings.
+Frame frame; // lights are not copied
 
-// As the eye sees it: found in double precision for each view, so that no rounding grows with the distance from the
-// origin or the eye.
+// An instance relative to the eye. The CPU computes it in double precision for each view, so that no rounding error
+// grows with the distance from the origin or the eye.
 struct Instance {
-    vec4 position_sx; // of the middle of the box's lower face, from the eye, world axes; scale along x
+    vec4 position_sx; // middle of the box's lower face from the eye, world axes; scale along x
     vec4 rotation;    // unit quaternion, x y z w
-    vec4 scale_depth; // scale along y and z; depth of the box's middle; its clip x
-    vec4 origin;      // of the ray of pixel (0, 0) (pixel_ray.glsl), object space, from the axis at z = 0; w: clip y of the box's middle
-    uvec4 solid;      // x: number of its solid; y: bits of the distance from its position that the box reaches
+    vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
+    vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
+    uvec4 solid;      // x: index of its solid; y: radius of the box about the instance's position (float bits)
 };
 
-// An object: what its instances share.
+// An object: the data that its instances share.
 struct Solid {
     vec4 map;        // columns, rows, texel h in object units, factor from stored to object units
     vec4 bounds;     // R; clip radius about the axis; clip z, low and high
-    vec4 offset;     // e, b, c; bound of the search's steps
-    vec4 axis;       // x, y in object units from the middle of the box; 1 / length of the outline; arc length at z = 0 over that
+    vec4 offset;     // e, b, c; upper limit on search steps
+    vec4 axis;       // x, y from the box's middle, object units; 1 / outline length; arc length at z = 0 over it
     vec4 albedo;     // linear RGB
-    vec4 specular;   // strength, shininess; height of the box, and of its part below z = 0, in units of the profile's box
+    vec4 specular;   // strength, shininess; height of the box and of its part below z = 0, profile units
     vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
-    uvec4 instances; // first, number, index of the shape map among those of shadows
-    uvec4 patches;    // of the quadric search's tables (patch_tables.glsl): where they begin, first record, first range, bits of the unit of r^2;
-                     // of another search's: where they begin, three words of its own
-    uvec4 hull;      // first frustum; unused; first vector of the listed patches, of the rows of sides
+    uvec4 instances; // first, count, index of the shape map among those of shadows
+    uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
+                     // other searches: table start, three words of their own
+    uvec4 hull;      // first frustum; unused; first vector of the listed patches; first vector of the rows of sides
 };
 
-// As far apart as places in a uniform buffer are on any device.
+// A solid padded to the largest alignment of uniform buffer offsets on any device.
 struct SolidPlace {
     Solid solid;
     uvec4 padding[5];
@@ -68,7 +68,7 @@ layout(set = 0, binding = 1, std430) readonly buffer SolidBlock {
     SolidPlace solids[];
 };
 
-// The only one that a draw or dispatch has.
+// The solid of a draw or dispatch that has only one.
 layout(set = 0, binding = 6, std140) uniform OwnSolid {
     Solid own_solid;
 };
@@ -77,7 +77,7 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
-// The instance's, or one that may throw a shadow on it.
+// Current solid: the instance's, or one that may cast a shadow on it.
 Solid solid;
 
 void take_frame()
@@ -93,7 +93,7 @@ void take_frame()
     frame.pixels = frame_block.pixels;
 }
 
-// The same way from either buffer.
+// Copies the solid from either buffer.
 #define TAKE_SOLID(from) \
     solid.map = from.map; \
     solid.bounds = from.bounds; \
@@ -111,7 +111,8 @@ void take_solid(uint number)
 {
     if (ONE_SOLID != 0u) {
         TAKE_SOLID(own_solid);
-        // Lengths of loops: lavapipe 22 takes uniforms that loops depend on for constants, and crashes over it.
+        // Loop lengths come from the storage buffer: lavapipe 22 treats uniforms that loops depend on as constants, and
+        // crashes.
         solid.offset.w = solids[number].solid.offset.w;
         solid.cells = solids[number].solid.cells;
     } else {

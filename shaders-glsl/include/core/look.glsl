@@ -1,22 +1,22 @@
-// What shading needs of the instance and of the first two lights, in the instance's turned space: object axes, world
-// lengths. There normals need no rotation.
+// Shading inputs: the instance and the first two lights in **turned space**, which has object axes and world lengths.
+// Normals need no rotation there.
 #ifndef LOOK_GLSL
 #define LOOK_GLSL
 #include "core/placement.glsl"
 
 struct Look {
-    vec4 rotation; // the instance's
+    vec4 rotation; // rotation of the instance
     vec4 scale_shininess;
     vec4 albedo_strength;
     vec3 ambient;
-    Light light_0; // in that space; black where there is none
+    Light light_0; // turned space; black if there is no light
     Light light_1;
 #if SHADOWED
-    vec3 position; // the instance's, from the eye, world axes
+    vec3 position; // position of the instance, from the eye, world axes
 #endif
 };
 
-// The first two lights, to be taken over like the blocks.
+// The first two lights. Entry files copy them like the blocks.
 Light first_light;
 Light second_light;
 

@@ -1,5 +1,5 @@
-// The ray seen in the half-plane: with the axis as origin, r(s)^2 = a s^2 + 2 b s + c and z(s) = z0 + s vz, a branch of
-// a hyperbola. `s` counts from where the ray enters what is searched, which keeps the cancellation in r^2 small.
+// The ray in the half-plane (r, z): with the axis as origin, r(s)^2 = a s^2 + 2 b s + c and z(s) = z0 + s vz, a branch
+// of a hyperbola. s = 0 is where the ray enters the searched region, which keeps the cancellation in r^2 small.
 #ifndef MERIDIAN_GLSL
 #define MERIDIAN_GLSL
 #include "core/blocks.glsl"
@@ -7,18 +7,18 @@
 const uint FACE_X = 0u;
 const uint FACE_Y = 1u;
 const uint FACE_Z = 2u;
-const uint FACE_NONE = 3u; // the eye itself, or the clipping cylinder
+const uint FACE_NONE = 3u; // the eye, or the clipping cylinder
 
 struct Meridian {
     vec3 o; // point at s = 0, relative to the axis
     vec3 v; // direction per unit of s (and of t)
     float a, b, c;
-    float inverse_speed; // object units per unit of s, inverted
+    float inverse_speed; // 1 / (object units per unit of s)
     float t_start;       // t = t_start + s
     float base;          // the eye is at t = -base
-    float s_end;         // where the ray leaves what is searched
-    uint face_in;        // what it enters through
-    uint face_out;       // and leaves through
+    float s_end;         // exit from the searched region
+    uint face_in;        // face of entry
+    uint face_out;       // face of exit
     bool from_eye;       // the ray starts within the box
 };
 
@@ -28,15 +28,15 @@ vec2 point_rz(Meridian m, float s)
     return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
 }
 
-// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder about it. False: it meets none
-// of that. One way out: software drivers run both sides of a branch, and a return costs them a mask of lanes from there
-// on.
+// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder around it. Returns false if
+// the ray misses them. There is a single return: software drivers execute both sides of a branch, and an early return
+// adds a lane mask to all that follows.
 bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
 {
     float R = solid.bounds.x;
     vec3 low = vec3(-R - solid.axis.xy, solid.bounds.z);
     vec3 high = vec3(R - solid.axis.xy, solid.bounds.w);
-    // A zero component gives infinities of the right sign, except on a face itself, where 0 * inf must not win.
+    // A zero component gives infinities of the right sign. The exception is a point on a face, where 0 * inf is NaN.
     vec3 inverse = 1.0 / v;
     vec3 t_low = (low - eye) * inverse;
     vec3 t_high = (high - eye) * inverse;
@@ -82,7 +82,7 @@ bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
     return !any(beside) && t_in <= t_out && (along_axis ? c <= radius2 : inside > 0.0) && enter <= s_end;
 }
 
-// The t between which a ray is within the four sides of a box: low x and y, high x and y.
+// Returns the range of t in which a ray is within the four sides of a box: low x, low y, high x, high y.
 vec2 between_sides(vec3 o, vec3 v, vec4 sides)
 {
     vec2 inverse = 1.0 / mix(v.xy, vec2(1e-30), equal(v.xy, vec2(0.0)));
@@ -93,7 +93,7 @@ vec2 between_sides(vec3 o, vec3 v, vec4 sides)
     return vec2(max(near.x, near.y), min(far.x, far.y));
 }
 
-// Those of the solid's box, from its axis.
+// Returns the sides of the solid's box, relative to its axis.
 vec4 sides_of_box()
 {
     return vec4(-solid.bounds.xx, solid.bounds.xx) - solid.axis.xyxy;

@@ -1,10 +1,10 @@
-// Where patches of quadrics are kept. Of a solid's tables, in this order:
-// - words, four to a vector: PATCH_NODES nodes of the tree, level by level, each the least r^2 (rounded down, low half)
-//   and the largest (rounded up, high half) in units of solid.patches.w; then the runs of the rows, first << RUN_BITS |
-//   count;
-// - records, two vectors each, from solid.patches.y on: a patch's quadric, its guard;
-// - from solid.patches.z on, two records a vector: their ranges of z.
-// Frusta of cells stand by themselves (proxy_cells.vert).
+// Tables of quadric patches. The tables of a solid, in this order:
+// - words, four per vector: first PATCH_NODES nodes of the tree, level by level. A node holds the least r^2 (rounded
+//   down, low half) and the largest (rounded up, high half) in units of solid.patches.w. The runs of the rows follow,
+//   first << RUN_BITS | count;
+// - records from solid.patches.y, two vectors each: a patch's quadric, its guard;
+// - ranges of z from solid.patches.z, two records per vector.
+// Frusta of cells are stored separately (proxy_cells.vert).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
 #include "core/shape_map.glsl"
@@ -13,8 +13,8 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
 
-// The only tables that a draw or dispatch reads; of listed patches these. Software drivers gather from uniform buffers
-// several times as fast.
+// Tables of a draw or dispatch that reads only one; for listed patches, their table. Software drivers gather from
+// uniform buffers several times faster.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[OWN_VECTORS];
 };
@@ -46,19 +46,19 @@ vec4 patch_vector(uint at)
     return uintBitsToFloat(patch_tables[solid.patches.x + at]);
 }
 
-// A vector of the patches that lists are made from.
+// Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
     return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[solid.hull.z + at];
 }
 
-// A component of one: software drivers load each component lane by lane.
+// Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
     return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[solid.hull.z + at][k];
 }
 
-// Least and largest r^2.
+// Returns the least and largest r^2 of a node.
 vec2 node_extent(uint word)
 {
     return vec2(word & 0xffffu, word >> 16) * uintBitsToFloat(solid.patches.w);

@@ -1,18 +1,18 @@
-// The rays of an instance's pixels in object space. A ray's direction is affine in the pixel and is not normalised, so
-// that `t` is the depth along the camera's forward axis in every space.
+// Rays of an instance's pixels in object space. A ray's direction is affine in the pixel position and not normalised,
+// so `t` is the depth along the camera's forward axis in every space.
 //
-// Rays do not begin at the eye but in the plane of the depth `base`, which goes through the box's middle (or through
-// the eye, where the middle is behind it): from a far eye the roundings of a direction would grow to more than a pixel
-// on the way. Where pixel (0, 0) meets that plane is found in double precision. `t` counts from there; the eye is at
-// -base.
+// Rays begin in the plane at depth `base`, not at the eye. The plane contains the box's middle, or the eye if the
+// middle is behind it. From a far eye, rounding errors of a direction would grow to more than a pixel at the box. The
+// CPU computes the point of pixel (0, 0) in this plane in double precision. `t` is zero in the plane and -base at the
+// eye.
 #ifndef PIXEL_RAY_GLSL
 #define PIXEL_RAY_GLSL
 #include "core/placement.glsl"
 
-const vec2 EVERYWHERE = vec2(-3e38, 3e38); // a span of t that ends nowhere
+const vec2 EVERYWHERE = vec2(-3e38, 3e38); // an unbounded range of t
 
 struct PixelRays {
-    vec3 origin; // of pixel (0, 0), relative to the axis at z = 0
+    vec3 origin; // pixel (0, 0), relative to the axis at z = 0
     float base;
     vec3 dir_00; // through pixel (0, 0)
     vec3 dir_x;
@@ -30,7 +30,7 @@ PixelRays pixel_rays(Instance i)
     return rays;
 }
 
-// In the plane of the depth `base`.
+// Returns the ray's origin in the plane at depth `base`.
 vec3 ray_origin(PixelRays rays, uvec2 pixel)
 {
     float spread = ORTHO != 0 ? 1.0 : rays.base;
@@ -45,13 +45,13 @@ vec3 ray_direction(PixelRays rays, uvec2 pixel)
     return rays.dir_00 + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
 }
 
-// A pixel's width at a depth, in its units.
+// Returns the width of a pixel at depth `t`, in units of depth.
 float pixel_width(float t)
 {
     return ORTHO != 0 ? frame.dir_00.w : frame.dir_00.w * t;
 }
 
-// What the depth buffer has at a depth.
+// Returns the depth buffer value of depth `t`, 0 to 1.
 float depth_of(float t)
 {
     return clamp(frame.dir_x.w + (ORTHO != 0 ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);

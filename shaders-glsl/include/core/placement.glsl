@@ -1,5 +1,5 @@
-// From world axes to object space and back: way in the world = rotate(q, scale * way in object space). Places are
-// counted from the eye or from an instance, never from the world's origin.
+// Transforms between world axes and object space: world vector = rotate(q, scale * object vector). Positions are
+// relative to the eye or to an instance, never to the world's origin.
 #ifndef PLACEMENT_GLSL
 #define PLACEMENT_GLSL
 #include "core/blocks.glsl"
@@ -20,26 +20,26 @@ vec3 scale_of(Instance i)
     return vec3(i.position_sx.w, i.scale_depth.xy);
 }
 
-// Depth of the box's middle.
+// Returns the depth of the box's middle.
 float middle_depth(Instance i)
 {
     return i.scale_depth.z;
 }
 
-// Clip coordinates of a point of object space.
+// Returns the clip coordinates of a point in object space.
 vec4 clip_of(Instance i, vec3 p)
 {
     vec3 way = rotate(i.rotation, scale_of(i) * (p - vec3(0.0, 0.0, 0.5)));
     float depth = middle_depth(i) + dot(frame.forward.xyz, way);
     vec2 xy = vec2(i.scale_depth.w, i.origin.w) + vec2(dot(frame.clip_x.xyz, way), dot(frame.clip_y.xyz, way));
     bool parallel = frame.clip_x.w != 0.0;
-    // As depth_of in pixel_ray.glsl, times w.
+    // This is depth_of of pixel_ray.glsl, times w.
     float z = parallel ? frame.dir_x.w + frame.dir_y.w * depth : frame.dir_x.w * depth + frame.dir_y.w;
     return vec4(xy, z, parallel ? 1.0 : depth);
 }
 
-// Of a point that is given from the place of some instance; the result is relative to the axis of revolution at z = 0.
-// The difference of the places comes first: of the instance's own it is nothing, and exact.
+// Transforms a point `p`, relative to `place`, to object space relative to the axis at z = 0. The difference of
+// positions is computed first, because it is exactly zero for the instance itself.
 vec3 point_to_axis(Instance i, vec3 place, vec3 p)
 {
     return rotate(conjugate(i.rotation), (place - i.position_sx.xyz) + p) / scale_of(i) - vec3(solid.axis.xy, 0.0);

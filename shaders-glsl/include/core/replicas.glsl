@@ -1,26 +1,27 @@
-// Repetition: the box holds nx x ny x nz cells, each a replica of the whole solid, shrunk to its cell and cut by it.
-// The ray is taken from cell to cell in the order in which it meets them, and in each the one solid is traced: as safe
-// as that, next to any neighbour, mirrored or not.
+// Repetition: the box holds nx x ny x nz cells. Each contains a replica of the whole solid, scaled to the cell and
+// clipped by it. The ray visits cells in order of distance and traces the single solid in each. A search is therefore
+// as safe as without repetition, for any neighbours, mirrored or not.
 #ifndef REPLICAS_GLSL
 #define REPLICAS_GLSL
 #include "core/trace.glsl"
 
 #if REPEATED
-// -1 along axes in which a cell is reflected.
+// Returns -1 along axes in which a cell is reflected, else 1.
 vec3 cell_sense(vec3 cell)
 {
     vec3 odd = cell - 2.0 * floor(cell * 0.5);
     return 1.0 - 2.0 * vec3(uvec3(solid.cells.w) >> uvec3(0u, 1u, 2u) & 1u) * odd;
 }
 
-// A place in the lattice as the cell's own object space has it: its middle at the box's middle, reflected where it is.
+// Converts a lattice position to the cell's object space, including its reflection. The cell's middle maps to the
+// box's.
 vec3 in_cell(vec3 place, vec3 cell)
 {
     vec3 size = vec3(2.0 * solid.bounds.xx, 1.0);
     return ((place - cell - 0.5) * cell_sense(cell) + 0.5) * size - vec3(solid.axis.xy + solid.bounds.xx, 0.0);
 }
 
-// Whether the replica of a cell is solid at a place that is given relative to its axis.
+// Returns true if the replica of a cell is solid at `p`, relative to its axis.
 bool is_solid(vec3 p, inout uint steps)
 {
 #if SEARCH == SEARCH_QUADRIC
@@ -41,7 +42,7 @@ bool is_solid(vec3 p, inout uint steps)
 
 bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 {
-    // In units in which a cell is as large as the box is without repetition; its lower corner at 0.
+    // Lattice units: a cell has size 1 and the box's lower corner is at 0.
     vec3 count = vec3(solid.cells.xyz);
     vec3 size = vec3(2.0 * solid.bounds.xx, 1.0);
     vec3 o = (eye + vec3(solid.axis.xy + solid.bounds.xx, 0.0)) * count / size;
@@ -56,7 +57,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
     vec3 stride = vec3(greaterThanEqual(d, vec3(0.0)));
     vec3 cell = clamp(floor(o + t * d), vec3(0.0), count - 1.0);
     uint most = REPLICAS == 0u ? 1u : solid.cells.x + solid.cells.y + solid.cells.z;
-    bool inside = false; // comes from a replica that is solid at the border
+    bool inside = false; // the ray comes from a replica that is solid at the border
     for (uint i = 0u; i < most && (REPLICAS == 0u || t <= t_out); ++i) {
         vec3 local = eye;
         vec3 local_v = v;
@@ -71,8 +72,8 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
         bool last = REPLICAS == 0u || any(lessThan(beyond, vec3(0.0))) || any(greaterThanEqual(beyond, count));
-        // Between two replicas that are solid at the border nothing is seen. A rounding must not ask the cell that the
-        // ray leaves.
+        // The border between two replicas that are both solid there is invisible. Rounding must not select the cell
+        // that the ray is leaving.
         vec3 border = clamp(o + t * d, beyond + 1e-5, beyond + (1.0 - 1e-5));
         inside = REPLICAS != 0u && met && hit.at_border && !last && is_solid(in_cell(border, beyond), hit.steps);
         if (met && !inside) {
@@ -91,7 +92,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 }
 #endif
 
-// Of the ray `eye + t v`, t >= -base, which meets nothing before and behind the t of `span`.
+// Traces the ray `eye + t v`, t >= -base. The ray has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit.steps = 0u;

@@ -1,4 +1,4 @@
-// From a hit to what is stored of it. Blinn-Phong, linear light.
+// Shading of a hit: Blinn-Phong in linear light.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "core/hit.glsl"
@@ -10,19 +10,19 @@
 struct Shaded {
     vec4 color;          // linear RGBA
     vec3 normal;         // world, without bump
-    vec3 shading_normal; // world, as shaded: bumped, and turned to the viewer
+    vec3 shading_normal; // world, used for shading: bumped and facing the viewer
     vec3 albedo;
     vec2 uv;
     float distance; // along the ray, world units
 };
 
-// One root and one division, where `normalize` is a root and three: software drivers take it at its word.
+// Normalises with one root and one division. Software drivers compile `normalize` to one root and three divisions.
 vec3 unit(vec3 v)
 {
     return v * inversesqrt(dot(v, v));
 }
 
-// Of one light, in the turned space.
+// Returns the light reflected from one light, in turned space.
 vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 {
     vec3 middle = light.towards.xyz + view;
@@ -33,7 +33,7 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
     return facing > 0.0 ? reflected : vec3(0.0);
 }
 
-// What a light that shines on the hit adds. `n` and `view` in the turned space, `point` from the instance's place.
+// Returns a light's contribution, with shadows. `n` and `view`: turned space; `point`: relative to the instance.
 vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point, uvec2 pixel)
 {
     vec3 color = blinn_phong(look, light, n, view, albedo);
@@ -55,16 +55,16 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     float square = dot(dir, dir);
     float inverse_length = inversesqrt(square);
     vec3 view = dir * -inverse_length;
-    // The normal over the scale, times the product of all three.
+    // The normal divided by the scale, times the product of the three scales.
     vec3 turned = unit(hit.normal * (scale.yzx * scale.zxy));
-    float t = rays.base + hit.t; // from the eye
+    float t = rays.base + hit.t; // relative to the eye
     s.distance = t * (square * inverse_length);
     s.normal = rotate(look.rotation, turned);
     s.albedo = look.albedo_strength.rgb;
     s.uv = vec2(0.0);
     vec3 shaded = turned;
 #if TEXTURED || OUTPUT == OUTPUT_PLANES
-    // In the replica's own space: reflected and shrunk to its cell.
+    // Normal in the replica's own space, which is reflected and scaled to its cell.
     vec3 count = vec3(solid.cells.xyz);
     vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
@@ -89,23 +89,23 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
         }
     }
 #endif
-    // Seen from within, the surface's back is lit as a surface of its own.
+    // The back of a surface, seen from within, is lit like a front.
     float facing = dot(turned, view) < 0.0 ? -1.0 : 1.0;
     vec3 lit = facing * shaded;
     s.shading_normal = rotate(look.rotation, lit);
     vec3 color = s.albedo * look.ambient;
-    vec3 point = vec3(0.0); // from the instance's place, world axes
+    vec3 point = vec3(0.0); // relative to the instance's position, world axes
 #if SHADOWED
-    // A shadow's ray starts off the surface, or it would meet the surface itself: off the exact one by a few roundings,
-    // off that of a map by a texel and a half. Lengths are of object space, which a scale does not shrink alike along
-    // all axes.
+    // A shadow ray starts off the surface, so that it cannot hit the surface itself. The offset is a few roundings for
+    // exact patches and 1.5 texels for a map. Offsets are object space lengths, which a scale does not change equally
+    // along all axes.
     float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * solid.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
     vec3 place = ray_origin(rays, pixel) + vec3(solid.axis.xy, 0.0) + hit.t * v;
     point = rotate(look.rotation, place * scale + facing * lift * turned);
 #endif
-    // Two in a straight line: a loop costs software drivers a sixth of a frame or more, though none go through it.
-    // Shadows are so long that all lights share one loop.
+    // The first two lights are unrolled: a loop costs software drivers a sixth of a frame or more, even with no
+    // iterations. Shadow code is so long that all lights share one loop.
     if (SHADOW == SHADOW_OFF) {
         color += blinn_phong(look, look.light_0, lit, view, s.albedo);
         if (LIGHTS > 1u) {

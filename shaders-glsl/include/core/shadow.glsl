@@ -1,4 +1,4 @@
-// How much of a light reaches a point: rays towards it, traced against every solid of the scene.
+// Visible fraction of a light at a point, from rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
 #if SHADOWED
@@ -6,27 +6,27 @@
 #include "core/replicas.glsl"
 
 layout(set = 0, binding = 3, std140) uniform ShadowBlock {
-    uvec4 shadow_batches; // their number
+    uvec4 shadow_batches; // x: number of batches
     Solid shadow_solids[MAX_SHADOW_BATCHES];
 };
 
-// Rays towards a light: one, or several to its disc, in a spiral (Vogel 1979) that each pixel turns by an angle of its own.
+// Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle.
 const uint LIGHT_RAYS = SHADOW == SHADOW_SOFT ? 16u : 1u;
-const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u; // a bit for each
-const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfc09u : 1u; // to the disc's rim and middle
-const vec2 GOLDEN_ANGLE = vec2(-0.73736888, 0.67549029); // its cosine and sine
+const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u; // one bit per ray
+const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfc09u : 1u; // rays to the disc's rim and middle
+const vec2 GOLDEN_ANGLE = vec2(-0.73736888, 0.67549029); // cosine and sine
 
 // The disc of a light, world axes.
 struct Disc {
     vec3 middle; // unit, towards the light
-    vec3 u;      // unit, at right angles to it and to each other
+    vec3 u;      // unit; u, v and middle are orthogonal
     vec3 v;
     float cap;   // 1 - cos of the angular radius
-    vec2 first;  // cosine and sine of the angle at which the spiral begins
+    vec2 first;  // cosine and sine of the spiral's first angle
 };
 
-// Angles of neighbouring pixels differ much and evenly: multiples of the two numbers of Roberts (2018). The view has a
-// part in them, so pictures that are averaged have different ones.
+// Returns the spiral's first angle, radians. It differs strongly and evenly between neighbouring pixels: multiples of
+// the two numbers of Roberts (2018). It also depends on the view, so that averaged pictures have different angles.
 float spiral_begin(uvec2 pixel)
 {
     uvec2 view = floatBitsToUint(frame.dir_00.xy);
@@ -34,7 +34,7 @@ float spiral_begin(uvec2 pixel)
     return 1.4629180e-9 * float(turn); // 2 pi / 2^32
 }
 
-// Duff et al. 2017 for the two vectors beside the direction.
+// Returns the disc of a light; Duff et al. 2017 derive the two vectors orthogonal to the direction.
 Disc disc_of(vec3 towards, float cap, uvec2 pixel)
 {
     Disc disc;
@@ -50,7 +50,7 @@ Disc disc_of(vec3 towards, float cap, uvec2 pixel)
     return disc;
 }
 
-// The direction of ray number `k`, at this angle. All have the same part of the disc's solid angle.
+// Returns the direction of ray `k` at this angle. All rays represent equal solid angles of the disc.
 vec3 towards_disc(Disc disc, uint k, vec2 angle)
 {
     float height = disc.cap * (float(k) + 0.5) / float(LIGHT_RAYS);
@@ -63,7 +63,7 @@ vec2 next_angle(vec2 angle)
     return vec2(angle.x * GOLDEN_ANGLE.x - angle.y * GOLDEN_ANGLE.y, angle.x * GOLDEN_ANGLE.y + angle.y * GOLDEN_ANGLE.x);
 }
 
-// Whether the cone of rays to the disc may meet a sphere around `middle`, which is given from the rays' origin.
+// Returns true if the cone of rays to the disc may hit a sphere around `middle`, relative to the rays' origin.
 bool may_meet(Disc disc, vec3 middle, float radius)
 {
     float along = dot(middle, disc.middle);
@@ -73,7 +73,7 @@ bool may_meet(Disc disc, vec3 middle, float radius)
     return from_cone <= radius + slack && along >= -radius - slack;
 }
 
-// The rays of `left` that the solid, `solid`, does not stop.
+// Returns the rays of `left` that the current solid does not block.
 uint unstopped_by(Instance i, vec3 place, vec3 point, Disc disc, uint left)
 {
     vec3 eye = point_to_axis(i, place, point);
@@ -89,7 +89,7 @@ uint unstopped_by(Instance i, vec3 place, vec3 point, Disc disc, uint left)
     return left;
 }
 
-// The rays of `left`, a bit for each, that no solid stops.
+// Returns the rays of `left`, one bit each, that no solid blocks.
 uint unstopped(vec3 place, vec3 point, Disc disc, uint left)
 {
     for (uint b = 0u; b < shadow_batches.x && left != 0u; ++b) {
@@ -98,7 +98,7 @@ uint unstopped(vec3 place, vec3 point, Disc disc, uint left)
         for (uint n = first; n < end && left != 0u; ++n) {
             vec3 middle = instances[n].position_sx.xyz - place - point;
             bool near = may_meet(disc, middle, uintBitsToFloat(instances[n].solid.y));
-            // A loop, since software drivers run what is in a branch for none, too.
+            // This is a loop because software drivers execute the body of a branch even if no lane takes it.
             for (uint k = near ? 0u : LIGHT_RAYS; k < LIGHT_RAYS; k = LIGHT_RAYS) {
                 solid = shadow_solids[b];
                 shadow_map = int(solid.instances.z);
@@ -109,8 +109,8 @@ uint unstopped(vec3 place, vec3 point, Disc disc, uint left)
     return left;
 }
 
-// The visible part of the light. `point` is given from `place`, that from the eye; world axes. `normal` points to the
-// lit side: what is below its horizon is hidden.
+// Returns the visible fraction of the light, 0 to 1. `point` is relative to `place`, and `place` to the eye; world
+// axes. `normal` points to the lit side; directions below its horizon are hidden.
 float light_reaching(vec3 place, vec3 point, vec3 normal, Disc disc)
 {
     uint open = 0u;
@@ -121,7 +121,7 @@ float light_reaching(vec3 place, vec3 point, vec3 normal, Disc disc)
     }
     Solid own = solid;
     casts = true;
-    // Where the first rays agree they speak for the others.
+    // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
     for (uint pass = 0u; asked != 0u; ++pass) {

@@ -7,8 +7,8 @@
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
 #if SHADOWED
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
-int shadow_map; // of the solid that is traced, where it is one that may throw a shadow
-bool casts = false; // whether it is
+int shadow_map; // index of the map of the traced solid, if `casts`
+bool casts = false; // true while the traced solid is a possible shadow caster
 #endif
 
 vec4 gather_map(vec2 at)
@@ -31,11 +31,11 @@ vec4 filter_map(vec2 at)
     return textureLod(shape_map, at, 0.0);
 }
 
-// The four texels around a point and the point's place among them. The gather is aimed at the corner that the four
-// share: no rounding of coordinates can pick others, and the weights stay full floats where a sampler has 8 bits.
+// The four texels around a point and the point's position among them. The gather is aimed at their common corner, so
+// that coordinate rounding cannot select others. Weights are full floats, where a sampler has only 8 bits.
 struct Cell {
-    vec4 d;     // stored: (i, j+1), (i+1, j+1), (i+1, j), (i, j)
-    vec2 place; // 0 to 1; beyond the outermost texels' centres, extrapolated by half a texel
+    vec4 d;     // order: (i, j+1), (i+1, j+1), (i+1, j), (i, j)
+    vec2 place; // 0 to 1; extrapolated by half a texel beyond the centres of the outermost texels
 };
 
 Cell shape_cell(vec2 rz)
@@ -45,7 +45,7 @@ Cell shape_cell(vec2 rz)
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     Cell cell;
     cell.d = gather_map((base + 1.0) * (1.0 / size)) * solid.map.w;
-    // By the solid's symmetry the texel beyond the axis equals the first.
+    // The texel beyond the axis equals the first by symmetry.
     cell.place = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
     cell.place = clamp(cell.place, vec2(0.0, -0.5), vec2(1.5));
     return cell;
@@ -57,7 +57,7 @@ float cell_distance(Cell cell)
     return mix(across.x, across.y, cell.place.y);
 }
 
-// d(d)/d(r, z) of the bilinear cell; its length is about 1.
+// Returns d(d)/d(r, z) of the bilinear cell; its length is about 1.
 vec2 cell_gradient(Cell cell)
 {
     float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.place.y);
@@ -78,9 +78,9 @@ float map_distance(vec2 rz)
     return cell_distance(shape_cell(rz));
 }
 
-// Where the outline has a corner, a cell blends the directions of both its sides, and the blend is shorter than 1. Then
-// the tangents of both sides are continued from beyond the corner, and `along`, the ray's direction in the half-plane,
-// decides: a convex corner's side is the one entered last, a hollow corner's the one entered first.
+// Returns the gradient near corners of the outline. A cell at a corner blends the directions of both sides, so its
+// gradient is shorter than 1. The tangents of both sides are then extrapolated from beyond the corner, and `along`, the
+// ray's direction in the half-plane, selects one: the side entered last at a convex corner, first at a concave one.
 vec2 creased_gradient(vec2 rz, vec2 along)
 {
     vec2 g = cell_gradient(shape_cell(rz));
@@ -104,7 +104,7 @@ vec2 creased_gradient(vec2 rz, vec2 along)
     return (-d_left / v_left > -d_right / v_right) == convex ? g_left : g_right;
 }
 
-// Not normalised.
+// Returns the gradient of the map, not normalised.
 vec2 map_gradient(vec2 rz, vec2 along)
 {
     if (RGBA8 != 0) {

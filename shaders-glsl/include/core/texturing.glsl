@@ -1,5 +1,5 @@
-// Texture coordinates (xi, eta) and their gradients over the surface, from formulas: neighbouring pixels do not see the
-// jump of the azimuth, and compute has no neighbours. (Article of 2025, eqs 10 to 17, with z up.)
+// Texture coordinates (xi, eta) and their analytic gradients over the surface (2025 article, eqs 10 to 17, with z up).
+// Differences of neighbouring pixels would contain the jump of the azimuth, and compute has no neighbours.
 #ifndef TEXTURING_GLSL
 #define TEXTURING_GLSL
 #include "core/blocks.glsl"
@@ -13,13 +13,13 @@ const float PI = 3.14159265358979;
 
 struct Coordinates {
     vec2 uv;      // (xi, eta), before the texture's repetition
-    vec3 grad_xi; // over object space
+    vec3 grad_xi; // gradient over object space
     vec3 grad_eta;
 };
 
-// Length along the outline at its point nearest to (r, z), as a fraction; between texels bilinear. A closed outline's
-// lengths start again from 0 somewhere: there the smaller ones count one more. `rising`: whither it grows, of no
-// particular length.
+// Returns the arc length at the outline's point nearest to (r, z), as a fraction, bilinear between texels. The length
+// of a closed outline wraps to 0 at one point; smaller values there are increased by one. `rising`: direction of
+// increase, not normalised.
 float arc_length(vec2 rz, out vec2 rising)
 {
     vec2 size = solid.map.xy;
@@ -35,13 +35,13 @@ float arc_length(vec2 rz, out vec2 rising)
     return mixed > 1.0 ? mixed - 1.0 : mixed;
 }
 
-// Units of the profile's box for one of the box's own, which may have grown with the offset.
+// Returns profile units per object unit; the box may have grown with the offset.
 float profile_units()
 {
     return solid.specular.z;
 }
 
-// At `place`, object units about the axis; `n` the surface's normal there. Gradients are over the profile's units.
+// Returns the coordinates at `place`, object units relative to the axis. `n`: normal. Gradients are per profile unit.
 Coordinates texture_coordinates(vec3 place, vec3 n)
 {
     Coordinates c;
@@ -58,16 +58,16 @@ Coordinates texture_coordinates(vec3 place, vec3 n)
     } else if (PROJECTION == PROJECTION_SPHERICAL) {
         vec3 q = p - vec3(0.0, 0.0, 0.5);
         float rho2 = max(dot(q, q), 1e-12);
-        // acos loses half its digits at the poles; atan of both legs none.
+        // acos loses half of its digits at the poles; atan of both legs loses none.
         c.uv.y = 1.0 - atan(r, q.z) / PI;
         c.grad_eta = -vec3(q.xy * (q.z / max(r, 1e-6)), -r) / (PI * rho2);
     } else if (PROJECTION == PROJECTION_ARC) {
         vec2 rising;
         c.uv.y = arc_length(vec2(length(place.xy), place.z), rising);
         vec3 around = vec3(-p.y, p.x, 0.0) / max(r, 1e-6);
-        // By how much lengths grow along the surface: within a cavity the other way round than outside, and faster
-        // where an outline is shorter. Between the two sides of a thin wall the table says nothing; there the longest
-        // outline's rate stands in.
+        // Rate of arc length along the surface. Its sign is reversed within a cavity, and it is larger where an outline
+        // is shorter. The table is invalid between the two sides of a thin wall; the rate of the longest outline is
+        // used there.
         vec3 along = cross(n, around);
         float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / solid.map.z;
         c.grad_eta = along * ((abs(rate) < 16.0 * solid.axis.z ? rate : solid.axis.z) / profile_units());
@@ -78,7 +78,7 @@ Coordinates texture_coordinates(vec3 place, vec3 n)
     return c;
 }
 
-// How the surface's point moves from pixel to pixel: the neighbour's ray, met with the tangent plane.
+// Returns the change of the surface point per pixel: the neighbour's ray is intersected with the tangent plane.
 vec3 footprint(vec3 v, vec3 dv, vec3 n, float t)
 {
     float facing = dot(n, v);
@@ -96,8 +96,8 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 }
 
 #if TEXTURED
-// The normal tilted by the displacement map: the gradient of the height along the surface (Mikkelsen 2010), scaled by
-// `a`; or the papers' form, in which a turn around the axis counts as one unit of length wherever it is.
+// Returns the normal tilted by the displacement map: the surface gradient of the height (Mikkelsen 2010), scaled by
+// `a`. BUMP_PAPERS is the papers' form, in which a turn around the axis has length 1 at any radius.
 vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
 {
     vec2 slope = sample_repeated(displacement_map, c, right, down).rg * solid.texturing.xy;

@@ -1,4 +1,4 @@
-// One ray against one solid: clip, search, close. The only tracer; both stages call it.
+// Traces one ray against one solid: clip, search, close. This is the only tracer; both stages call it.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "core/hit.glsl"
@@ -11,20 +11,20 @@
 #include "search/external.glsl"
 #endif
 
-// Whether rays begin outside of the solid and the box cuts nothing of it. Those towards lights may begin anywhere.
+// True if rays begin outside the solid and the box does not cut it. Rays towards lights may begin anywhere.
 #if SHADOWED
 #define FROM_OUTSIDE (OUTSIDE != 0u && !casts)
 #else
 #define FROM_OUTSIDE (OUTSIDE != 0u)
 #endif
 
-// Whether the ray begins in the solid, as it does anyhow where it comes from within, `inside`; `f` is F there, of
-// searches on the map.
+// Returns true if the ray begins in the solid. `inside`: the ray comes from within and always does. `f`: F at the
+// start, for searches on the map.
 bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 {
     f = 0.0;
 #if SEARCH == SEARCH_QUADRIC
-    // Floor and ceiling are patches. Through the sides one enters the solid only where it reaches past them.
+    // Floor and ceiling are patches. A ray can enter the solid through a side only where the solid extends past it.
     float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
     bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
     return inside || (m.from_eye || open_side) && starts_within(m);
@@ -37,7 +37,7 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 #endif
 }
 
-// The first hit; `quadric`, of tables, is what was hit. `span`: between these s all that the ray may meet is.
+// Finds the first hit; `quadric` is the patch hit, for tables. `span`: range of s outside which the ray has no hit.
 uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout uint steps, out vec4 quadric)
 {
     quadric = vec4(0.0);
@@ -50,10 +50,10 @@ uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout
 #endif
 }
 
-// Several ways out, though clip_ray has one: measured, it is this here that lavapipe's code is shortest with.
+// Traces the solid. Unlike clip_ray it has several returns: measurements show the shortest lavapipe code for this form.
 //
-// Look-ups are counted in `hit.steps` even when nothing is met. `inside`: the ray comes from a replica that is solid
-// where it enters. `span`: the ray meets nothing before and behind these t.
+// `hit.steps` counts look-ups even without a hit. `inside`: the ray comes from a replica that is solid where the ray
+// enters. `span`: range of t outside which the ray has no hit.
 bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
@@ -68,18 +68,18 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     }
     hit.at_border = false;
     if (within && !inside && m.face_in != FACE_NONE) {
-        // The box cuts the solid, and the cut is closed.
+        // The box cuts the solid, and the cut is closed by a face.
         hit.t = m.t_start;
         hit.normal = face_normal(m.face_in, v, -1.0);
         hit.point = m.o;
         return true;
     }
-    // From within the solid its boundary is seen from behind; unsigned distances know no inside.
+    // A ray within the solid hits the back of its boundary. Unsigned distances cannot distinguish inside from outside.
     float side = within && (inside || m.from_eye) && RGBA8 == 0 ? -1.0 : 1.0;
     vec4 quadric;
     uint end = search_any(m, side, f, span - m.t_start, s, hit.steps, quadric);
 #if REPEATED && SEARCH == SEARCH_QUADRIC
-    // A floor or ceiling that lies in a border between cells is a patch, and is closed like the other borders.
+    // A floor or ceiling at a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
     end = REPLICAS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;
 #endif

@@ -1,22 +1,22 @@
-// What a module is compiled for, and the numbers that the CPU must know. build.rs defines the macros for each entry of
-// src/shader/list.rs, and generates the same numbers for Rust from this file.
+// Compile-time options of a module, and the constants shared with the CPU. build.rs defines the macros for each entry
+// of src/shader/list.rs, and generates the same constants for Rust from this file.
 #ifndef VARIANT_GLSL
 #define VARIANT_GLSL
 
 #define SEARCH_NONE 0    // vertices, lists of patches
-#define SEARCH_EXTERNAL 1 // one of another crate: search/external.glsl
-#define SEARCH_LIVE 2    // steps that are safe to a texel and a last secant, on the map alone
+#define SEARCH_EXTERNAL 1 // from another crate: search/external.glsl
+#define SEARCH_LIVE 2    // safe steps to within a texel and a final secant, on the map only
 #define SEARCH_QUADRIC 3 // exact patches of quadrics, rebuilt when parameters change
 
 #define READS_MAP (SEARCH == SEARCH_LIVE || SEARCH == SEARCH_EXTERNAL && !SEARCH_TABLE)
 #define READS_TABLES (SEARCH == SEARCH_QUADRIC || SEARCH == SEARCH_EXTERNAL && SEARCH_TABLE)
-#define TAKES_STEPS (READS_MAP || SEARCH_BOUNDED) // so many of them at most
+#define TAKES_STEPS (READS_MAP || SEARCH_BOUNDED) // limited by an upper limit on steps
 
 #define OUTPUT_COLOR 0
 #define OUTPUT_PLANES 1 // every plane of a frame
 #define OUTPUT_DEPTH 2  // no shading at all
 
-// What build.rs leaves out is 0.
+// Macros that build.rs does not define are 0.
 #ifndef SEARCH
 #define SEARCH SEARCH_NONE
 #endif
@@ -24,7 +24,7 @@
 #define SEARCH_TABLE 0 // 1: the external search reads a table of its own; else the map
 #endif
 #ifndef SEARCH_BOUNDED
-#define SEARCH_BOUNDED 0 // 1: though it reads a table there is a bound on its steps
+#define SEARCH_BOUNDED 0 // 1: the steps of a search on a table are limited too
 #endif
 #ifndef RGBA8
 #define RGBA8 0 // 1: the papers' texture of unsigned distance; else one channel of signed distance
@@ -36,7 +36,7 @@
 #define REPEATED 0 // 1: the box may hold several replicas
 #endif
 #ifndef SHADOWED
-#define SHADOWED 0 // 1: solids may throw shadows
+#define SHADOWED 0 // 1: solids may cast shadows
 #endif
 #ifndef OUTPUT
 #define OUTPUT OUTPUT_COLOR
@@ -48,7 +48,7 @@
 #define ORTHO 0 // 1: rays are parallel
 #endif
 
-// Small differences remain specialisation constants.
+// Smaller variations are specialisation constants.
 #if REPEATED
 layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
 #else
@@ -67,25 +67,25 @@ layout(constant_id = 3) const uint BUMP = 0u; // one of BUMP_*
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
 #endif
 #if SEARCH == SEARCH_EXTERNAL
-layout(constant_id = 5) const uint SEARCH_FORM = 0u; // tells searches apart that share their modules
-layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // bound on steps; 0: what the solid's block says
+layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches that share their modules
+layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the solid's block
 #endif
-layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, whose depth would have to be compared
-layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing will be drawn after, that would ask for depths
-layout(constant_id = 8) const uint LIGHTS = 3u; // most lights: 1, 2, or any number, 3
-// 1: the box cuts nothing of the solid, and the eye is outside of it. Of cells and listed patches, whose eye is always
-// outside: the first alone.
+layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, so no depth is compared
+layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing is drawn later that reads depths
+layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
+// 1: the box does not cut the solid, and the eye is outside it. Cells and listed patches always have the eye outside;
+// for them only the first condition counts.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
-layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids have one table, which a uniform buffer holds
+layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids share one table, held in a uniform buffer
 layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
-layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // of one solid's tables: most that the device's uniform buffers hold
+layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
-#define BEVELED (MAY_BEVEL != 0u) // or what the module is compiled for
+#define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
 #endif
-layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches that a pixel of a tile tests; 0: tiles are taken in their order, not from a list
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 0: no list
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;
@@ -100,30 +100,30 @@ const uint SHADOW_OFF = 0u;
 const uint SHADOW_HARD = 1u;
 const uint SHADOW_SOFT = 2u;
 
-const uint EXHAUSTED_BIT = 2147483648u; // of a pixel's word of look-ups: a ray of it ran out of steps
+const uint EXHAUSTED_BIT = 2147483648u; // bit in a pixel's word of look-ups: one of its rays ran out of steps
 
 const uint MAX_LIGHTS = 8u;
-const uint PATCH_VECTORS = 1024u; // least OWN_VECTORS: what every device's uniform buffers hold
+const uint PATCH_VECTORS = 1024u; // minimum of OWN_VECTORS: uniform buffers of every device hold this many
 const uint MOST_OWN_VECTORS = 4096u;
-const uint PATCH_ROWS = 256u; // of a solid's tables: a power of 4
-const uint PATCH_NODES = 340u; // of the tree over them: 256 + 64 + 16 + 4
+const uint PATCH_ROWS = 256u; // rows of a solid's tables, a power of 4
+const uint PATCH_NODES = 340u; // nodes of the tree over the rows: 256 + 64 + 16 + 4
 const uint HULL_SIDES = 12u; // corners of a hull's rings
-const uint PATCHES_PER_CELL = 8u; // most patches of a hull's cell
-const uint SIDE_ROWS = 32u; // strips of each of the box's sides that cut a hull
-const uint FRUSTUM_VECTORS = 17u; // of a frustum: its rings, then the cell's quadrics and guards
-const uint LISTED_PATCHES = 340u; // most patches of a solid of which lists are made, three vectors each
-const uint LIST_LENGTHS = 4u; // different lengths of lists of a tile's patches
-const uint TILE_LISTS = 5u; // lists of tiles: one for each length, and one of tiles that walk the tree
-const uint SHORT_LIST = 8u; // the first of them
+const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a hull's cell
+const uint SIDE_ROWS = 32u; // strips per box side that cuts a hull
+const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
+const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
+const uint LIST_LENGTHS = 4u; // number of different lengths of a tile's patch list
+const uint TILE_LISTS = 5u; // lists of tiles: one for each length, and one of tiles that use the tree
+const uint SHORT_LIST = 8u; // first of the list lengths
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;
 const uint LONGEST_LIST = 48u;
-const uint MAX_SHADOW_BATCHES = 64u; // batches of a scene with shadows
-const uint MAX_SHADOW_MAPS = 12u; // different shape maps of a scene with shadows
+const uint MAX_SHADOW_BATCHES = 64u; // upper limit on batches of a scene with shadows
+const uint MAX_SHADOW_MAPS = 12u; // upper limit on different shape maps of a scene with shadows
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
-const uint QUAD_BITS = 15u; // of either coordinate of a quad's corner
-const uint TILE_SPLIT = 2147483648u; // in place of a tile's count of copies: each of its pixels has a list of its own
-const uint BOX_INDICES = 36u; // of a shape box, before those of the strips of its sides
-const uint STRIP_INDICES = 768u; // of all strips: 6 each, 4 sides, SIDE_ROWS rows
+const uint QUAD_BITS = 15u; // bits of each coordinate of a quad's corner
+const uint TILE_SPLIT = 2147483648u; // replaces a tile's number of copies: each of its pixels has a list of its own
+const uint BOX_INDICES = 36u; // indices of a shape box; those of the strips of its sides follow
+const uint STRIP_INDICES = 768u; // indices of all strips: 6 each, 4 sides, SIDE_ROWS rows
 
 #endif

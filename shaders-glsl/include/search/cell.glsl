@@ -1,5 +1,5 @@
-// A fragment of a hull: the patches of its own cell, in a straight line. What a cell is, and why it loses no ray:
-// src/surface/hull.rs, whose `trace` is this file's twin.
+// Intersects a ray of a hull's fragment with the patches of its cell, without branches. src/surface/hull.rs defines
+// cells and proves that no ray is lost; its `trace` is the CPU twin of this file.
 #ifndef CELL_GLSL
 #define CELL_GLSL
 #extension GL_EXT_control_flow_attributes : require
@@ -17,7 +17,8 @@ bool trace_hull(uvec2 pixel, out Hit hit)
     return end_row(row, PATCHES_PER_CELL, hit);
 }
 
-// Its own triangle is nowhere behind the surface it wraps, but for rounding.
+// Depth of a hit, limited to the triangle's. The triangle is never behind the surface that it wraps, except by
+// rounding.
 float hull_depth(float t)
 {
     float sense = ray_dir_00.w;

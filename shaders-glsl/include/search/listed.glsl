@@ -1,5 +1,5 @@
-// A pixel of a tile whose patches are listed: these alone, in a straight line. A few invocations read record, instance
-// and patches for all: lavapipe 22 reads storage buffers lane by lane.
+// Intersects a pixel's ray with the listed patches of its tile, without branches. A few invocations load record,
+// instance and patches for the whole group, because lavapipe 22 reads storage buffers lane by lane.
 #ifndef LISTED_GLSL
 #define LISTED_GLSL
 #extension GL_EXT_control_flow_attributes : require
@@ -15,7 +15,7 @@ shared uint shared_record[4];
 shared uint shared_instance[INSTANCE_WORDS];
 shared float listed[8u * LONGEST_LIST];
 
-// Shares what take_shared_record() reads after a barrier.
+// Loads the record into shared memory; take_shared_record() reads it after a barrier.
 void share_record()
 {
     if (gl_LocalInvocationIndex < 4u) {
@@ -28,7 +28,7 @@ void take_shared_record()
     tile_record = uvec4(shared_record[0], shared_record[1], shared_record[2], shared_record[3]);
 }
 
-// Shares the tile's instance and patches.
+// Loads the tile's instance and patches into shared memory.
 void share_patches()
 {
     uint self = gl_LocalInvocationIndex;
@@ -74,7 +74,7 @@ vec4 listed_vector(uint n)
 
 bool search_listed(uvec2 pixel, out Nearest nearest)
 {
-    // The lists hold no tile of which a ray was in the solid before the sides: see tile_lists.comp.
+    // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
     PatchRow row = begin_row(tile_rays, pixel, sides_of_box());
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
         take_patch_of_row(row, listed_vector(2u * k), listed_vector(2u * k + 1u));

@@ -1,23 +1,23 @@
-// The search for live parameters: on the map alone, nothing rebuilt when e, b or c move.
+// Search for live parameters. It reads only the map, so nothing is rebuilt when e, b or c change.
 //
-// Steps that are safe (proof in docs/searches.md): in the half-plane the ray moves away from a sample by at most sigma
-// x + kappa x^2 / 2 after x units of s, and w, being concave along the ray, stays below its tangent; so as long as both
-// together do not use up F, nothing is met. Where the secant of the last two samples shows the surface farther on, a
-// step goes on towards it by a texel at most: what it may pass is a chord of a texel. Near the surface a least step
-// brackets it, and the secant through the bracket is the hit: a ray that only comes near is no hit, however near.
+// Safe steps (proof in docs/searches.md): after x units of s the ray is at most sigma x + kappa x^2 / 2 away from the
+// sample in the half-plane. w is concave along the ray and stays below its tangent. There is no hit while the sum of
+// both is less than F. If the secant of the last two samples puts the surface farther away, the step is extended
+// towards it by at most a texel; it can miss no more than a chord of a texel. A minimum step near the surface brackets
+// the surface, and the secant through the bracket gives the hit. A ray that only comes close is never a hit.
 #ifndef SEARCH_LIVE_GLSL
 #define SEARCH_LIVE_GLSL
 #include "core/surface.glsl"
 
-// What does not change along a ray.
+// Constants of a ray.
 struct RayConstants {
-    float speed2;  // of the ray in space, squared
+    float speed2;  // squared speed of the ray in space
     float speed;
     float j2;      // J^2: the ray's acceleration in the half-plane is J^2 / r^3
-    float nearest; // to the axis
+    float nearest; // least distance from the axis
 };
 
-// The largest step from s that cannot pass the surface; `f` is side * F there.
+// Returns the largest step from s that cannot cross the surface; `f` is side * F at s.
 float safe_step(Meridian m, RayConstants ray, float side, float s, vec2 rz, float f)
 {
     float moment = m.a * s + m.b;
@@ -25,16 +25,16 @@ float safe_step(Meridian m, RayConstants ray, float side, float s, vec2 rz, floa
     float closest = max(moment >= 0.0 ? r : ray.nearest, r - f);
     float cube = closest * closest * closest;
     if (!bool(BEVELED)) {
-        // Ball: the distance shrinks by at most `speed` for each unit of s. Torus: the disc of radius f about the
-        // sample, swept around the axis, f / sqrt(sigma^2 + kappa f), with one division for all.
+        // Ball: the distance decreases by at most `speed` per unit of s. Torus: the disc of radius f about the sample,
+        // swept around the axis, gives f / sqrt(sigma^2 + kappa f). Both share one division.
         float rr = r * r;
         float sigma2_rr = max(ray.speed2 * rr - ray.j2, m.v.z * m.v.z * rr);
         return f * max(m.inverse_speed, sqrt(cube * rr / (cube * sigma2_rr + ray.j2 * f * rr + 1e-30)));
     }
     float kappa = ray.j2 / max(cube, 1e-12);
-    // The ray's speed in the half-plane, squared.
+    // Squared speed of the ray in the half-plane.
     float sigma2 = max(ray.speed2 - ray.j2 / (r * r), m.v.z * m.v.z);
-    // From within, the tangent to w bounds nothing: take the steepest.
+    // A ray inside the solid has no bound from the tangent of w, so the steepest slope is used.
     float slope = side < 0.0 ? solid.offset.y * abs(m.v.z) : offset_slope(rz.y) * m.v.z; // dw/ds
     float ball = f / max(ray.speed + slope, 1e-3 * ray.speed);
     float rate = sqrt(sigma2) + slope;
@@ -50,18 +50,19 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     ray.speed = ray.speed2 * m.inverse_speed;
     ray.j2 = max(m.a * m.c - m.b * m.b, 0.0);
     ray.nearest = sqrt(ray.j2 / max(m.a, 1e-20));
-    // A quarter of a texel, or a tenth of a pixel where texels are smaller; of the way through a flat box a hundredth.
+    // Minimum step: a quarter of a texel, or if greater, a tenth of a pixel but at most a hundredth of the ray's
+    // length.
     float texel = solid.map.z * m.inverse_speed;
     float least = max(0.25 * texel, 0.1 * min(pixel, 0.1 * m.s_end));
     vec2 rz = point_rz(m, s);
-    // The last step: where it began, and F at both of its ends. Of none the secant shows the surface where the ray is.
+    // Start of the last step, and F at both of its ends. The initial values put the secant's zero at the ray's start.
     float before = s;
     float f_before = f + 1.0;
     int most = int(solid.offset.w);
     for (int i = 1; i < most && (i == 1 || (f > 0.0 && s < m.s_end)); ++i) {
         float safe = safe_step(m, ray, side, s, rz, f);
-        // A little beyond where the secant meets the surface, so that the next step does not end before it again; of a
-        // ray that goes along the surface the secant says nothing, and a texel is as good.
+        // The step ends slightly beyond the secant's zero, so that the next one does not stop short again. The secant
+        // is useless for a ray along the surface; there the step is extended by a texel.
         float beyond = f * (s - before) / (f_before - f) + least;
         beyond = min(beyond, safe + texel);
         float stride = beyond > safe ? beyond : safe;

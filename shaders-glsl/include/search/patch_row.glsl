@@ -1,4 +1,4 @@
-// A pixel's ray against a few patches, one after another in a straight line: those of a cell, or those that a tile lists.
+// Intersects a pixel's ray with a few patches in sequence, without branches: those of a cell or of a tile's list.
 #ifndef PATCH_ROW_GLSL
 #define PATCH_ROW_GLSL
 #include "core/hit.glsl"
@@ -6,13 +6,13 @@
 #include "search/quadric.glsl"
 
 struct PatchRow {
-    Meridian m; // from the plane of the depth `base`
-    float least, most; // the t between which hits count
+    Meridian m; // s = 0 is in the plane at depth `base`
+    float least, most; // range of t of valid hits
     float best;
-    vec4 quadric; // of the nearest hit so far
+    vec4 quadric; // patch of the nearest hit so far
 };
 
-// `sides` of the box from the axis. No ray may be in the solid before them.
+// `sides`: sides of the box, relative to the axis. No ray may be in the solid before it enters them.
 PatchRow begin_row(PixelRays rays, uvec2 pixel, vec4 sides)
 {
     PatchRow row;
@@ -38,7 +38,7 @@ void take_patch_of_row(inout PatchRow row, vec4 quadric, vec4 guard)
     take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric);
 }
 
-// Whether one of `count` patches was hit.
+// Returns true if one of `count` patches was hit.
 bool end_row(PatchRow row, uint count, out Hit hit)
 {
     hit.t = row.best;

@@ -1,14 +1,14 @@
-// The quadric search: the solid's boundary as patches of quadrics of revolution, dealt out to rows of equal height,
-// under a 4-ary tree of the rows' ranges of r^2. In (z, r^2) a ray is a parabola and so is a patch; rows are met in the
-// order of t. The layout is that of src/surface/rows.rs; tests/common/walk.rs is this file's twin on the CPU.
+// The quadric search. The solid's boundary is a set of patches of quadrics of revolution, sorted into rows of equal
+// height. A 4-ary tree over the rows holds their ranges of r^2. Rays and patches are parabolas in (z, r^2). Rows are
+// visited in order of t. src/surface/rows.rs defines the layout; tests/common/walk.rs is the CPU twin of this file.
 //
-// Exact but for rounding: no step, no threshold, nothing to run out of.
+// The search is exact up to rounding. It has no step size, no threshold and no limit on steps.
 #ifndef SEARCH_QUADRIC_GLSL
 #define SEARCH_QUADRIC_GLSL
 #include "core/surface.glsl"
 #include "core/patch_tables.glsl"
 
-// The root at which G falls from out to in; NaN or out of range where there is none.
+// Returns the root at which the ray enters (G changes from positive to negative). NaN or out of range if there is none.
 float entering_root(Meridian m, vec4 q, float side)
 {
     float al = side * (q.x * m.a + q.w * m.v.z * m.v.z);
@@ -24,9 +24,9 @@ float square_at(Meridian m, float s)
     return m.c + s * (2.0 * m.b + s * m.a);
 }
 
-const float HEIGHT_SLACK = 1e-3; // beyond the box's height another sheet of a quadric may pass the guard
+const float HEIGHT_SLACK = 1e-3; // outside the box's height another sheet of a quadric may satisfy the guard
 
-// The nearest hit so far, or that of a patch, if it is after `least` and nearer.
+// Replaces the nearest hit so far by the hit with patch `q`, if that is after `least` and nearer.
 void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, inout vec4 quadric)
 {
     float root = entering_root(m, q, 1.0);
@@ -38,7 +38,7 @@ void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, 
     quadric = mix(quadric, q, bvec4(nearer));
 }
 
-// Whether the start of the ray is in the solid: by the number of patches beyond it, away from the axis.
+// Returns true if the ray starts in the solid: the number of patches outward of the start is odd.
 bool starts_within(Meridian m)
 {
     uint row = uint(clamp(m.o.z, 0.0, 1.0) * float(PATCH_ROWS));
@@ -55,7 +55,7 @@ bool starts_within(Meridian m)
     return (beyond & 1u) != 0u;
 }
 
-// FOUND or LEFT; `hit_quadric` is the patch that was hit. `span`: rows are walked between these s.
+// Returns FOUND or LEFT; `hit_quadric` is the patch that was hit. `span`: range of s in which rows are visited.
 uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint steps, out vec4 hit_quadric)
 {
     const int rows = int(PATCH_ROWS);
@@ -63,8 +63,8 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));
     float nearest = -m.b / max(m.a, 1e-30);
-    // The start is known to a few roundings of the way from the ray's origin: a face of the box that is the solid's own
-    // must not be passed there.
+    // The start has an error of a few roundings of the distance from the ray's origin. The slack keeps a box face that
+    // is also the solid's own face from being missed.
     float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
     int level = top;
@@ -75,7 +75,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     float best = 3e38;
     hit_quadric = vec4(0.0);
     for (;;) {
-        // Through the tree to the next row whose patches the ray may meet.
+        // Traverse the tree to the next row whose patches the ray may hit.
         uint run = 0u;
         int border;
         float leave;
@@ -130,7 +130,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     return best < 2e38 ? FOUND : LEFT;
 }
 
-// Outward normal in object space, of any length. A tip on the axis has none: there it looks back along the ray.
+// Returns the outward normal in object space, not normalised. A tip on the axis has no normal; there it is -m.v.
 vec3 quadric_normal(Meridian m, float s, vec4 q)
 {
     vec3 p = m.o + s * m.v;

@@ -1,4 +1,4 @@
-// A beam: the rays of a square of pixels, as the middle one and how far the others are from it.
+// A **beam** bounds the rays of a square of pixels: the middle ray and the largest deviation from it.
 #ifndef BEAM_GLSL
 #define BEAM_GLSL
 #include "core/patch_tables.glsl"
@@ -9,13 +9,13 @@ struct Beam {
     vec3 v;
     float a, b, least, nearest; // r^2 of the middle ray: least + a (t - nearest)^2
     float inverse_a, per_z, speed;
-    float spread; // how far directions are from the middle one
-    float width;  // how far rays are from it at one t, anywhere in the box
+    float spread; // largest deviation of a direction from the middle one
+    float width;  // largest distance of a ray from the middle one at equal t, anywhere in the box
     float base;
-    float unit; // of the radii of patches
+    float unit; // unit of the radii of patches
 };
 
-// Depth of the far side of the box.
+// Returns the depth of the far side of the box.
 float farthest_of(PixelRays rays, Instance i)
 {
     vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
@@ -23,7 +23,7 @@ float farthest_of(PixelRays rays, Instance i)
     return rays.base + dot(abs(forward), half_size);
 }
 
-// Of a square of pixels.
+// Returns the beam of a square of pixels.
 Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit)
 {
     Beam beam;
@@ -46,7 +46,7 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
     return beam;
 }
 
-// Whether a ray of the beam may enter the solid through patch `k`, and between which t.
+// Returns true if a ray of the beam may enter the solid through patch `k`, and the range of t in `span`.
 bool may_meet(Beam beam, uint k, out vec2 span)
 {
     uvec4 words = listed_table(3u + 3u * k);
@@ -64,15 +64,15 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     float slack = 4e-7 * (abs(beam.nearest) + reach);
     float enter = max(min(low, high), -beam.base);
     float leave = max(low, high);
-    // Within the ring before and behind the point nearest to the axis.
+    // Ranges of t within the ring, before and after the point nearest to the axis.
     vec2 before = vec2(max(enter, beam.nearest - reach - slack), min(leave, beam.nearest - clear + slack));
     vec2 behind = vec2(max(enter, beam.nearest + clear - slack), min(leave, beam.nearest + reach + slack));
 
-    // Half of dG/dt along the middle ray is linear in t; where no ray's is negative the patch faces away.
+    // Half of dG/dt along the middle ray is linear in t. The patch faces away where no ray's value is negative.
     float slope = 0.5 * k1 + k2 * beam.o.z;
     float al = sense * beam.a + k2 * beam.v.z * beam.v.z;
     float be = sense * beam.b + slope * beam.v.z;
-    float steep = 0.5 * abs(k1) + abs(k2); // bound of |k1 / 2 + k2 z| for z in [0, 1]
+    float steep = 0.5 * abs(k1) + abs(k2); // upper bound of |k1 / 2 + k2 z| for z in [0, 1]
     float turn = max(1.0, abs(k2)) * beam.width;
     float most = (abs(sense) * r.y + steep + turn) * beam.spread + turn * beam.speed;
     bool faces_before = min(al * before.x, al * before.y) + be <= most;

@@ -1,18 +1,18 @@
-// Between which t a beam may meet a solid: by the nodes of a level of the tree and the largest radius of each.
+// Range of t in which a beam may hit a solid, from the largest radii of the nodes at one level of the tree.
 #ifndef BEAM_SPAN_GLSL
 #define BEAM_SPAN_GLSL
 #include "stage/beam.glsl"
 
-const uint SPAN_NODES = 16u; // of the second level from the top
-const uint SPAN_FIRST = 320u; // number of the first of them
+const uint SPAN_NODES = 16u; // nodes of the second level from the top
+const uint SPAN_FIRST = 320u; // index of its first node
 
-// Where a beam may meet node `k`; the first t is behind the last where it cannot.
+// Returns the range of t in which a beam may hit node `k`; the range is empty (x > y) if it cannot.
 vec2 node_span(Beam beam, uint k)
 {
-    // Divided anew: of a plate a thousand times as wide as high a rounding of the inverse loses pixels.
+    // This divides again: rounding of `inverse_a` loses pixels of a plate that is a thousand times as wide as high.
     float nearest = -beam.b / beam.a;
     float least = max(dot(beam.o.xy, beam.o.xy) - beam.a * nearest * nearest, 0.0);
-    // Not from the uniform buffer: lavapipe 22 takes uniforms that branches depend on for constants, and crashes over it.
+    // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
     uint at = SPAN_FIRST + k;
     float most = node_extent(patch_tables[solid.patches.x + (at >> 2)][at & 3u]).y;
     float radius = sqrt(max(most, 0.0)) + beam.width;

@@ -1,4 +1,4 @@
-// What every dispatch reads of its work.
+// Inputs of every dispatch: push constants and lists of tiles.
 #ifndef COMPUTE_GLSL
 #define COMPUTE_GLSL
 #include "stage/tile_words.glsl"
@@ -6,20 +6,20 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant) uniform Pushed {
-    uint first;    // number of the first record
-    uint count;    // of records
-    uint heads;    // word of list_words where the heads of their lists begin
-    uint tiles;    // word where the lists' tiles begin
-    uint list;     // which of the lists a dispatch takes
-    uint solid;    // number of the only solid
-    uint instance; // number of the only instance
+    uint first;    // index of the first record
+    uint count;    // number of records
+    uint heads;    // first word of the list heads in list_words
+    uint tiles;    // first word of the lists' tiles in list_words
+    uint list;     // index of the list that this dispatch reads
+    uint solid;    // index of the only solid
+    uint instance; // index of the only instance
 } pushed;
 
-// Lists of tiles, made by tile_lists.comp for N records:
-// - TILE_LISTS heads of four words: an indirect dispatch of a work group for each tile in the list, one unused;
-// - for each list 4 N words: a tile's corner, the number of its instance, the two runs of patches that its rays may
-//   meet, first | number << 9 | first << 15 | number << 24, and one unused. Tiles of the last list walk the tree; the
-//   bits of the first and of the last t at which their rays may meet the solid stand in place of the runs.
+// Lists of tiles, written by tile_lists.comp for N records:
+// - TILE_LISTS heads of four words: an indirect dispatch with one work group per tile in the list, and one unused word;
+// - 4 N words per list. A tile has four words: its corner, the index of its instance, the two runs of patches that its
+//   rays may hit (first | number << 9 | first << 15 | number << 24), and one unused word. Tiles of the last list use
+//   the tree. They hold the range of t of possible hits, as two floats, in place of the runs and the unused word.
 #ifndef LIST_WORDS
 #define LIST_WORDS readonly
 #endif
@@ -27,13 +27,13 @@ layout(set = 2, binding = 6, std430) LIST_WORDS buffer ListWords {
     uint list_words[];
 };
 
-// Where the head of list number `k` is.
+// Returns the first word of the head of list `k`.
 uint list_head(uint k)
 {
     return pushed.heads + 4u * k;
 }
 
-// Where its tiles begin.
+// Returns the first word of the tiles of list `k`.
 uint list_tiles(uint k)
 {
     return pushed.tiles + 4u * k * pushed.count;

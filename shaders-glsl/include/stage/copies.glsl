@@ -1,11 +1,11 @@
-// The nearest hit of a pixel among the copies that its tile lists.
+// Finds the nearest hit of a pixel among the copies in its tile's list.
 #ifndef COPIES_GLSL
 #define COPIES_GLSL
 #include "stage/compute.glsl"
 #include "stage/stores.glsl"
 #include "core/replicas.glsl"
 
-// What a search reads of a solid.
+// Loads the members of a solid that a search reads.
 void take_shape(uint number)
 {
     solid.map = solids[number].solid.map;
@@ -16,8 +16,8 @@ void take_shape(uint number)
     solid.patches = solids[number].solid.patches;
 }
 
-// Of equal depths the first stays, as under the depth test. Ends where the next copy begins behind the hit, or behind
-// the depth that `nearest` comes with.
+// Finds the nearest hit. The first of equal depths wins, as under the depth test. The loop ends when the next copy
+// begins behind the hit, or behind the initial depth in `nearest`.
 bool nearest_copy(uint first, uint count, uvec2 pixel, inout Nearest nearest)
 {
     bool found = false;
@@ -47,7 +47,7 @@ bool nearest_copy(uint first, uint count, uvec2 pixel, inout Nearest nearest)
     return found;
 }
 
-// The pixel of this invocation, where its list begins and how many copies it holds.
+// Returns the pixel of this invocation, the first word of its list and the number of copies in it.
 uvec2 this_pixel(out uint first, out uint count)
 {
     uint at = 4u * (pushed.first + gl_WorkGroupID.x);

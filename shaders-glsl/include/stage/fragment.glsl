@@ -1,9 +1,9 @@
-// The fragments' half of varyings.glsl.
+// Fragment side of varyings.glsl.
 #ifndef FRAGMENT_GLSL
 #define FRAGMENT_GLSL
 #include "stage/varyings.glsl"
 
-// To be called first.
+// Loads the frame and the solid. Fragments call this first.
 void take_over()
 {
     take_frame();

@@ -1,4 +1,4 @@
-// The nearest hit of a pixel of compute, and what is done with it.
+// The nearest hit of a pixel in compute, and its depth test.
 #ifndef NEAREST_GLSL
 #define NEAREST_GLSL
 #include "stage/pixel_words.glsl"
@@ -8,11 +8,11 @@ struct Nearest {
     Hit hit;
     uint instance;
     float depth;
-    uint steps; // of all searches
-    bool exhausted; // one of them ran out of steps
+    uint steps; // total of all searches
+    bool exhausted; // true if a search ran out of steps
 };
 
-// The depth that a hit must be nearer than.
+// Returns the depth limit: a hit must be nearer.
 float drawn_depth(uvec2 pixel)
 {
     return DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;

@@ -1,4 +1,4 @@
-// What a fragment stores of a hit: nothing but depth, its colour, or every plane.
+// Outputs of a fragment for a hit: depth only, its colour, or every plane.
 #ifndef OUTPUTS_GLSL
 #define OUTPUTS_GLSL
 #include "core/hit.glsl"
@@ -13,7 +13,7 @@ layout(location = 2) out vec4 shading_normal_u;
 layout(location = 3) out vec4 albedo_v;
 #endif
 
-// Look-ups are counted whether anything was hit or not.
+// Adds the look-ups of a pixel, with or without a hit.
 void count_steps(uvec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES

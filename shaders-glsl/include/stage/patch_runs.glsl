@@ -1,13 +1,13 @@
-// The runs of patches that a tile's rays may meet, and the list that they make.
+// Runs of patches that a tile's rays may hit, and the list made from them.
 //
-// Tables, in vectors: the number of patches and the bits of the unit of radii; three vectors a patch: its quadric, its
-// guard, what beam.glsl reads of it; then a record that nothing passes.
+// Layout of the table, in vectors: first a header with the number of patches and the unit of radii (float bits). Then
+// three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
 #define LIST_WORDS
 #include "stage/compute.glsl"
 
-// The first and the last patch, and the widest gap between two that follow.
+// The first and the last patch, and the widest gap between two successive ones.
 struct PatchRuns {
     uint first;
     uint last;
@@ -17,7 +17,7 @@ struct PatchRuns {
 
 const PatchRuns NO_PATCHES = PatchRuns(0u, 0u, uvec2(0u), false);
 
-// Patches come in their order.
+// Adds patch `k` to the runs if `meets` is true. Calls must have ascending `k`.
 void take_patch(inout PatchRuns runs, uint k, bool meets)
 {
     runs.gap = meets && runs.any && k - runs.last > runs.gap.y - runs.gap.x ? uvec2(runs.last, k) : runs.gap;
@@ -26,7 +26,7 @@ void take_patch(inout PatchRuns runs, uint k, bool meets)
     runs.any = runs.any || meets;
 }
 
-// How many patches each run has.
+// Returns the number of patches of each run.
 uvec2 lengths_of(PatchRuns runs)
 {
     bool split = runs.gap.y - runs.gap.x > 1u;
@@ -34,7 +34,7 @@ uvec2 lengths_of(PatchRuns runs)
                  : uvec2(runs.last + 1u - runs.first, 0u);
 }
 
-// Adds a record to list number `n`. The first makes a whole dispatch of the head, which begins as zeros.
+// Adds a record to list `n`. Heads are zero at first; the first record completes the indirect dispatch.
 void append(uint n, uvec4 record)
 {
     uint head = list_head(n);
@@ -49,7 +49,7 @@ void append(uint n, uvec4 record)
     }
 }
 
-// Whether the runs are short enough for a list; else the tile walks the tree.
+// Adds the record if its runs are short enough for a list. Returns false if not; then the tile must use the tree.
 bool append_runs(uvec2 record, PatchRuns runs)
 {
     uvec2 lengths = lengths_of(runs);

@@ -1,5 +1,5 @@
-// Two words a pixel, in two runs: the nearest depth so far, then what the entry file keeps there (a packed colour, or
-// the look-ups of all searches in that pixel, with a bit that tells whether one of them ran out of steps).
+// Two words per pixel, in two arrays. The first holds the nearest depth so far. The second depends on the entry file: a
+// packed colour, or the number of look-ups of all searches with EXHAUSTED_BIT.
 #ifndef PIXEL_WORDS_GLSL
 #define PIXEL_WORDS_GLSL
 #include "core/blocks.glsl"

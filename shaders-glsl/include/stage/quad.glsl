@@ -1,15 +1,15 @@
-// Quads of pixels (tile_words.glsl) as points, each a vertex; where the device has no points of this size, as two
-// triangles of six vertices.
+// Quads of pixels (tile_words.glsl), drawn as points with one vertex each. Devices without points of this size draw two
+// triangles with six vertices.
 #ifndef QUAD_GLSL
 #define QUAD_GLSL
 #include "stage/tile_words.glsl"
 #include "core/pixel_ray.glsl"
 
 struct Quad {
-    uvec2 corner; // in pixels
+    uvec2 corner; // pixels
     uint side;
     uint instance;
-    float near; // no point of the copy is nearer
+    float near; // lower bound of the copy's depth
 };
 
 Quad this_quad()
@@ -20,7 +20,7 @@ Quad this_quad()
     return Quad(corner, 1u << (place >> (2u * QUAD_BITS)), tile_words[at + 1u], uintBitsToFloat(tile_words[at + 3u]));
 }
 
-// No fragment's depth is nearer than the quad's.
+// Sets the position of a vertex. The quad's depth is the nearest that a fragment can have.
 void place_quad(Quad quad)
 {
     vec2 at = vec2(quad.corner) + 0.5 * float(quad.side);

@@ -1,4 +1,4 @@
-// Linear light to sRGB (IEC 61966-2-1), packed into 8 bits a channel.
+// Conversion of linear light to sRGB (IEC 61966-2-1), packed into 8 bits per channel.
 #ifndef SRGB_GLSL
 #define SRGB_GLSL
 

@@ -1,4 +1,4 @@
-// What a compute invocation stores of a hit: its colour, packed sRGB, or every plane.
+// Outputs of a compute invocation for a hit: its colour in packed sRGB, or every plane.
 #ifndef STORES_GLSL
 #define STORES_GLSL
 #include "stage/nearest.glsl"
@@ -11,7 +11,7 @@ layout(set = 2, binding = 4, rgba32f) uniform writeonly image2D shading_normal_u
 layout(set = 2, binding = 5, rgba32f) uniform writeonly image2D albedo_v;
 #endif
 
-// Look-ups are counted whether anything was hit or not.
+// Adds the look-ups of a pixel, with or without a hit.
 void count_steps(uvec2 pixel, Nearest nearest)
 {
 #if OUTPUT == OUTPUT_PLANES

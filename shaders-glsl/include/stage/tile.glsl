@@ -1,4 +1,4 @@
-// A tile of one copy.
+// State of a tile with a single copy.
 #ifndef TILE_GLSL
 #define TILE_GLSL
 #include "stage/compute.glsl"
@@ -6,12 +6,12 @@
 #include "core/pixel_ray.glsl"
 #include "stage/stores.glsl"
 
-uvec4 tile_record; // corner, number of the instance; then the runs of its listed patches, or the bits of its span
+uvec4 tile_record; // corner, index of the instance; then the runs of its listed patches, or its span (float bits)
 Instance tile_instance;
 Look tile_look;
 PixelRays tile_rays;
 
-// Takes over the frame: to be called first.
+// Loads frame and lights. Tile shaders call this first.
 void begin_frame()
 {
     take_frame();
@@ -24,7 +24,7 @@ uint record_word(uint n)
                              : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
 }
 
-// Takes over the record and its instance.
+// Loads the record and its instance.
 void take_record()
 {
     tile_record = uvec4(record_word(0u), record_word(1u), record_word(2u), record_word(3u));
@@ -36,7 +36,7 @@ uvec2 tile_corner()
     return uvec2(tile_record.x & 0xffffu, tile_record.x >> 16);
 }
 
-// Finds what the instance and its solid say of the tile.
+// Computes look and rays from the instance and its solid.
 void begin_tile()
 {
     tile_look = look_of(tile_instance);

@@ -1,15 +1,16 @@
-// Tiles: squares of pixels and the copies that may show there. Records of four words come first, then lists.
+// A **tile** is a square of pixels with the copies that may be visible there. Records of four words come first, then
+// lists.
 //
-// Fragments are drawn for quads of 1, 2, 4 or 8 pixels a side, each of one copy: the corner in pixels and the side's
-// logarithm (x | y << QUAD_BITS | logarithm << 2 QUAD_BITS), the instance's number, 0, the bits of its nearest depth.
+// Fragment shaders draw quads of 1, 2, 4 or 8 pixels a side, each with a single copy. A record holds corner and log2 of
+// the side (x | y << QUAD_BITS | log2 << 2 QUAD_BITS, pixels), the instance's index, 0, the nearest depth (float bits).
 //
-// Compute takes tiles of GROUP_PIXELS^2. Of one copy: the corner in pixels (x | y << 16), the instance's number, 0, the
-// bits of its nearest depth. Of several: the corner, the word where the tile's list begins, how many copies it holds, the
-// bits of the nearest depth. A list has two words a copy, nearest first: the instance's number, the bits of the copy's
-// nearest depth. With TILE_SPLIT in place of the number, the record is no square: it holds as many pixels from anywhere,
-// so that no invocation is spent on pixels that show nothing. Each has three words: its place (x | y << 16), where its
-// list begins, from the first of these words on, how many copies it holds. Places behind the last pixel are 0xffffffff,
-// outside of every picture.
+// Compute shaders use tiles of GROUP_PIXELS^2. Record of a single copy: the corner (x | y << 16, pixels), the
+// instance's index, 0, the nearest depth (float bits). Record of several copies: the corner, the first word of the
+// tile's list, the number of copies, the nearest depth (float bits). A list is sorted by depth and has two words per
+// copy: the instance's index, the copy's nearest depth (float bits). If the number of copies is TILE_SPLIT, the record
+// is GROUP_PIXELS^2 pixels from anywhere, so that no invocation is spent on empty pixels. Each of these has three
+// words: its position (x | y << 16), the start of its list relative to the record's first such word, and its number of
+// copies. Unused positions at the end are 0xffffffff, outside of any picture.
 #ifndef TILE_WORDS_GLSL
 #define TILE_WORDS_GLSL
 #include "core/variant.glsl"

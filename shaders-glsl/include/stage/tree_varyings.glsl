@@ -1,10 +1,10 @@
-// Flat varyings of proxies without patches, besides those of varyings.glsl: what clipping and searching read.
+// Additional flat varyings of proxies without patches: the inputs of clipping and searching.
 #ifndef TREE_VARYINGS_GLSL
 #define TREE_VARYINGS_GLSL
 #include "stage/varyings.glsl"
 
 layout(location = 11) flat VARYING vec4 tree_bounds;
-layout(location = 12) flat VARYING vec4 tree_axis; // of depth alone z is the instance's number
+layout(location = 12) flat VARYING vec4 tree_axis; // OUTPUT_DEPTH: z is the instance's index
 #if READS_MAP
 layout(location = 13) flat VARYING vec4 tree_map;
 #endif
@@ -15,7 +15,7 @@ layout(location = 14) flat VARYING vec4 tree_offset;
 layout(location = 15) flat VARYING uvec4 tree_patches;
 #endif
 #if READS_TABLES && !TAKES_STEPS
-layout(location = 13) flat VARYING vec2 tree_span; // no ray meets anything before and behind these t
+layout(location = 13) flat VARYING vec2 tree_span; // range of t outside which no ray has a hit
 #endif
 
 #ifdef VERTEX_GLSL

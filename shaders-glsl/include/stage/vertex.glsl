@@ -1,13 +1,13 @@
-// The vertices' half of varyings.glsl.
+// Vertex side of varyings.glsl.
 #ifndef VERTEX_GLSL
 #define VERTEX_GLSL
 #define VARYING out
 #include "stage/varyings.glsl"
 
-// The instance of this vertex, by its number among all.
+// Index of this vertex's instance among all.
 uint instance_number;
 
-// To be called first; the instance of this number.
+// Loads frame, lights and solid and returns instance `number`. Vertex shaders call this first.
 Instance begin(uint number)
 {
     take_frame();
@@ -18,7 +18,7 @@ Instance begin(uint number)
     return i;
 }
 
-// A twentieth of a pixel, no matter where in the box, along the axes of object space.
+// Returns at least a twentieth of a pixel anywhere in the box, along the axes of object space.
 vec3 fraction_of_pixel(Instance i)
 {
     vec3 scale = scale_of(i);
@@ -27,7 +27,7 @@ vec3 fraction_of_pixel(Instance i)
     return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
 }
 
-// `scale`: the fourth component of the first direction.
+// Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w.
 void hand_over(Instance i, float scale)
 {
     PixelRays rays = pixel_rays(i);

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::profile::{Outline, Profile, ProfileAxis, ProfileOptions};
+#[cfg(feature = "jpeg")]
 use image::codecs::jpeg::JpegEncoder;
 use image::{GrayImage, ImageFormat, Luma};
 use proptest::prelude::*;
@@ -44,6 +45,7 @@ fn png(picture: &GrayImage) -> Vec<u8> {
     out.into_inner()
 }
 
+#[cfg(feature = "jpeg")]
 fn jpeg(picture: &GrayImage, quality: u8) -> Vec<u8> {
     let mut out = Vec::new();
     JpegEncoder::new_with_quality(&mut out, quality)
@@ -112,6 +114,7 @@ fn gaussian_noise_is_named_and_smoothed() {
 }
 
 #[test]
+#[cfg(feature = "jpeg")]
 fn jpeg_noise_is_named_and_smoothed() {
     let clean = vase([0.1, 0.03], 0.0);
     assert_mended(&jpeg(&picture(&clean, |g| g), 70), 1.8);
