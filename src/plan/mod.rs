@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
-use tiles::{Batch, Drawer, LayerTiles, Projector, TileWords, Visible};
+use tiles::{Batch, Drawer, LayerTiles, Projector, Visible};
 
 /// Number of objects from which paths are chosen on all cores. Waking the cores takes as long as
 /// choosing a thousand paths.
@@ -307,23 +307,19 @@ impl FramePlan {
             let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
             layer_of.push(layer as u32);
         }
-        let mut dealt = TileWords::default();
-        let mut listed = false;
-        for lists in [true, false] {
-            let drawer = if with.compute {
-                Drawer::Groups { lists }
-            } else {
-                Drawer::Fragments
-            };
-            listed = lists;
-            dealt = visible.deal(drawer, &layer_of, layers.len());
-            let count = |of: fn(u32) -> u32| -> u64 {
-                let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
-                dealt.layers.iter().map(counted).sum()
-            };
-            if count(list_words) <= with.room() && with.pays_to_list(count(|tiles| tiles)) {
-                break;
-            }
+        let drawer = if with.compute {
+            Drawer::Groups
+        } else {
+            Drawer::Fragments
+        };
+        let mut dealt = visible.deal(drawer, &layer_of, layers.len());
+        let sum = |of: fn(u32) -> u32| -> u64 {
+            let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
+            dealt.layers.iter().map(counted).sum()
+        };
+        let lists = sum(list_words) <= with.room() && with.pays_to_list(sum(|tiles| tiles));
+        if !lists {
+            dealt.layers.iter_mut().for_each(LayerTiles::unlist);
         }
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {
@@ -331,7 +327,7 @@ impl FramePlan {
             }
             let shows = !copies.is_empty();
             self.parts[n].tables = shows;
-            self.parts[n].patches = shows && listed && visible.takes_lists(batch);
+            self.parts[n].patches = shows && lists && visible.takes_lists(batch);
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {

@@ -286,11 +286,11 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn dealt(copies: &[Listed], tiles: u32, drawer: Drawer) -> BandLists {
+    fn dealt(copies: &[Listed], tiles: u32, lists: bool) -> BandLists {
         let dealer = Dealer {
-            drawer,
+            drawer: Drawer::Groups,
             layer_of: &[0],
-            lists: &[drawer == Drawer::Groups { lists: true }],
+            lists: &[lists],
             single: &[false],
             picture: [0, 0, 8 * ACROSS - 1, 23],
         };
@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn gathered_pixels_list_what_they_show_and_none_is_idle() {
-        let lists = dealt(&copies(), TILES, Drawer::Groups { lists: false });
+        let lists = dealt(&copies(), TILES, false);
         let (found, idle) = visited(&lists);
         check(&found);
         // Only the last record has idle invocations.
@@ -348,7 +348,7 @@ mod tests {
 
     #[test]
     fn a_large_copy_of_each_tile_has_a_record_of_its_own() {
-        let lists = dealt(&copies(), TILES, Drawer::Groups { lists: true });
+        let lists = dealt(&copies(), TILES, true);
         let (mut found, _) = visited(&lists);
         let mut tiles = BTreeMap::new();
         for &[corner, copy, none, near] in &lists.listed {
@@ -386,7 +386,7 @@ mod tests {
                 pixels: 0xff << (copy % 7),
             })
             .collect();
-        let of = |copies: &[Listed]| dealt(copies, 1, Drawer::Groups { lists: false });
+        let of = |copies: &[Listed]| dealt(copies, 1, false);
         let lists = of(&deep);
         assert_eq!(lists.words.len(), 2 * deep.len());
         assert_eq!(lists.several, [[0, 0, 100, 100]]);
@@ -402,7 +402,7 @@ mod tests {
             one.batch = one.copy % 2;
         }
         let dealer = Dealer {
-            drawer: Drawer::Groups { lists: true },
+            drawer: Drawer::Groups,
             layer_of: &[1, 0],
             lists: &[true, false],
             single: &[false, false],

@@ -97,8 +97,8 @@ pub(crate) struct Visible<'a> {
 pub(crate) enum Drawer {
     /// Fragments, drawn for quads of a few pixels.
     Fragments,
-    /// Work groups. `lists`: patches may be listed for tiles of one copy.
-    Groups { lists: bool },
+    /// Work groups.
+    Groups,
 }
 
 /// Records of all tiles and their lists, in the layout of the shaders' single buffer of words
@@ -122,6 +122,14 @@ pub(crate) struct LayerTiles {
     pub single: Range<u32>,
     /// Compute: tiles of several copies.
     pub several: Range<u32>,
+}
+
+impl LayerTiles {
+    /// Turns tiles with lists of patches into tiles without. The two ranges are neighbours.
+    pub fn unlist(&mut self) {
+        self.single.start = self.listed.start;
+        self.listed.end = self.listed.start;
+    }
 }
 
 impl<'a> Visible<'a> {
@@ -189,7 +197,7 @@ impl<'a> Visible<'a> {
     pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
         let [across, down] = self.size;
         let lists: Vec<bool> = (0..self.batches.len())
-            .map(|b| drawer == Drawer::Groups { lists: true } && self.takes_lists(b))
+            .map(|b| drawer == Drawer::Groups && self.takes_lists(b))
             .collect();
         let single: Vec<bool> = self
             .batches
