@@ -109,8 +109,9 @@ const LEAST_SUBGROUP: u32 = 8;
 /// at 340, extrapolated from solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
 
-/// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists take
-/// 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer, 0.73 to 0.99 for 45,000 and more.
+/// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists
+/// take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer, 0.73 to 0.99 for 45,000 and
+/// more.
 const LISTED_PIXELS: u64 = 300;
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.

@@ -61,6 +61,11 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
         width: 233,
         height: 131,
         stage,
+        // Compute lists patches in pictures as small as these, too.
+        proxy_min_pixels: match stage {
+            DrawStage::Fragment => Settings::exact().proxy_min_pixels,
+            DrawStage::Compute => 0,
+        },
         planes: Planes::All,
         occlusion_culling,
         ..Settings::exact()

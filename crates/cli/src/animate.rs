@@ -24,8 +24,8 @@ use std::time::Instant;
     revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, read with profile_smooth =
-    /// "auto"
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
+    /// profile_smooth = "auto"
     scene: PathBuf,
     /// Number of frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]

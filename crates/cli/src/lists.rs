@@ -74,7 +74,7 @@ pub struct Lists {
     /// Frames of each row in a pass [default: as time allows, at least 2]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub rounds: Option<u16>,
-    /// Seconds after which no further pass begins [default: the plan's limit, else twice the time
+    /// No pass begins that would end after so many seconds [default: the plan's limit, else twice the time
     /// that it means to take]
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_seconds: Option<u32>,

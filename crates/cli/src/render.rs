@@ -26,8 +26,8 @@ use std::time::Instant;
     revmap render assets/profiles/pawn.svg -o pawn.png --samples 16 --set object.0.extend=0.02\n  \
     revmap render assets/scenes/pawn.toml -o truth.exr --stage reference --size 400x300")]
 pub struct Render {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, read with profile_smooth =
-    /// "auto"
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
+    /// profile_smooth = "auto"
     scene: PathBuf,
     /// Picture file: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]

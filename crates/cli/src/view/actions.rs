@@ -35,34 +35,31 @@ impl App {
             Action::Stage(stage) => self.shown.stage = stage,
             Action::ResetCamera => self.shown.scene.camera = self.first.scene.camera,
             Action::Screenshot => self.keep = true,
-            Action::Undo => {
-                let undo = Asked {
-                    undo: true,
-                    ..Asked::default()
-                };
-                return self.take(undo, before);
-            }
+            Action::Undo => {}
             Action::Close if self.help => self.help = false,
             Action::Close => self.quit = true,
         }
-        let changes = matches!(
+        let changed = matches!(
             action,
             Action::Show(_) | Action::Stage(_) | Action::ResetCamera
         );
-        if changes {
+        if changed {
             self.changing = None;
-            let changed = Asked {
-                changed: true,
-                ..Asked::default()
-            };
-            self.take(changed, before);
         }
+        let asked = Asked {
+            changed,
+            undo: action == Action::Undo,
+            ..Asked::default()
+        };
+        self.take(asked, before);
     }
 
     /// Executes the requests of the controls.
     pub fn take(&mut self, asked: Asked, before: Shown) {
         if asked != Asked::default() {
             self.problem = None;
+        }
+        if asked.changed || asked.undo || asked.reset {
             self.change();
         }
         if asked.undo {

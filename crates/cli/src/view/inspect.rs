@@ -264,7 +264,7 @@ mod tests {
             let bar = legend.bar.unwrap();
             assert_eq!(bar.ticks.len(), 5);
             for ((place, value), pixel) in bar.ticks.iter().zip(picture.rgba) {
-                let color = bar.color(*place);
+                let color = (bar.color)(*place);
                 // Distances are rounded to floats.
                 let near = color.iter().zip(pixel).all(|(a, b)| a.abs_diff(b) <= 1);
                 assert!(near, "{} {value}: {color:?}, {pixel:?}", legend.title);

@@ -21,21 +21,13 @@ pub enum Action {
 /// Keys with one effect.
 pub struct Binding {
     keys: &'static [Key],
-    /// True if Ctrl (or Cmd) is held with the key.
-    command: bool,
     action: Action,
     /// Names of the keys, and their effect, in the help.
     pub help: [&'static str; 2],
 }
 
 const fn key(keys: &'static [Key], action: Action, help: [&'static str; 2]) -> Binding {
-    let command = matches!(action, Action::Undo);
-    Binding {
-        keys,
-        command,
-        action,
-        help,
-    }
+    Binding { keys, action, help }
 }
 
 /// All keys, in the order of the help.
@@ -109,10 +101,10 @@ pub fn take(events: &mut Vec<Event>) -> Vec<Action> {
         else {
             return true;
         };
+        // Undo alone is held with Ctrl (or Cmd).
         let held = modifiers.command || modifiers.ctrl;
-        let bound = KEYS
-            .iter()
-            .find(|one| one.keys.contains(key) && one.command == held && !modifiers.alt);
+        let fits = |one: &&Binding| one.keys.contains(key) && (one.action == Action::Undo) == held;
+        let bound = KEYS.iter().find(fits).filter(|_| !modifiers.alt);
         if let Some(bound) = bound.filter(|_| *pressed && !repeat) {
             actions.push(bound.action);
         }

@@ -1,6 +1,6 @@
 //! The scale beside a picture in false colours: the colours that the picture has, with numbers.
 
-use revmap_lab::compare::{GHOST, MISSED, Scale};
+use revmap_lab::compare::{EMPTY, GHOST, MISSED, Scale, ramp};
 use revmap_lab::report::pictures::STEPS;
 
 /// Colours with their values.
@@ -15,17 +15,13 @@ pub struct Legend {
 
 /// A bar of colours with ticks.
 pub struct Bar {
-    color: Box<dyn Fn(f64) -> [u8; 3]>,
+    /// The colour at a place from 0 to 1.
+    pub color: fn(f64) -> [u8; 3],
     /// Places from 0 to 1, each with its value.
     pub ticks: Vec<(f64, String)>,
 }
 
 impl Bar {
-    /// The colour at a place from 0 to 1.
-    pub fn color(&self, place: f64) -> [u8; 3] {
-        (self.color)(place)
-    }
-
     fn logarithmic(scale: Scale, values: &[f64]) -> Self {
         let last = values.len().saturating_sub(1);
         let tick = |(n, value): (usize, &f64)| {
@@ -39,7 +35,7 @@ impl Bar {
         };
         Self {
             ticks: values.iter().enumerate().map(tick).collect(),
-            color: Box::new(move |place| scale.color(scale.value(place))),
+            color: ramp,
         }
     }
 }
@@ -54,7 +50,7 @@ impl Legend {
         Self {
             title: "look-ups or patches\nper pixel",
             bar: Some(Bar::logarithmic(STEPS, &[1.0, 4.0, 16.0, 64.0, 128.0])),
-            keys: vec![([40; 3], "none")],
+            keys: vec![(EMPTY, "none")],
         }
     }
 
@@ -77,7 +73,7 @@ impl Legend {
         Self {
             title: "distance from the eye,\nworld units",
             bar: hits.then(|| Bar {
-                color: Box::new(|place| grey(place as f32)),
+                color: |place| grey(place as f32),
                 ticks: [0.0, 0.25, 0.5, 0.75, 1.0].map(value).into(),
             }),
             keys: Vec::new(),

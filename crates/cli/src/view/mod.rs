@@ -41,8 +41,8 @@ use winit::event_loop::EventLoop;
     revmap view assets/profiles/rook.svg\n  \
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, read with profile_smooth =
-    /// "auto"
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
+    /// profile_smooth = "auto"
     scene: PathBuf,
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]

@@ -95,7 +95,7 @@ fn bar(ui: &mut Ui, bar: &Bar) {
     let painter = ui.painter();
     let rows = BAR.y as u32;
     for row in 0..rows {
-        let [r, g, b] = bar.color(1.0 - (f64::from(row) + 0.5) / f64::from(rows));
+        let [r, g, b] = (bar.color)(1.0 - (f64::from(row) + 0.5) / f64::from(rows));
         let top = pos2(corner.x, corner.y + row as f32);
         let strip = Rect::from_min_size(top, vec2(BAR.x, 1.0));
         painter.rect_filled(strip, 0.0, Color32::from_rgb(r, g, b));

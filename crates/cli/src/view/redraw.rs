@@ -159,6 +159,8 @@ impl App {
         context: &Context,
         (size, keep): ((u32, u32), bool),
     ) -> Result<Option<Duration>> {
+        let last = self.is_last() && self.options.screenshot.is_some();
+        let inspects = Inspector::is_wanted(&self.shown);
         let Some(open) = &mut self.open else {
             return Ok(None);
         };
@@ -169,12 +171,6 @@ impl App {
         open.gui.handle_platform_output(&open.window, platform);
         let root = output.viewport_output.get(&egui::ViewportId::ROOT);
         let pause = root.map_or(Duration::MAX, |v| v.repaint_delay);
-        let last = self.is_last() && self.options.screenshot.is_some();
-        let inspects = Inspector::is_wanted(&self.shown);
-        let open = match &mut self.open {
-            Some(open) => open,
-            None => return Ok(None),
-        };
         let scene = &self.shown.scene;
         let camera = self.framing.camera(&scene.camera, 1);
         let scene = (!inspects).then_some((&camera, scene.background));

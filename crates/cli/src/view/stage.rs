@@ -146,9 +146,9 @@ impl Stage {
         self.drawn.renderer.draw_paths()
     }
 
-    /// Draws a frame: the scene with this camera and background, unless the controls bring a picture
-    /// of their own, then the controls. Returns `None` if the window has another size. A scene that cannot be drawn is
-    /// left out, and `problem` gets the reason.
+    /// Draws a frame: the scene with this camera and background, then the controls. The controls
+    /// may bring a picture in place of the scene. Returns `None` if the window has another size. A
+    /// scene that cannot be drawn is left out, and `problem` gets the reason.
     pub fn draw(
         &mut self,
         scene: Option<(&Camera, [f32; 4])>,

@@ -75,12 +75,6 @@ impl Scale {
         (value.max(self.low) / self.low).log2() / (self.high / self.low).log2()
     }
 
-    /// The value at a place.
-    #[must_use]
-    pub fn value(self, place: f64) -> f64 {
-        self.low * (self.high / self.low).powf(place)
-    }
-
     /// The colour of a value.
     #[must_use]
     pub fn color(self, value: f64) -> [u8; 3] {
@@ -88,7 +82,8 @@ impl Scale {
     }
 }
 
-const EMPTY: [u8; 3] = [40; 3];
+/// The colour of a pixel without a value.
+pub const EMPTY: [u8; 3] = [40; 3];
 const BOTH: [u8; 3] = [110; 3];
 /// The colour of a missed pixel.
 pub const MISSED: [u8; 3] = [0, 255, 255];
@@ -194,7 +189,8 @@ fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
 
 /// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
 /// too.
-fn ramp(place: f64) -> [u8; 3] {
+#[must_use]
+pub fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],
         [96.0, 20.0, 140.0],

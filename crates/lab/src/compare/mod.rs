@@ -6,7 +6,7 @@ mod pixels;
 mod silhouette;
 
 pub use flip::flip_map;
-pub use heat::{GHOST, Heat, MISSED, Scale, heat_map, heat_sheet};
+pub use heat::{EMPTY, GHOST, Heat, MISSED, Scale, heat_map, heat_sheet, ramp};
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 

@@ -7,8 +7,7 @@ use super::ratios::{Over, Ratio, over};
 use super::row::Row;
 use crate::method::Method;
 
-/// Fragment or compute, then the default's times over those of the RBM baseline and of the coarsest mesh as accurate: what a
-/// reader wants first.
+/// Adds the answers that a reader wants first.
 pub(super) fn findings(page: &mut Page, context: &Context) {
     let rows = context.rows;
     let all: Vec<&Row> = rows.iter().collect();

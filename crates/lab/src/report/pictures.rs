@@ -4,7 +4,7 @@ use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
 use super::plan::{Labels, is_rbm_baseline};
-use crate::compare::{Heat, Scale, heat_map};
+use crate::compare::{EMPTY, Heat, Scale, heat_map};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::{Frame, Picture};
@@ -175,7 +175,7 @@ pub fn heat_key() -> String {
 pub fn steps(frame: &Frame) -> Picture {
     let color = |&steps: &f32| {
         let [r, g, b] = if steps < 1.0 {
-            [40; 3]
+            EMPTY
         } else {
             STEPS.color(f64::from(steps))
         };

@@ -69,7 +69,7 @@ impl Over {
             }
             Self::Rival => {
                 let search = |m: Method| m != Method::DEFAULT && m != Method::Floor && !m.is_mesh();
-                let near = |r: &Row| r.errors.depth.is_none_or(|d| d.p99 <= 1.0);
+                let near = |r: &Row| r.errors.depth.is_some_and(|d| d.p99 <= 1.0);
                 let own = |r: &&Row| search(r.settings.method) && stage(r) && near(r);
                 let timed = rows.iter().filter(own);
                 let timed = timed.filter_map(|r| Some((r, r.time()?.value)));
@@ -84,12 +84,13 @@ impl Over {
 /// a run that drew no baseline in the fragment stage.
 #[must_use]
 pub fn baseline_stage(rows: &[Row]) -> DrawStage {
-    let baselines = rows.iter().map(|r| &r.settings);
-    let mut baselines = baselines.filter(|s| is_rbm_baseline(s)).peekable();
-    let none = baselines.peek().is_none();
-    match none || baselines.any(|s| s.stage == DrawStage::Fragment) {
-        true => DrawStage::Fragment,
-        false => DrawStage::Compute,
+    let drawn = |stage| {
+        let of = |r: &Row| is_rbm_baseline(&r.settings) && r.settings.stage == stage;
+        rows.iter().any(of)
+    };
+    match drawn(DrawStage::Compute) && !drawn(DrawStage::Fragment) {
+        true => DrawStage::Compute,
+        false => DrawStage::Fragment,
     }
 }
 

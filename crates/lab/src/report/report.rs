@@ -164,7 +164,10 @@ impl Run<'_> {
             }
             keep_figure(folder, &name, figure)?;
             head(page);
-            let caption = place.fill(&chart.caption) + &place.untimed();
+            let mut caption = place.fill(&chart.caption);
+            if chart.is_timed() {
+                caption += &place.untimed();
+            }
             page.figure(figure, &caption);
         }
         Ok(())

@@ -40,10 +40,8 @@ fn passes_are_added_until_times_are_resolved() {
     let mut bench = StandIn::new(Fault::Bout);
     let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
     let passes: Vec<usize> = outcome.rows.iter().map(|r| r.passes.len()).collect();
-    assert!(
-        (5..12).contains(&passes[0]) && passes[1..3] == [passes[0]; 2] && passes[3..] == [3; 3],
-        "{passes:?}"
-    );
+    // One slow pass of seven leaves an interval of 0.245 to either side, of six 0.301.
+    assert_eq!(passes, [7, 7, 7, 3, 3, 3]);
     assert!(outcome.rows.iter().all(|r| r.resolved(limits.resolved)));
     let frames = bench.frames.borrow();
     // Steady times are known after five rounds.
@@ -66,7 +64,6 @@ fn a_time_that_is_never_resolved_ends_at_the_limit() {
     };
     let mut bench = StandIn::new(Fault::Grows);
     let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
-    assert!(outcome.took.as_secs_f64() < 5.0, "{:?}", outcome.took);
     let live = &outcome.rows[0];
     assert!(live.passes.len() > 3 && !live.resolved(limits.resolved));
 }

@@ -236,6 +236,7 @@ pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::compare::Spread;
     use crate::report::columns::tests::with_context;
     use crate::report::row::tests::row;
     use revmap::settings::Solver;
@@ -251,6 +252,12 @@ mod tests {
         };
         row.view = view;
         row.scene = format!("scene{view}");
+        let exact = 0.01;
+        row.errors.depth = Some(Spread {
+            rms: exact,
+            p99: exact,
+            max: exact,
+        });
         row
     }
 

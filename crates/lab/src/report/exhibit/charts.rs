@@ -174,6 +174,19 @@ impl Chart {
         Ok(Some(chart.figure()))
     }
 
+    /// True if rows without a time have no place in the chart.
+    pub fn is_timed(&self) -> bool {
+        match self.kind {
+            Kind::MapRows => false,
+            _ => {
+                self.kind == Kind::Dots
+                    || self.over.is_some()
+                    || is_timed(&self.x)
+                    || is_timed(&self.y)
+            }
+        }
+    }
+
     /// Points that are rows, and the lines of floors.
     fn of_rows(&self, context: &Context, rows: &[&Row]) -> Result<(Vec<Item>, Vec<Guide>)> {
         let (x, y) = (columns::named(&self.x)?, columns::named(&self.y)?);
@@ -318,8 +331,8 @@ impl Chart {
     }
 }
 
-/// The points that no other of their stage beats, among those that are resolved; a stage without one
-/// has no front.
+/// The resolved points that no other of their stage beats. A stage without such points has no
+/// front.
 fn fronts(items: &[Item]) -> Vec<(DrawStage, Vec<(f64, f64)>)> {
     let of = |stage: DrawStage| {
         let own = items.iter().filter(|i| i.stage == stage);

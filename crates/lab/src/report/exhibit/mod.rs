@@ -1,5 +1,5 @@
-//! Tables and charts of a report, as TOML describes them: the folder `own` holds the program's, and a
-//! plan may add some. Each names columns; see [`columns`].
+//! Tables and charts of a report, described in TOML. The folder `own` holds the program's. A plan
+//! may add some. Each names columns; see [`columns`].
 
 mod answers;
 mod charts;

@@ -25,8 +25,8 @@ pub struct Table {
     /// The heading above it.
     pub heading: String,
     /// Columns, by their names. In tables of ways also `ratio R`, `interval R`, `range R` of the
-    /// time over `R`, `known ms` for the mean time, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
-    /// `pictures`, `total wrong`, `no worse`.
+    /// time over `R`, `known ms` for the mean time, `mean C`, `worst C`, `average C` of a column,
+    /// `other C` of the mesh's, `pictures`, `total wrong`, `no worse`.
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
     pub over: Option<Over>,

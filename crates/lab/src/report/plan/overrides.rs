@@ -28,7 +28,7 @@ pub struct Overrides {
     pub passes: Option<usize>,
     /// How many rounds.
     pub rounds: Option<usize>,
-    /// Seconds after which no further pass begins.
+    /// No pass begins that would end after so many seconds.
     pub max_seconds: Option<f64>,
 }
 

@@ -10,8 +10,8 @@ pub struct TimeBudget {
     /// longer, and of passes unless that takes longer than the limit: drivers that compile slowly
     /// get two.
     pub seconds: f64,
-    /// Seconds after which no further pass begins; until then passes are added to pictures with a
-    /// time that is not resolved. Not given: twice `seconds`.
+    /// No pass begins that would end after so many seconds. Until then passes are added to
+    /// pictures with a time that is not resolved. Not given: twice `seconds`.
     pub limit: Option<f64>,
     /// Least and most passes.
     pub passes: (usize, usize),
@@ -50,7 +50,7 @@ impl TimeBudget {
         Duration::try_from_secs_f64(self.seconds).unwrap_or(Duration::MAX)
     }
 
-    /// The time after which no further pass begins.
+    /// The time beyond which no pass may end.
     #[must_use]
     pub fn limit(&self) -> Duration {
         let seconds = self.limit.unwrap_or(2.0 * self.seconds);

@@ -299,8 +299,8 @@ fn a_sweep_moves_one_axis_at_a_time() {
     );
 }
 
-/// Every picture of the plan `sizes` has the default and its two rivals in both stages, at five sizes
-/// with each kind of shadows.
+/// Every picture of the plan `sizes` has the default and its two rivals in both stages, at five
+/// sizes with each kind of shadows.
 #[test]
 fn the_default_has_its_rivals_in_every_picture() {
     let file = embedded::plan("sizes").unwrap();
