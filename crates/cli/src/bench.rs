@@ -74,7 +74,7 @@ struct What {
     /// The cost of a tolerance: errors and times of ten scenes at five tolerances
     #[arg(long)]
     budget: bool,
-    /// The default search against the other exact ones from 64x48 to 800x600, with and without
+    /// The default search against quadric and live from 64x48 to 800x600, with and without
     /// shadows: where it is the wrong choice
     #[arg(long)]
     sizes: bool,
