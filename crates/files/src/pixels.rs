@@ -1,0 +1,241 @@
+//! Pictures from files: PNG and JPEG.
+
+use crate::file_fault;
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::maps::MAX_SIDE;
+use std::io::Cursor;
+use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
+use zune_jpeg::JpegDecoder;
+
+/// Samples of 8 or of 16 bits.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Samples {
+    Byte(Vec<u8>),
+    Word(Vec<u16>),
+}
+
+/// A decoded picture, row 0 on top. Palettes and grey of less than 8 bits are expanded.
+#[derive(Debug)]
+pub(crate) struct Pixels {
+    pub width: u32,
+    pub height: u32,
+    /// Samples of a pixel: 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
+    pub channels: usize,
+    /// `width * height * channels` values.
+    pub samples: Samples,
+}
+
+impl Pixels {
+    /// Every pixel, turned by `to` from RGBA in `[0, 1]`, as stored; opaque where the file has no
+    /// alpha.
+    pub fn map<T: Send>(&self, to: impl Fn([f32; 4]) -> T + Sync) -> Vec<T> {
+        match &self.samples {
+            Samples::Byte(v) => mapped(v, self.channels, 255.0, to),
+            Samples::Word(v) => mapped(v, self.channels, 65_535.0, to),
+        }
+    }
+
+    /// Every pixel as RGBA of 8 bits.
+    pub fn rgba8(&self) -> Vec<[u8; 4]> {
+        self.map(|p| p.map(|v| (v * 255.0).round() as u8))
+    }
+
+    /// Every pixel as RGB of 16 bits.
+    pub fn rgb16(&self) -> Vec<[u16; 3]> {
+        self.map(|[r, g, b, _]| [r, g, b].map(|v| (v * 65_535.0).round() as u16))
+    }
+
+    /// Luminance of every pixel in `[0, 1]`, as stored; alpha counts for nothing.
+    pub fn luminance(&self) -> Vec<f32> {
+        self.map(|[r, g, b, _]| luminance([r, g, b]))
+    }
+}
+
+fn mapped<S: Copy + Into<f32> + Sync, T: Send>(
+    samples: &[S],
+    channels: usize,
+    full: f32,
+    to: impl Fn([f32; 4]) -> T + Sync,
+) -> Vec<T> {
+    let value = |s: S| s.into() / full;
+    let pixels = samples.par_chunks_exact(channels);
+    let rgba = |p: &[S]| match *p {
+        [v] => [value(v), value(v), value(v), 1.0],
+        [v, a] => [value(v), value(v), value(v), value(a)],
+        [r, g, b] => [value(r), value(g), value(b), 1.0],
+        [r, g, b, a, ..] => [r, g, b, a].map(value),
+        [] => [1.0; 4], // no picture has pixels without a sample
+    };
+    pixels.map(|p| to(rgba(p))).collect()
+}
+
+/// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
+pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    // Grey comes out exactly as it went in.
+    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+}
+
+/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; the remedy names `kinds` of
+/// files.
+///
+/// The size is read and checked before anything is decoded.
+pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
+    let broken =
+        |e: String| file_fault(format!("the image is damaged ({e}); save or copy it again"));
+    let checked = |(width, height): (u32, u32)| {
+        if width > MAX_SIDE || height > MAX_SIDE {
+            return Err(file_fault(format!(
+                "the image has {width} x {height} pixels; {MAX_SIDE} x {MAX_SIDE} is the most, scale it down"
+            )));
+        }
+        Ok(())
+    };
+    if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+        let reader = Png::open(bytes).map_err(|e| broken(e.to_string()))?;
+        checked(reader.size())?;
+        return reader.pixels().map_err(|e| broken(e.to_string()));
+    }
+    if bytes.starts_with(b"\xff\xd8\xff") {
+        let mut reader = Jpeg::open(bytes).map_err(broken)?;
+        checked(reader.size())?;
+        return reader.pixels().map_err(broken);
+    }
+    Err(file_fault(format!(
+        "is no picture that can be read; give a {kinds} file"
+    )))
+}
+
+/// A PNG whose header was read.
+pub(crate) struct Png<'a>(png::Reader<Cursor<&'a [u8]>>);
+
+impl<'a> Png<'a> {
+    pub fn open(bytes: &'a [u8]) -> std::result::Result<Self, png::DecodingError> {
+        // Callers check the size; the decoder's own guess at a limit would refuse large pictures of
+        // 16 bits.
+        let limits = png::Limits { bytes: usize::MAX };
+        let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+        decoder.set_transformations(png::Transformations::EXPAND);
+        decoder.read_info().map(Self)
+    }
+
+    pub fn size(&self) -> (u32, u32) {
+        self.0.info().size()
+    }
+
+    pub fn pixels(mut self) -> std::result::Result<Pixels, png::DecodingError> {
+        let too_large = || {
+            png::DecodingError::LimitsExceeded // what does not fit into memory
+        };
+        let mut bytes = vec![0; self.0.output_buffer_size().ok_or_else(too_large)?];
+        let frame = self.0.next_frame(&mut bytes)?;
+        bytes.truncate(frame.buffer_size());
+        let samples = if frame.bit_depth == png::BitDepth::Sixteen {
+            let word = |b: &[u8]| u16::from_be_bytes([b[0], b[1]]);
+            Samples::Word(bytes.chunks_exact(2).map(word).collect())
+        } else {
+            Samples::Byte(bytes)
+        };
+        Ok(Pixels {
+            width: frame.width,
+            height: frame.height,
+            channels: frame.color_type.samples(),
+            samples,
+        })
+    }
+}
+
+/// A JPEG whose headers were read.
+struct Jpeg<'a>(JpegDecoder<ZCursor<&'a [u8]>>);
+
+impl<'a> Jpeg<'a> {
+    fn open(bytes: &'a [u8]) -> std::result::Result<Self, String> {
+        let options = DecoderOptions::default()
+            .set_strict_mode(false)
+            .set_max_width(usize::MAX)
+            .set_max_height(usize::MAX);
+        let bytes = ZCursor::new(bytes);
+        let mut decoder = JpegDecoder::new_with_options(bytes, options);
+        decoder.decode_headers().map_err(|e| e.to_string())?;
+        Ok(Self(decoder))
+    }
+
+    fn size(&self) -> (u32, u32) {
+        let (width, height) = self.0.dimensions().unwrap_or_default();
+        (width as u32, height as u32) // at most 65535
+    }
+
+    fn pixels(&mut self) -> std::result::Result<Pixels, String> {
+        let (color, channels) = match self.0.input_colorspace() {
+            Some(ColorSpace::Luma) => (ColorSpace::Luma, 1),
+            _ => (ColorSpace::RGB, 3),
+        };
+        let options = self.0.options().jpeg_set_out_colorspace(color);
+        self.0.set_options(options);
+        let samples = self.0.decode().map_err(|e| e.to_string())?;
+        let (width, height) = self.size();
+        Ok(Pixels {
+            width,
+            height,
+            channels,
+            samples: Samples::Byte(samples),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use image::{DynamicImage, ImageFormat, RgbaImage};
+
+    /// What the image crate makes of every kind of pixels, ours makes of its file.
+    #[test]
+    fn pixels_are_those_of_another_decoder() {
+        let picture = DynamicImage::from(RgbaImage::from_fn(7, 5, |x, y| {
+            image::Rgba([
+                (x * 40) as u8,
+                (y * 60) as u8,
+                (x * y) as u8,
+                (x * 30 + 7) as u8,
+            ])
+        }));
+        let kinds = [
+            picture.to_luma8().into(),
+            picture.to_luma_alpha8().into(),
+            picture.to_rgb8().into(),
+            picture.clone(),
+            picture.to_luma16().into(),
+            DynamicImage::from(picture.to_luma_alpha16()),
+            picture.to_rgb16().into(),
+            picture.to_rgba16().into(),
+        ];
+        for (number, kind) in kinds.into_iter().enumerate() {
+            let mut file = Cursor::new(Vec::new());
+            kind.write_to(&mut file, ImageFormat::Png).unwrap();
+            let ours = decode(file.get_ref(), "PNG").unwrap();
+            assert_eq!(
+                (ours.width, ours.height, ours.channels),
+                (7, 5, number % 4 + 1)
+            );
+            assert_eq!(ours.rgba8().as_flattened(), kind.to_rgba8().as_raw());
+            assert_eq!(ours.rgb16().as_flattened(), kind.to_rgb16().as_raw());
+        }
+    }
+
+    #[test]
+    fn jpegs_are_those_of_another_decoder() {
+        let picture = DynamicImage::from(image::RgbImage::from_fn(33, 21, |x, y| {
+            image::Rgb([(x * 7) as u8, (y * 12) as u8, 90])
+        }));
+        for kind in [picture.clone(), picture.to_luma8().into()] {
+            let mut file = Cursor::new(Vec::new());
+            kind.write_to(&mut file, ImageFormat::Jpeg).unwrap();
+            let theirs = image::load_from_memory(file.get_ref()).unwrap();
+            let ours = decode(file.get_ref(), "JPEG").unwrap();
+            assert_eq!(ours.rgba8().as_flattened(), theirs.to_rgba8().as_raw());
+            let half = &file.get_ref()[..file.get_ref().len() / 4];
+            assert!(decode(half, "JPEG").is_err());
+        }
+    }
+}
