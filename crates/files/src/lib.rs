@@ -58,6 +58,16 @@ pub use trace::trace;
 
 use revmap::error::{Error, ErrorKind};
 
+/// A picture as the bytes of a PNG.
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+fn png_bytes(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let picture = picture.into();
+    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
+}
+
 /// A failure of a file.
 fn file_fault(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::File, message)

@@ -153,6 +153,7 @@ fn one_line(error: &exr::error::Error) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use std::path::PathBuf;
 
     fn sample() -> Frame {
         let mut frame = Frame::new(37, 21, [0.1, 0.2, 0.3, 0.0]).unwrap();
@@ -165,27 +166,26 @@ mod tests {
         frame
     }
 
-    #[test]
-    fn every_bit_comes_back() {
+    fn saved() -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         write_exr(&sample(), &path).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn every_bit_comes_back() {
+        let (folder, path) = saved();
         assert_eq!(read_exr(&path).unwrap().first_difference(&sample()), None);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]
     fn the_channels_have_the_promised_names() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.exr");
-        write_exr(&sample(), &path).unwrap();
+        let (_folder, path) = saved();
         let meta = MetaData::read_from_file(&path, true).unwrap();
-        let names: Vec<String> = meta.headers[0]
-            .channels
-            .list
-            .iter()
-            .map(|c| c.name.to_string())
-            .collect();
+        let channels = meta.headers[0].channels.list.iter();
+        let names: Vec<String> = channels.map(|c| c.name.to_string()).collect();
         let mut expected = CHANNELS.map(String::from).to_vec();
         expected.sort();
         assert_eq!(names, expected);
@@ -193,22 +193,16 @@ mod tests {
 
     #[test]
     fn damaged_and_foreign_files_are_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let good = folder.path().join("good.exr");
-        write_exr(&sample(), &good).unwrap();
+        let (folder, good) = saved();
         let bytes = std::fs::read(&good).unwrap();
         let bad = folder.path().join("bad.exr");
         for cut in [0, 3, 100, bytes.len() / 2, bytes.len() - 1] {
             std::fs::write(&bad, &bytes[..cut]).unwrap();
-            let error = read_exr(&bad).unwrap_err();
-            assert!(
-                error.to_string().starts_with(&bad.display().to_string()),
-                "{error}"
-            );
+            let error = read_exr(&bad).unwrap_err().to_string();
+            assert!(error.starts_with(bad.to_str().unwrap()), "{error}");
         }
         let error = read_exr(folder.path().join("none.exr")).unwrap_err();
         assert!(error.to_string().contains("no such file"), "{error}");
-
         exr::prelude::write_rgb_file(&bad, 4, 4, |_, _| (0.0f32, 0.0f32, 0.0f32)).unwrap();
         assert_eq!(read_exr(&bad).unwrap_err().key.as_deref(), Some("A"));
     }

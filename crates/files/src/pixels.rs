@@ -7,6 +7,7 @@ use revmap::maps::MAX_SIDE;
 use std::io::Cursor;
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
 
 /// Samples of 8 or of 16 bits.
 #[derive(Debug, PartialEq)]
@@ -97,9 +98,17 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
         return reader.pixels().map_err(|e| broken(e.to_string()));
     }
     if bytes.starts_with(b"\xff\xd8\xff") {
-        let mut reader = Jpeg::open(bytes).map_err(broken)?;
-        checked(reader.size())?;
-        return reader.pixels().map_err(broken);
+        let mut reader = jpeg(bytes).map_err(|e| broken(e.to_string()))?;
+        let (width, height) = reader.dimensions().unwrap_or_default();
+        let (width, height) = (width as u32, height as u32); // at most 65535
+        checked((width, height))?;
+        let samples = reader.decode().map_err(|e| broken(e.to_string()))?;
+        return Ok(Pixels {
+            width,
+            height,
+            channels: reader.output_colorspace().map_or(3, |c| c.num_components()),
+            samples: Samples::Byte(samples),
+        });
     }
     Err(file_fault(format!(
         "is no picture that can be read; give a {kinds} file"
@@ -124,15 +133,14 @@ impl<'a> Png<'a> {
     }
 
     pub fn pixels(mut self) -> std::result::Result<Pixels, png::DecodingError> {
-        let too_large = || {
-            png::DecodingError::LimitsExceeded // what does not fit into memory
-        };
-        let mut bytes = vec![0; self.0.output_buffer_size().ok_or_else(too_large)?];
+        // A size that overflows is that of a picture that does not fit into memory.
+        let size = self.0.output_buffer_size();
+        let mut bytes = vec![0; size.ok_or(png::DecodingError::LimitsExceeded)?];
         let frame = self.0.next_frame(&mut bytes)?;
         bytes.truncate(frame.buffer_size());
         let samples = if frame.bit_depth == png::BitDepth::Sixteen {
-            let word = |b: &[u8]| u16::from_be_bytes([b[0], b[1]]);
-            Samples::Word(bytes.chunks_exact(2).map(word).collect())
+            let words = bytes.as_chunks().0.iter();
+            Samples::Word(words.map(|w| u16::from_be_bytes(*w)).collect())
         } else {
             Samples::Byte(bytes)
         };
@@ -145,42 +153,20 @@ impl<'a> Png<'a> {
     }
 }
 
-/// A JPEG whose headers were read.
-struct Jpeg<'a>(JpegDecoder<ZCursor<&'a [u8]>>);
-
-impl<'a> Jpeg<'a> {
-    fn open(bytes: &'a [u8]) -> std::result::Result<Self, String> {
-        let options = DecoderOptions::default()
-            .set_strict_mode(false)
-            .set_max_width(usize::MAX)
-            .set_max_height(usize::MAX);
-        let bytes = ZCursor::new(bytes);
-        let mut decoder = JpegDecoder::new_with_options(bytes, options);
-        decoder.decode_headers().map_err(|e| e.to_string())?;
-        Ok(Self(decoder))
-    }
-
-    fn size(&self) -> (u32, u32) {
-        let (width, height) = self.0.dimensions().unwrap_or_default();
-        (width as u32, height as u32) // at most 65535
-    }
-
-    fn pixels(&mut self) -> std::result::Result<Pixels, String> {
-        let (color, channels) = match self.0.input_colorspace() {
-            Some(ColorSpace::Luma) => (ColorSpace::Luma, 1),
-            _ => (ColorSpace::RGB, 3),
-        };
-        let options = self.0.options().jpeg_set_out_colorspace(color);
-        self.0.set_options(options);
-        let samples = self.0.decode().map_err(|e| e.to_string())?;
-        let (width, height) = self.size();
-        Ok(Pixels {
-            width,
-            height,
-            channels,
-            samples: Samples::Byte(samples),
-        })
-    }
+/// A JPEG whose headers were read, to be decoded to grey or RGB.
+fn jpeg(bytes: &[u8]) -> std::result::Result<JpegDecoder<ZCursor<&[u8]>>, DecodeErrors> {
+    let options = DecoderOptions::default()
+        .set_strict_mode(false)
+        .set_max_width(usize::MAX)
+        .set_max_height(usize::MAX);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers()?;
+    let color = match decoder.input_colorspace() {
+        Some(ColorSpace::Luma) => ColorSpace::Luma,
+        _ => ColorSpace::RGB,
+    };
+    decoder.set_options(options.jpeg_set_out_colorspace(color));
+    Ok(decoder)
 }
 
 #[cfg(test)]
@@ -211,9 +197,7 @@ mod tests {
             picture.to_rgba16().into(),
         ];
         for (number, kind) in kinds.into_iter().enumerate() {
-            let mut file = Cursor::new(Vec::new());
-            kind.write_to(&mut file, ImageFormat::Png).unwrap();
-            let ours = decode(file.get_ref(), "PNG").unwrap();
+            let ours = decode(&crate::png_bytes(kind.clone()), "PNG").unwrap();
             assert_eq!(
                 (ours.width, ours.height, ours.channels),
                 (7, 5, number % 4 + 1)

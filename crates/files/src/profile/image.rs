@@ -89,14 +89,8 @@ fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
-    use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
-    use std::io::Cursor;
-
-    fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
-        let mut out = Cursor::new(Vec::new());
-        picture.into().write_to(&mut out, ImageFormat::Png).unwrap();
-        out.into_inner()
-    }
+    use crate::png_bytes as png;
+    use image::{DynamicImage, GrayImage, Luma, Rgba, RgbaImage};
 
     fn raster(bytes: &[u8], axis: ProfileAxis) -> Raster {
         profile(bytes, &axis.into()).unwrap().raster.unwrap()
@@ -112,6 +106,10 @@ mod tests {
         assert!((expected.coverage[0] - 0.2).abs() < 1e-6);
         assert_eq!(expected.coverage[4], 1.0);
         let picture = DynamicImage::ImageLuma8(grey8);
+        // Black whose opacity is the coverage: the same picture after it is laid over white.
+        let alpha = RgbaImage::from_fn(4, 4, |x, y| {
+            Rgba([0, 0, 0, (255.0 * dark(x, y)).round() as u8])
+        });
         let kinds = [
             DynamicImage::from(picture.to_luma_alpha8()),
             picture.to_rgb8().into(),
@@ -120,20 +118,13 @@ mod tests {
             DynamicImage::from(picture.to_luma_alpha16()),
             picture.to_rgb16().into(),
             picture.to_rgba16().into(),
+            alpha.into(),
         ];
         for kind in kinds {
             let got = raster(&png(kind), ProfileAxis::Left);
             for (a, b) in got.coverage.iter().zip(&expected.coverage) {
                 assert!((a - b).abs() < 1e-6);
             }
-        }
-        // Black whose opacity is the coverage: the same picture after it is laid over white.
-        let alpha = RgbaImage::from_fn(4, 4, |x, y| {
-            Rgba([0, 0, 0, (255.0 * dark(x, y)).round() as u8])
-        });
-        let got = raster(&png(alpha), ProfileAxis::Left);
-        for (a, b) in got.coverage.iter().zip(&expected.coverage) {
-            assert!((a - b).abs() < 1e-6);
         }
     }
 
@@ -210,21 +201,5 @@ mod tests {
         assert!(text(&whole[..whole.len() / 2]).contains("damaged"));
         assert!(text(&whole[..20]).contains("damaged"));
         assert!(text(b"BM not a picture").contains("PNG, JPEG or SVG"));
-        // A header of 20000 x 20000 without pixels: refused without decoding anything.
-        let mut huge = whole[..33].to_vec();
-        huge[16..20].copy_from_slice(&20_000u32.to_be_bytes());
-        huge[20..24].copy_from_slice(&20_000u32.to_be_bytes());
-        let crc = crc32(&huge[12..29]).to_be_bytes();
-        huge[29..33].copy_from_slice(&crc);
-        huge.extend_from_slice(&whole[33..]);
-        assert!(text(&huge).contains("20000 x 20000"), "{}", text(&huge));
-    }
-
-    fn crc32(bytes: &[u8]) -> u32 {
-        !bytes.iter().fold(!0u32, |crc, &b| {
-            (0..8).fold(crc ^ u32::from(b), |c, _| {
-                (c >> 1) ^ (0xedb8_8320 & (c & 1).wrapping_neg())
-            })
-        })
     }
 }

@@ -183,30 +183,36 @@ fn is_light_on_dark(raster: &Raster) -> bool {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::profile_from_bytes;
-    use image::{GrayImage, ImageFormat, Luma};
+    use crate::{png_bytes, profile_from_bytes};
+    use image::{GrayImage, Luma};
     use revmap::profile::Profile;
 
     const SIDE: u32 = 96;
 
     /// A ball in the middle of a picture.
     fn ball(shade: impl Fn(u32, u32, bool) -> u8) -> Vec<u8> {
-        let picture = GrayImage::from_fn(SIDE, SIDE, |x, y| {
+        png_bytes(GrayImage::from_fn(SIDE, SIDE, |x, y| {
             let from = |v: u32| f64::from(v) + 0.5 - 0.5 * f64::from(SIDE);
             Luma([shade(x, y, from(x).hypot(from(y)) < 30.0)])
-        });
-        let mut out = std::io::Cursor::new(Vec::new());
-        picture.write_to(&mut out, ImageFormat::Png).unwrap();
-        out.into_inner()
+        }))
     }
 
-    fn read(bytes: &[u8], options: ProfileOptions) -> Profile {
-        profile_from_bytes(bytes, options).unwrap()
+    fn solid_and_ground(solid: u8, ground: u8) -> Vec<u8> {
+        ball(|_, _, within| if within { solid } else { ground })
     }
 
-    /// Asserts that the outline is the ball's, to within `tolerance` pixels.
+    /// The result of reading a picture, with options that differ from the default.
+    fn read(bytes: &[u8], change: impl Fn(&mut ProfileOptions)) -> Result<Profile> {
+        let mut options = ProfileOptions::default();
+        change(&mut options);
+        profile_from_bytes(bytes, options)
+    }
+
+    /// Asserts that the outline is the ball's, to within `tolerance` pixels, without a warning.
     #[track_caller]
-    fn assert_ball(profile: &Profile, tolerance: f64) {
+    fn assert_ball(profile: &Result<Profile>, tolerance: f64) {
+        let profile = profile.as_ref().unwrap();
+        assert!(profile.warnings.is_empty(), "{:?}", profile.warnings);
         assert_eq!(profile.outline.loops.len(), 1);
         for s in profile.outline.surface_segments() {
             let radius = (s.a - glam::DVec2::new(0.0, 0.5)).length() * f64::from(SIDE);
@@ -214,56 +220,39 @@ mod tests {
         }
     }
 
+    #[track_caller]
+    fn assert_warned(bytes: &[u8], words: &str) {
+        let warnings = read(bytes, |_| {}).unwrap().warnings;
+        assert!(warnings[0].contains(words), "{warnings:?}");
+    }
+
     #[test]
     fn light_on_dark_is_noticed_and_turned_round() {
-        let light = ball(|_, _, solid| if solid { 255 } else { 0 });
-        let plain = read(&light, ProfileOptions::default());
-        assert!(
-            plain.warnings[0].contains("profile_invert"),
-            "{:?}",
-            plain.warnings
-        );
-        let turned = ProfileOptions {
-            invert: true,
-            ..ProfileOptions::default()
-        };
-        let profile = read(&light, turned);
-        assert!(profile.warnings.is_empty());
-        assert_ball(&profile, 0.6);
+        let light = solid_and_ground(255, 0);
+        assert_warned(&light, "profile_invert");
+        assert_ball(&read(&light, |o| o.invert = true), 0.6);
         // The usual case gives no warning. A hollow glass that fills its picture is not a light
         // solid either.
-        let dark = read(
-            &ball(|_, _, solid| if solid { 0 } else { 255 }),
-            turned.axis.into(),
-        );
-        assert!(dark.warnings.is_empty());
-        let glass = |x: u32, y: u32, _| {
-            if x.abs_diff(SIDE / 2) < 30 && y < 80 {
-                255
-            } else {
-                0
-            }
-        };
-        assert!(read(&ball(glass), turned.axis.into()).warnings.is_empty());
+        let glass = ball(|x, y, _| match x.abs_diff(SIDE / 2) < 30 && y < 80 {
+            true => 255,
+            false => 0,
+        });
+        for usual in [solid_and_ground(0, 255), glass] {
+            assert!(read(&usual, |_| {}).unwrap().warnings.is_empty());
+        }
     }
 
     #[test]
     fn the_threshold_parts_greys() {
         // A ball of grey 150 on ground of grey 220 is all light by default.
-        let grey = ball(|_, _, solid| if solid { 150 } else { 220 });
-        assert!(profile_from_bytes(&grey, ProfileAxis::Center).is_err());
-        let options = ProfileOptions {
-            threshold: 0.7,
-            ..ProfileOptions::default()
-        };
-        assert_ball(&read(&grey, options), 0.6);
+        let grey = solid_and_ground(150, 220);
+        assert!(read(&grey, |_| {}).is_err());
+        assert_ball(&read(&grey, |o| o.threshold = 0.7), 0.6);
         // With `invert`, light is everything above the threshold.
-        let light = ball(|_, _, solid| if solid { 220 } else { 150 });
-        let inverted = ProfileOptions {
-            invert: true,
-            ..options
-        };
-        assert_ball(&read(&light, inverted), 0.6);
+        let inverted = read(&solid_and_ground(220, 150), |o| {
+            (o.threshold, o.invert) = (0.7, true);
+        });
+        assert_ball(&inverted, 0.6);
     }
 
     #[test]
@@ -278,58 +267,31 @@ mod tests {
             let grey = if solid { 60.0 } else { 190.0 };
             (grey + 180.0 * noise[(y * SIDE + x) as usize]).clamp(0.0, 255.0) as u8
         });
-        let plain = read(&noisy, ProfileOptions::default());
-        assert!(
-            plain.warnings[0].contains("profile_smooth = 2"),
-            "{:?}",
-            plain.warnings
-        );
-        let smooth = ProfileOptions {
-            smooth: Smooth::Pixels(2.0),
-            ..ProfileOptions::default()
-        };
-        let profile = read(&noisy, smooth);
-        assert!(profile.warnings.is_empty(), "{:?}", profile.warnings);
-        assert_ball(&profile, 2.5);
+        assert_warned(&noisy, "profile_smooth = 2");
+        assert_ball(&read(&noisy, |o| o.smooth = Smooth::Pixels(2.0)), 2.5);
     }
 
     #[test]
     fn a_blur_is_even_about_the_axis() {
-        let clean = ball(|_, _, solid| if solid { 0 } else { 255 });
-        let smooth = ProfileOptions {
-            smooth: Smooth::Pixels(3.0),
-            ..ProfileOptions::default()
-        };
-        let profile = read(&clean, smooth);
+        let clean = solid_and_ground(0, 255);
+        let profile = read(&clean, |o| o.smooth = Smooth::Pixels(3.0));
         assert_ball(&profile, 0.8);
         // Mirrored at the axis, the ball's poles stay level: the second derivative moves the edge
         // alike all round.
-        let poles = profile.outline.bounds().unwrap();
+        let poles = profile.unwrap().outline.bounds().unwrap();
         assert!((poles.z_max - 0.5 - (0.5 - poles.z_min)).abs() < 1e-6);
     }
 
     #[test]
     fn what_makes_no_sense_is_refused() {
-        let clean = ball(|_, _, solid| if solid { 0 } else { 255 });
-        let key = |options| {
-            profile_from_bytes(&clean, options)
-                .unwrap_err()
-                .key
-                .unwrap()
-        };
+        let clean = solid_and_ground(0, 255);
         for threshold in [0.0, 1.0, f64::NAN, -3.0] {
-            let options = ProfileOptions {
-                threshold,
-                ..ProfileOptions::default()
-            };
-            assert_eq!(key(options), "profile_threshold");
+            let error = read(&clean, |o| o.threshold = threshold).unwrap_err();
+            assert_eq!(error.key.as_deref(), Some("profile_threshold"));
         }
         for smooth in [-1.0, 101.0, f64::NAN] {
-            let options = ProfileOptions {
-                smooth: Smooth::Pixels(smooth),
-                ..ProfileOptions::default()
-            };
-            assert_eq!(key(options), "profile_smooth");
+            let error = read(&clean, |o| o.smooth = Smooth::Pixels(smooth)).unwrap_err();
+            assert_eq!(error.key.as_deref(), Some("profile_smooth"));
         }
     }
 }

@@ -22,57 +22,25 @@ pub(super) trait Entry: Sized {
 }
 
 /// A type of values that lists hold, too.
-trait Item: Copy + Default {
-    /// The type in words, for one value and for several.
-    const WANTED: [&'static str; 2];
+trait Item: Entry + Copy + Default {
+    /// Several values in words.
+    const SEVERAL: &'static str;
     fn item(value: &Value) -> Option<Self>;
 }
 
-impl Item for f64 {
-    const WANTED: [&'static str; 2] = ["a number", "numbers"];
+macro_rules! items {
+    ($($item:ty: $one:literal, $several:literal, $read:expr;)*) => {$(
+        impl Item for $item {
+            const SEVERAL: &'static str = $several;
 
-    fn item(value: &Value) -> Option<Self> {
-        match value {
-            Value::Float(x) => Some(*x),
-            Value::Integer(i) => Some(*i as Self),
-            _ => None,
+            fn item(value: &Value) -> Option<Self> {
+                $read(value)
+            }
         }
-    }
-}
 
-/// Numbers for the GPU. Numbers that overflow become infinite, and the scene's check refuses them.
-impl Item for f32 {
-    const WANTED: [&'static str; 2] = f64::WANTED;
-
-    fn item(value: &Value) -> Option<Self> {
-        f64::item(value).map(|x| x as Self)
-    }
-}
-
-impl Item for u32 {
-    const WANTED: [&'static str; 2] = [
-        "a whole number that is not negative",
-        "whole numbers that are not negative",
-    ];
-
-    fn item(value: &Value) -> Option<Self> {
-        value.as_integer().and_then(|i| Self::try_from(i).ok())
-    }
-}
-
-impl Item for bool {
-    const WANTED: [&'static str; 2] = ["true or false", "of true or false"];
-
-    fn item(value: &Value) -> Option<Self> {
-        value.as_bool()
-    }
-}
-
-macro_rules! entries {
-    ($($item:ty)*) => {$(
         impl Entry for $item {
             fn wanted() -> String {
-                Self::WANTED[0].to_owned()
+                $one.to_owned()
             }
 
             fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -81,11 +49,26 @@ macro_rules! entries {
         }
     )*};
 }
-entries!(f64 f32 u32 bool);
+items! {
+    f64: "a number", "numbers", number;
+    // Numbers that overflow become infinite, and the scene's check refuses them.
+    f32: "a number", "numbers", |v| number(v).map(|x| x as Self);
+    u32: "a whole number that is not negative", "whole numbers that are not negative",
+        |v: &Value| v.as_integer().and_then(|i| Self::try_from(i).ok());
+    bool: "true or false", "of true or false", Value::as_bool;
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(x) => Some(*x),
+        Value::Integer(i) => Some(*i as f64),
+        _ => None,
+    }
+}
 
 impl<T: Item, const N: usize> Entry for [T; N] {
     fn wanted() -> String {
-        format!("{N} {} in brackets", T::WANTED[1])
+        format!("{N} {} in brackets", T::SEVERAL)
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -173,7 +156,7 @@ impl<'a> Keys<'a> {
     pub(super) fn number_or_auto(&self, key: &str) -> Result<Option<Option<f64>>> {
         self.read(key, "a number or \"auto\"", |value| match value {
             Value::String(word) if word == "auto" => Some(None),
-            number => f64::item(number).map(Some),
+            other => number(other).map(Some),
         })
     }
 

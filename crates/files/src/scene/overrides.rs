@@ -29,53 +29,41 @@ fn apply(root: &mut Table, assignment: &str) -> Result<()> {
             "a part of the key is empty; write it as in object.0.bevel".to_owned(),
         ));
     }
-    let (last, way) = match steps.split_last() {
-        Some((last, way)) => (*last, way),
-        None => return Err(fail("the key is empty".to_owned())),
+    put(root, &steps, parse(value.trim())).map_err(fail)
+}
+
+/// Writes a value at the end of the path `steps`.
+fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(), String> {
+    let [step, below @ ..] = steps else {
+        return Ok(());
     };
-    let mut table = root;
-    let mut way = way.iter();
-    while let Some(step) = way.next() {
-        let entry = table
-            .entry((*step).to_owned())
-            .or_insert_with(|| Value::Table(Table::new()));
-        table = match entry {
-            Value::Table(inner) => inner,
-            Value::Array(items) => {
-                let count = items.len();
-                let Some(index) = way.next() else {
-                    let below = if items.iter().any(Value::is_table) {
-                        format!("{step}.0.{last}")
-                    } else {
-                        format!("{step}.0")
-                    };
-                    let item = last.parse::<usize>().ok().and_then(|i| items.get_mut(i));
-                    let item = item.filter(|item| !item.is_table());
-                    *item
-                        .ok_or_else(|| fail(format!("`{step}` is a list; say which: {below}")))? =
-                        parse(value.trim());
-                    return Ok(());
-                };
-                index
-                    .parse::<usize>()
-                    .ok()
-                    .and_then(|i| items.get_mut(i))
-                    .and_then(Value::as_table_mut)
-                    .ok_or_else(|| {
-                        fail(format!(
-                            "there is no {step}.{index}: the scene has {count}, counted from 0"
-                        ))
-                    })?
-            }
-            _ => {
-                return Err(fail(format!(
-                    "`{step}` is a value, which has no keys below it"
-                )));
-            }
-        };
+    if below.is_empty() {
+        table.insert((*step).to_owned(), value);
+        return Ok(());
     }
-    table.insert(last.to_owned(), parse(value.trim()));
-    Ok(())
+    let entry = table.entry(*step);
+    match (entry.or_insert_with(|| Table::new().into()), below) {
+        (Value::Table(inner), _) => put(inner, below, value),
+        (Value::Array(items), [last]) => {
+            let which = match items.iter().any(Value::is_table) {
+                true => format!("{step}.0.{last}"),
+                false => format!("{step}.0"),
+            };
+            let item = last.parse().ok().and_then(|i: usize| items.get_mut(i));
+            let item = item.filter(|item| !item.is_table());
+            *item.ok_or_else(|| format!("`{step}` is a list; say which: {which}"))? = value;
+            Ok(())
+        }
+        (Value::Array(items), [index, below @ ..]) => {
+            let count = items.len();
+            let item = index.parse().ok().and_then(|i: usize| items.get_mut(i));
+            let inner = item.and_then(Value::as_table_mut).ok_or_else(|| {
+                format!("there is no {step}.{index}: the scene has {count}, counted from 0")
+            })?;
+            put(inner, below, value)
+        }
+        _ => Err(format!("`{step}` is a value, which has no keys below it")),
+    }
 }
 
 /// The parsed value if it is TOML, otherwise the text itself.

@@ -267,49 +267,54 @@ fn sets_come_before_what_the_file_says() {
 
 #[test]
 fn slips_are_named_with_their_full_key() {
-    fault(
-        cone("bevle = 1"),
-        "object.0.bevle: unknown key; did you mean `bevel`?",
-    );
-    fault(cone("bevel = \"1\""), "object.0.bevel: expected a number");
-    fault(cone("scale = [1, 0, 1]"), "object.0.scale: has 0.0");
-    fault(
-        cone("scale = 2"),
-        "object.0.scale: expected 3 numbers in brackets, found 2",
-    );
-    fault(cone("rotation = [0, 0, 0, 0]"), "object.0.rotation:");
-    fault(cone("repeat = [1, 0, 1]"), "object.0.repeat: has 0");
-    fault(cone("chamfer = 2"), "object.0.chamfer: is 2.0");
-    fault(cone("extend = nan"), "object.0.extend: is NaN");
-    fault(cone("radius = 0"), "object.0.radius: 0 is no radius");
-    fault(
-        cone("projection = \"mercator\""),
-        "object.0.projection: \"mercator\" is not known; give one of \"planar\"",
-    );
-    fault(
-        cone("profile = \"x.svg\""),
-        "object.0.polygon: stands beside a profile",
-    );
-    fault(
-        cone("color_map = \"none.png\""),
-        "none.png: object.0.color_map: the colour map cannot be read",
-    );
-    fault(cone("instances = \"none.csv\""), "none.csv: cannot be read");
-    fault(cone("[[object]]\n"), "object.1.profile: is missing");
-    fault(
-        cone("[[light]]\ncolour = [1, 1, 1]"),
-        "light.0.colour: unknown key; did you mean `color`?",
-    );
-    fault(parse(CONE, "", &[]), "camera.eye: is missing");
-    fault(parse(CAMERA_LINES, "", &[]), "object: the scene is empty");
-    fault(
-        parse("camera = 3", "", &[]),
-        "camera: expected a table [camera], found 3",
-    );
-    fault(
-        parse("object = 3\n[camera]\neye=[1,0,0]\ntarget=[0,0,0]", "", &[]),
-        "object: expected tables",
-    );
+    for (line, wanted) in [
+        (
+            "bevle = 1",
+            "object.0.bevle: unknown key; did you mean `bevel`?",
+        ),
+        ("bevel = \"1\"", "object.0.bevel: expected a number"),
+        ("scale = [1, 0, 1]", "object.0.scale: has 0.0"),
+        (
+            "scale = 2",
+            "object.0.scale: expected 3 numbers in brackets, found 2",
+        ),
+        ("rotation = [0, 0, 0, 0]", "object.0.rotation:"),
+        ("repeat = [1, 0, 1]", "object.0.repeat: has 0"),
+        ("chamfer = 2", "object.0.chamfer: is 2.0"),
+        ("extend = nan", "object.0.extend: is NaN"),
+        ("radius = 0", "object.0.radius: 0 is no radius"),
+        (
+            "projection = \"mercator\"",
+            "object.0.projection: \"mercator\" is not known; give one of \"planar\"",
+        ),
+        (
+            "profile = \"x.svg\"",
+            "object.0.polygon: stands beside a profile",
+        ),
+        (
+            "color_map = \"none.png\"",
+            "none.png: object.0.color_map: the colour map cannot be read",
+        ),
+        ("instances = \"none.csv\"", "none.csv: cannot be read"),
+        ("[[object]]\n", "object.1.profile: is missing"),
+        (
+            "[[light]]\ncolour = [1, 1, 1]",
+            "light.0.colour: unknown key; did you mean `color`?",
+        ),
+    ] {
+        fault(cone(line), wanted);
+    }
+    for (text, wanted) in [
+        (CONE, "camera.eye: is missing"),
+        (CAMERA_LINES, "object: the scene is empty"),
+        ("camera = 3", "camera: expected a table [camera], found 3"),
+        (
+            "object = 3\n[camera]\neye=[1,0,0]\ntarget=[0,0,0]",
+            "object: expected tables",
+        ),
+    ] {
+        fault(parse(text, "", &[]), wanted);
+    }
 }
 
 #[test]

@@ -181,26 +181,22 @@ impl<'a> Nodes<'a> {
                 0.0
             }
         };
-        let (mut k, mut sum) = (0, value(0));
-        let mut last = sum;
-        while last < FULL {
-            k -= 1;
-            let next = value(k);
-            if k < -LONGEST || next < last {
-                return None;
+        // The pixels from the edge to the first one that is full, and to the first that is empty.
+        let mut sum = value(0);
+        let mut run = |way: isize, most: isize, ends: fn(f64) -> bool| {
+            let (mut k, mut last) = (0, value(0));
+            while !ends(last) {
+                k += way;
+                let next = value(k);
+                if k * way > most || (next - last) * way as f64 > 0.0 {
+                    return None;
+                }
+                (last, sum) = (next, sum + next);
             }
-            (last, sum) = (next, sum + next);
-        }
-        let first = k;
-        (k, last) = (0, value(0));
-        while last > 1.0 - FULL {
-            k += 1;
-            let next = value(k);
-            if k > LONGEST + 1 || next > last {
-                return None;
-            }
-            (last, sum) = (next, sum + next);
-        }
+            Some(k)
+        };
+        let first = run(-1, LONGEST, |v| v >= FULL)?;
+        run(1, LONGEST + 1, |v| v <= 1.0 - FULL)?;
         let way = DVec2::new(step.0 as f64, step.1 as f64);
         Some(self.place(a) + way * (first as f64 - 0.5 + sum))
     }

@@ -265,53 +265,40 @@ impl Line {
                 .map(|k| self.rounded(k, 0, self.points.len() - 1, noise))
                 .collect();
         }
+        let on_axis = |c: &Corner| !self.closed && (c.index == self.first || c.index == last);
         let straight: Vec<Option<Side>> = ends
             .windows(2)
             .map(|pair| {
                 // A straight run that ends on the axis has to cross it: a run from axis to axis
                 // encloses nothing.
-                let on_axis =
-                    |c: &&Corner| !self.closed && (c.index == self.first || c.index == last);
-                let ends = pair.iter().filter(on_axis).count();
+                let ends = pair.iter().filter(|c| on_axis(c)).count();
                 self.straight(pair[0].index, pair[1].index, noise)
                     .filter(|(_, way)| ends == 0 || (ends == 1 && way.x.abs() > SLANT))
             })
             .collect();
         let mut out: Vec<DVec2> = Vec::new();
         for (k, pair) in ends.windows(2).enumerate() {
-            let before = if k > 0 {
-                straight[k - 1]
-            } else if self.closed {
-                straight[straight.len() - 1]
-            } else {
-                None
-            };
             if !self.closed && k == 0 {
                 out.push(self.end(&pair[0], straight[0], noise));
             } else {
+                let before = straight[k.checked_sub(1).unwrap_or(straight.len() - 1)];
                 out.extend(self.corner(&pair[0], [before, straight[k]], noise));
             }
             if straight[k].is_none() {
-                let cut = |c: &Corner| self.closed || (c.index != self.first && c.index != last);
-                let low = if cut(&pair[0]) || pair[0].point.is_some() {
-                    pair[0].index
-                } else {
-                    0
+                // The trail continues past an end on the axis that is no corner.
+                let limit = |c: &Corner, beyond: usize| match on_axis(c) && c.point.is_none() {
+                    true => beyond,
+                    false => c.index,
                 };
-                let high = if cut(&pair[1]) || pair[1].point.is_some() {
-                    pair[1].index
-                } else {
-                    self.points.len() - 1
+                let low = limit(&pair[0], 0);
+                let high = limit(&pair[1], self.points.len() - 1);
+                // Points that a corner has rounded are ignored.
+                let room = |j: &usize| {
+                    let far = |c: &Corner| (self.place[*j] - self.place[c.index]).abs() > NEAR;
+                    pair.iter().all(|c| c.point.is_none() || far(c))
                 };
-                for j in pair[0].index + 1..pair[1].index {
-                    // Points that a corner has rounded are ignored.
-                    let room = |c: &Corner| {
-                        c.point.is_none() || (self.place[j] - self.place[c.index]).abs() > NEAR
-                    };
-                    if room(&pair[0]) && room(&pair[1]) {
-                        out.push(self.rounded(j, low, high, noise));
-                    }
-                }
+                let inner = (pair[0].index + 1..pair[1].index).filter(room);
+                out.extend(inner.map(|j| self.rounded(j, low, high, noise)));
             }
         }
         if !self.closed

@@ -304,6 +304,18 @@ fn promises_that_no_file_keeps_are_refused() {
     }
 }
 
+/// A PNG whose header promises more pixels than any picture has is refused without decoding.
+#[test]
+fn large_pictures_are_refused_by_their_header() {
+    let mut png = std::fs::read(SOUND.path().join("grey.png")).unwrap();
+    png[16..20].copy_from_slice(&20_000u32.to_be_bytes());
+    png[20..24].copy_from_slice(&20_000u32.to_be_bytes());
+    let sum = crc(&png[12..29]).to_be_bytes();
+    png[29..33].copy_from_slice(&sum);
+    let error = read("grey.png", read_profile, &png).unwrap_err();
+    assert!(error.message.contains("20000 x 20000"), "{error}");
+}
+
 /// Each chunk gets a valid checksum, so that faults pass the decoder's first check.
 fn damaged_png(sound: &[u8], chunk: usize, faults: &[Fault]) -> Vec<u8> {
     let (signature, mut rest) = sound.split_at(8);

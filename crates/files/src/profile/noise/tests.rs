@@ -3,7 +3,7 @@ use super::*;
 use crate::raster::rasterize;
 use crate::{ProfileAxis, ProfileOptions, profile_from_bytes};
 use image::codecs::jpeg::JpegEncoder;
-use image::{GrayImage, ImageFormat, Luma};
+use image::{GrayImage, Luma};
 use proptest::prelude::*;
 use revmap::profile::{Outline, Profile, Segment};
 
@@ -41,9 +41,7 @@ fn noisy(raster: &Raster, sigma: f64, seed: u32) -> GrayImage {
 }
 
 fn png(picture: &GrayImage) -> Vec<u8> {
-    let mut out = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut out, ImageFormat::Png).unwrap();
-    out.into_inner()
+    crate::png_bytes(picture.clone())
 }
 
 fn jpeg(picture: &GrayImage, quality: u8) -> Vec<u8> {
