@@ -9,6 +9,9 @@ use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::profile::{Profile, Raster};
 
+/// Files that profiles are read from.
+const KINDS: &str = "PNG, JPEG or SVG";
+
 /// A profile from the bytes of a PNG or JPEG.
 ///
 /// The picture is laid over white in its own (sRGB) values. A pixel's coverage is its darkness, and
@@ -21,9 +24,32 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
         return baked(bytes, &header);
     }
-    let dark = read_darkness(bytes, options.invert)?;
-    let split = options.axis == ProfileAxis::Center && !dark.columns.is_multiple_of(2);
-    let raster = options.apply(half_plane(dark, options.axis), split);
+    let picture = decode(bytes, KINDS)?;
+    let (width, height) = (picture.width, picture.height);
+    if width < 2 || height < 2 {
+        return Err(content_fault(format!(
+            "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
+        )));
+    }
+    // Darkness over white; with `invert`, lightness over black.
+    let dark = picture.map(|[r, g, b, alpha]| {
+        let grey = luminance([r, g, b]);
+        alpha * if options.invert { grey } else { 1.0 - grey }
+    });
+    // If the axis is the middle of an odd width, it splits the first column that is used.
+    let first = match options.axis {
+        ProfileAxis::Left => 0,
+        ProfileAxis::Center => width / 2,
+    };
+    let split = options.axis == ProfileAxis::Center && !width.is_multiple_of(2);
+    let rows = dark.par_chunks_exact(width as usize);
+    let half = rows.flat_map_iter(|row| row[first as usize..].iter().copied());
+    let half_plane = Raster {
+        columns: width - first,
+        rows: height,
+        coverage: half.collect(),
+    };
+    let raster = options.apply(half_plane, split);
     if raster.coverage.par_iter().all(|&c| c > 0.5) {
         return Err(full_fault("image"));
     }
@@ -34,7 +60,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
 
 /// The form of a shape map in its file.
 fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
-    let picture = decode(bytes, "PNG, JPEG or SVG")?;
+    let picture = decode(bytes, KINDS)?;
     let raster = Raster {
         columns: picture.width,
         rows: picture.height,
@@ -44,45 +70,6 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
         radius: header.number("radius")?,
         ..trace(raster)?
     })
-}
-
-/// Darkness of each pixel over white, in `[0, 1]`, as a raster of the whole picture; with `invert`,
-/// lightness over black.
-fn read_darkness(bytes: &[u8], invert: bool) -> Result<Raster> {
-    let picture = decode(bytes, "PNG, JPEG or SVG")?;
-    let (width, height) = (picture.width, picture.height);
-    if width < 2 || height < 2 {
-        return Err(content_fault(format!(
-            "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
-        )));
-    }
-    Ok(Raster {
-        columns: width,
-        rows: height,
-        coverage: picture.map(|[r, g, b, alpha]| {
-            let grey = luminance([r, g, b]);
-            alpha * if invert { grey } else { 1.0 - grey }
-        }),
-    })
-}
-
-/// The part of the picture right of the axis. If the axis is the middle of an odd width, the first
-/// column is the one that the axis splits.
-fn half_plane(dark: Raster, axis: ProfileAxis) -> Raster {
-    if axis == ProfileAxis::Left {
-        return dark;
-    }
-    let first = dark.columns as usize / 2;
-    let coverage = dark
-        .coverage
-        .par_chunks_exact(dark.columns as usize)
-        .flat_map_iter(|row| row[first..].iter().copied())
-        .collect();
-    Raster {
-        columns: dark.columns.div_ceil(2),
-        rows: dark.rows,
-        coverage,
-    }
 }
 
 #[cfg(test)]

@@ -2,49 +2,7 @@
 //!
 //! Paths are relative to the scene file. Unknown keys are errors. Every key but an object's
 //! `profile` (or `polygon`) and the camera's `eye` and `target` has a default.
-//!
-//! | key | meaning | default |
-//! |---|---|---|
-//! | `background` | linear RGBA behind everything | `[0, 0, 0, 0]` |
-//! | `ambient` | light from everywhere, linear RGB | `[0.1, 0.1, 0.1]` |
-//! | `shadow` | `"off"`, `"hard"` or `"soft"` | `"off"` |
-//! | `camera.eye`, `camera.target` | where the eye is and what it looks at, world units | |
-//! | `camera.up` | which way is up | `[0, 0, 1]` |
-//! | `camera.fov_y` | vertical field of view, degrees | `40` |
-//! | `light.N.direction` | the way the light travels | `[-0.4, -0.6, -0.7]` |
-//! | `light.N.color` | linear RGB | `[1, 1, 1]` |
-//! | `light.N.radius` | angular radius of the light's disc for soft shadows, degrees, 0 to 60 | `2` |
-//! | `object.N.profile` | an image or an SVG drawing, dark = solid | |
-//! | `object.N.polygon` | in its place: `[[r, z], ...]`, object units, closed by itself | |
-//! | `object.N.profile_axis` | `"left"`: half a profile; `"center"`: a silhouette | `"center"` |
-//! | `object.N.profile_threshold` | pictures: grey level below which a pixel is solid, 0 black to 1 white | `0.5` |
-//! | `object.N.profile_invert` | pictures: whether light is solid instead | `false` |
-//! | `object.N.profile_smooth` | pictures: noise is blurred away by a Gaussian of this many texels (pixels of the picture); `"auto"`: as many as the noise needs, none for a clean picture | `0` |
-//! | `object.N.radius` | `R` of the shape box, for polygons; images give it by their shape | `0.5`, or the largest `r` of the points if that is more |
-//! | `object.N.map_rows` | rows of the shape map | `512` |
-//! | `object.N.color` | linear RGB | `[0.8, 0.8, 0.8]` |
-//! | `object.N.color_map` | an image in place of `color` | |
-//! | `object.N.specular` | weight of the Blinn-Phong highlight | `0.25` |
-//! | `object.N.shininess` | its exponent | `32` |
-//! | `object.N.height_map` | an image of heights for bump mapping | |
-//! | `object.N.bump` | `a`, the depth of the bumps | `1` |
-//! | `object.N.bump_form` | `"surface-gradient"` or `"papers"` | `"surface-gradient"` |
-//! | `object.N.projection` | `"planar"`, `"cylindrical"`, `"spherical"` or `"arc"` | from the profile's name (`vase.spherical.png`), else `"cylindrical"` |
-//! | `object.N.texture_repeat` | repetitions along `xi`, `eta` | `[1, 1]` |
-//! | `object.N.extend` | `e`, object units; negative insets | `0` |
-//! | `object.N.bevel` | `b`, slope | `0` |
-//! | `object.N.chamfer` | `c`, depth in `[0, 1]` to which the bevel reaches | `1` |
-//! | `object.N.clip` | `"none"`: the shape box grows with the offset; `"box"`: the papers' fixed box cuts the solid; replicas are cut by their cells | `"none"` |
-//! | `object.N.axis` | `(Ox, Oy)`, box texture coordinates | `[0.5, 0.5]` |
-//! | `object.N.repeat` | cells of the box along x, y, z | `[1, 1, 1]` |
-//! | `object.N.mirror` | whether every other cell is mirrored | `[false, false, false]` |
-//! | `object.N.position` | of the middle of the box's lower face | `[0, 0, 0]` |
-//! | `object.N.rotation` | quaternion x y z w, of any length but zero | `[0, 0, 0, 1]` |
-//! | `object.N.scale` | `S` | `[1, 1, 1]` |
-//! | `object.N.instances` | a CSV file of rows `x,y,z,qx,qy,qz,qw,sx,sy,sz`, one for each copy | |
-//!
-//! A scene without a `[[light]]` has the default light above and a weak one from the other side,
-//! `direction = [0.9, 0.45, -0.2]`, `color = [0.25, 0.28, 0.33]`. `light = []` switches both off.
+//! `docs/scene-files.md` of the repository lists every key with its type, range and default.
 
 mod instances;
 mod keys;
