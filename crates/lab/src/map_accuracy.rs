@@ -80,16 +80,16 @@ impl Disc {
     #[must_use]
     pub fn measure(&self, map: &ShapeMap) -> MapErrors {
         let side = f64::from(map.rows);
-        let mut distance = Moments::default();
+        let mut distance = Vec::new();
         for (k, &stored) in map.distance.iter().enumerate() {
             let (i, j) = (k % map.columns as usize, k / map.columns as usize);
             let p = DVec2::new(i as f64 + 0.5, side - (j as f64 + 0.5)) / side;
             if map.source != BINARY || !map.form[k] {
-                distance.add((f64::from(stored) - self.distance(p)) * side);
+                distance.push((f64::from(stored) - self.distance(p)) * side);
             }
         }
         let stored = map.encode(MapFormat::Rgba8).bytes;
-        let (mut cell, mut channels) = (Moments::default(), Moments::default());
+        let (mut cell, mut channels) = (Vec::new(), Vec::new());
         const AROUND: u32 = 20_000;
         for k in 0..AROUND {
             // The points form a spiral that covers every direction and every depth within a texel
@@ -97,17 +97,20 @@ impl Disc {
             let along = DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND));
             let depth = (f64::from(k) * 0.618_033_988_749_895).fract() * 2.0 - 1.0;
             let p = self.center + along * (self.radius + depth / side);
-            cell.add(angle(DVec2::from(map.gradient_at(p.x, p.y)), along));
-            channels.add(angle(filtered_channels(map, &stored, p), along));
+            cell.push(angle(DVec2::from(map.gradient_at(p.x, p.y)), along));
+            channels.push(angle(filtered_channels(map, &stored, p), along));
         }
+        let [mean, rms, max] = summary(&distance);
+        let [_, gradient_rms, gradient_max] = summary(&cell);
+        let [_, stored_gradient_rms, stored_gradient_max] = summary(&channels);
         MapErrors {
-            mean: distance.mean(),
-            rms: distance.rms(),
-            max: distance.max,
-            gradient_rms: cell.rms(),
-            gradient_max: cell.max,
-            stored_gradient_rms: channels.rms(),
-            stored_gradient_max: channels.max,
+            mean,
+            rms,
+            max,
+            gradient_rms,
+            gradient_max,
+            stored_gradient_rms,
+            stored_gradient_max,
         }
     }
 }
@@ -134,27 +137,10 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
     a.perp_dot(b).atan2(a.dot(b)).abs().to_degrees()
 }
 
-#[derive(Default)]
-struct Moments {
-    count: f64,
-    sum: f64,
-    squares: f64,
-    max: f64,
-}
-
-impl Moments {
-    fn add(&mut self, v: f64) {
-        self.count += 1.0;
-        self.sum += v;
-        self.squares += v * v;
-        self.max = self.max.max(v.abs());
-    }
-
-    fn mean(&self) -> f64 {
-        self.sum / self.count.max(1.0)
-    }
-
-    fn rms(&self) -> f64 {
-        (self.squares / self.count.max(1.0)).sqrt()
-    }
+/// Mean, root mean square, and largest magnitude.
+fn summary(values: &[f64]) -> [f64; 3] {
+    let count = values.len().max(1) as f64;
+    let mean = |value: fn(&f64) -> f64| values.iter().map(value).sum::<f64>() / count;
+    let most = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    [mean(|v| *v), mean(|v| v * v).sqrt(), most]
 }

@@ -5,7 +5,7 @@ use super::reader::{CAMERA, LIGHT, OBJECT};
 use super::*;
 use glam::DQuat;
 use revmap::maps::Projection;
-use revmap::scene::{BumpForm, Light, Offset, Placement, Shadow, Specular};
+use revmap::scene::{BumpForm, Light, Offset, Placement, Shadow, Specular, Texturing};
 use std::sync::Arc;
 
 const CAMERA_LINES: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
@@ -45,37 +45,41 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
+/// A table of values, each with the one that it must equal.
+macro_rules! equal {
+    ($($found:expr => $wanted:expr;)*) => {$(assert_eq!($found, $wanted, stringify!($found));)*};
+}
+
 #[test]
 fn what_is_not_said_has_the_documented_default() {
     let scene = cone("").unwrap();
-    assert_eq!(scene.background, [0.0; 4]);
-    assert_eq!(scene.camera.up, DVec3::Z);
-    assert_eq!(scene.camera.fov_y, 40.0);
-    assert_eq!(scene.lights, Light::pair());
-    assert_eq!(scene.shadow, Shadow::Off);
     let object = &scene.objects[0];
-    assert_eq!(object.name, "polygon");
-    assert_eq!(object.profile.radius, 0.5);
-    assert_eq!((object.map_rows, object.color), (512, [0.8; 3]));
-    assert_eq!(
-        object.offset,
-        Offset {
-            extend: 0.0,
-            bevel: 0.0,
-            chamfer: 1.0
-        }
-    );
-    assert_eq!(
-        (object.axis, object.repeat, object.mirror),
-        ([0.5; 2], [1; 3], [false; 3])
-    );
-    assert_eq!(object.placement, Placement::default());
-    assert_eq!(object.texturing.projection, Projection::Cylindrical);
-    assert_eq!(object.texturing.bump_form, BumpForm::SurfaceGradient);
-    assert_eq!(
-        (object.texturing.bump, object.texturing.repeat),
-        (1.0, [1.0; 2])
-    );
+    let Texturing {
+        bump,
+        bump_form,
+        projection,
+        repeat,
+        ..
+    } = object.texturing;
+    equal! {
+        scene.background => [0.0; 4];
+        scene.camera.up => DVec3::Z;
+        scene.camera.fov_y => 40.0;
+        scene.lights => Light::pair();
+        scene.shadow => Shadow::Off;
+        object.name => "polygon";
+        object.profile.radius => 0.5;
+        object.map_rows => 512;
+        object.color => [0.8; 3];
+        object.offset => Offset { extend: 0.0, bevel: 0.0, chamfer: 1.0 };
+        object.axis => [0.5; 2];
+        object.repeat => [1; 3];
+        object.mirror => [false; 3];
+        object.placement => Placement::default();
+        projection => Projection::Cylindrical;
+        bump_form => BumpForm::SurfaceGradient;
+        (bump, repeat) => (1.0, [1.0; 2]);
+    }
 }
 
 #[test]
@@ -119,73 +123,50 @@ scale = [1, 2, 0.5]
 instances = "copies.csv"
 "#;
     let scene = parse(text, folder.path(), &[]).unwrap();
-    assert_eq!(
-        (scene.background, scene.ambient),
-        ([0.1, 0.2, 0.3, 1.0], [0.5, 0.6, 0.7])
-    );
-    assert_eq!(scene.shadow, Shadow::Soft);
-    assert_eq!(
-        (scene.camera.eye, scene.camera.up),
-        (DVec3::new(1.6, 0.3, 1.1), DVec3::Y)
-    );
-    assert_eq!(scene.camera.fov_y, 25.5);
-    assert_eq!(
-        scene.lights[0],
-        Light {
-            direction: DVec3::new(1.0, 2.0, -3.0),
-            color: [2.0, 1.0, 0.5],
-            radius: 3.5,
-        }
-    );
-    assert_eq!(scene.lights[1], Light::default());
+    let light = Light {
+        direction: DVec3::new(1.0, 2.0, -3.0),
+        color: [2.0, 1.0, 0.5],
+        radius: 3.5,
+    };
     let object = &scene.objects[0];
-    assert_eq!(object.name, "half.spherical.png");
-    assert_eq!(
-        object.file.as_deref(),
-        Some(folder.path().join("half.spherical.png").as_path())
-    );
-    assert_eq!(object.profile.radius, 0.5);
-    assert_eq!((object.map_rows, object.color), (64, [0.1, 0.2, 0.3]));
-    assert_eq!(
-        object.specular,
-        Specular {
-            strength: 0.75,
-            shininess: 9.0
-        }
-    );
-    let covering = &object.texturing;
-    assert_eq!(
-        covering.color_map.as_ref().unwrap().levels[0].texels[0],
-        [9, 8, 7, 255]
-    );
-    assert_eq!(covering.displacement_map.as_ref().unwrap().size(), [4, 2]);
-    assert_eq!(
-        (covering.bump, covering.bump_form),
-        (0.02, BumpForm::Papers)
-    );
-    assert_eq!(
-        (covering.projection, covering.repeat),
-        (Projection::Spherical, [3.0, 2.0])
-    );
-    assert_eq!(
-        object.offset,
-        Offset {
-            extend: -0.01,
-            bevel: 0.25,
-            chamfer: 0.5
-        }
-    );
-    assert_eq!((object.axis, object.repeat), ([0.25, 0.75], [1, 2, 3]));
-    assert_eq!(object.mirror, [true, false, true]);
-    assert_eq!(object.placement.position, DVec3::new(1.0, 2.0, 3.0));
-    assert_eq!(
-        object.placement.rotation,
-        DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0)
-    );
-    assert_eq!(object.placement.scale, DVec3::new(1.0, 2.0, 0.5));
-    assert_eq!(object.instances.len(), 2);
-    assert_eq!(object.instances[1].scale.z, 2.0);
-    assert_eq!(object.placements().len(), 2);
+    let Texturing {
+        bump,
+        bump_form,
+        projection,
+        repeat,
+        ..
+    } = object.texturing;
+    let color = object.texturing.color_map.as_ref().unwrap();
+    let slopes = object.texturing.displacement_map.as_ref().unwrap();
+    equal! {
+        scene.background => [0.1, 0.2, 0.3, 1.0];
+        scene.ambient => [0.5, 0.6, 0.7];
+        scene.shadow => Shadow::Soft;
+        scene.camera.eye => DVec3::new(1.6, 0.3, 1.1);
+        scene.camera.up => DVec3::Y;
+        scene.camera.fov_y => 25.5;
+        scene.lights => [light, Light::default()];
+        object.name => "half.spherical.png";
+        object.file => Some(folder.path().join("half.spherical.png"));
+        object.profile.radius => 0.5;
+        object.map_rows => 64;
+        object.color => [0.1, 0.2, 0.3];
+        object.specular => Specular { strength: 0.75, shininess: 9.0 };
+        color.levels[0].texels[0] => [9, 8, 7, 255];
+        slopes.size() => [4, 2];
+        (bump, bump_form) => (0.02, BumpForm::Papers);
+        (projection, repeat) => (Projection::Spherical, [3.0, 2.0]);
+        object.offset => Offset { extend: -0.01, bevel: 0.25, chamfer: 0.5 };
+        object.axis => [0.25, 0.75];
+        object.repeat => [1, 2, 3];
+        object.mirror => [true, false, true];
+        object.placement.position => DVec3::new(1.0, 2.0, 3.0);
+        object.placement.rotation => DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
+        object.placement.scale => DVec3::new(1.0, 2.0, 0.5);
+        object.instances.len() => 2;
+        object.instances[1].scale.z => 2.0;
+        object.placements().len() => 2;
+    }
 }
 
 #[test]

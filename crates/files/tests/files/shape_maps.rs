@@ -13,18 +13,19 @@ fn cylinder() -> Profile {
     Profile::polygon(&[[0.0, 0.25], [0.25, 0.25], [0.25, 0.75], [0.0, 0.75]], 0.5).unwrap()
 }
 
-fn full_image() -> Profile {
-    let raster = Raster {
-        columns: 8,
-        rows: 16,
-        coverage: vec![1.0; 128],
+/// A map of at least the reach.
+fn baked(profile: &Profile, source: MapSource, rows: u32, reach: f64) -> revmap::Result<ShapeMap> {
+    let options = BakeOptions {
+        source,
+        rows,
+        reach,
     };
-    trace(raster).unwrap()
+    ShapeMap::bake(profile, &options)
 }
 
 #[test]
 fn texels_stand_where_the_contract_says() {
-    let map = ShapeMap::bake(&cylinder(), &BakeOptions::new(MapSource::EXACT, 16)).unwrap();
+    let map = baked(&cylinder(), MapSource::EXACT, 16, 0.0).unwrap();
     assert_eq!((map.columns, map.rows, map.texel()), (8, 16, 1.0 / 16.0));
     // Texel (6, 1): r = 6.5 / 16, z = 14.5 / 16.
     let expected = DVec2::new(6.5 / 16.0 - 0.25, 14.5 / 16.0 - 0.75).length();
@@ -41,7 +42,7 @@ fn texels_stand_where_the_contract_says() {
 
 #[test]
 fn binary_distances_run_between_centres() {
-    let map = ShapeMap::bake(&cylinder(), &BakeOptions::new(BINARY, 16)).unwrap();
+    let map = baked(&cylinder(), BINARY, 16, 0.0).unwrap();
     let row: Vec<f32> = map.distance[8 * 8..8 * 9]
         .iter()
         .map(|d| d * 16.0)
@@ -51,26 +52,20 @@ fn binary_distances_run_between_centres() {
 
 #[test]
 fn the_borders_of_an_image_are_boundaries_and_the_axis_is_none() {
+    let full = trace(Raster {
+        columns: 8,
+        rows: 16,
+        coverage: vec![1.0; 128],
+    });
+    let full = full.unwrap();
     for source in SOURCES {
-        let map = ShapeMap::bake(
-            &full_image(),
-            &BakeOptions {
-                reach: 0.7,
-                ..BakeOptions::new(source, 16)
-            },
-        )
-        .unwrap();
+        let map = baked(&full, source, 16, 0.7).unwrap();
         assert_eq!(map.columns, 12);
         let shift = if source == BINARY { 0.0 } else { -0.5 };
-        let row: Vec<f64> = map.distance[12 * 8..12 * 9]
-            .iter()
-            .map(|&d| f64::from(d) * 16.0 - shift)
-            .collect();
-        let expected = [
-            -7.0, -6.0, -5.0, -4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0,
-        ];
-        for (got, wanted) in row.iter().zip(expected) {
-            assert!((got - wanted).abs() < 1e-5, "{source:?}: {row:?}");
+        for (k, &d) in map.distance[12 * 8..12 * 9].iter().enumerate() {
+            let wanted = k as f64 - 7.0 + shift;
+            let found = f64::from(d) * 16.0;
+            assert!((found - wanted).abs() < 1e-5, "{source:?} {k}: {found}");
         }
     }
 }
@@ -78,15 +73,7 @@ fn the_borders_of_an_image_are_boundaries_and_the_axis_is_none() {
 #[test]
 fn wider_maps_agree_with_narrow_ones() {
     for source in SOURCES {
-        let narrow = ShapeMap::bake(&cylinder(), &BakeOptions::new(source, 32)).unwrap();
-        let wide = ShapeMap::bake(
-            &cylinder(),
-            &BakeOptions {
-                reach: 0.9,
-                ..BakeOptions::new(source, 32)
-            },
-        )
-        .unwrap();
+        let [narrow, wide] = [0.0, 0.9].map(|reach| baked(&cylinder(), source, 32, reach).unwrap());
         assert_eq!((wide.columns, wide.radius), (29, 0.5));
         for row in 0..32 {
             let (a, b) = (
@@ -100,49 +87,27 @@ fn wider_maps_agree_with_narrow_ones() {
 
 #[test]
 fn faults_are_named() {
-    let bake = |p: &Profile, o: BakeOptions| ShapeMap::bake(p, &o).unwrap_err().to_string();
-    let new = BakeOptions::new;
-    assert!(bake(&cylinder(), new(MapSource::EXACT, 1)).contains("map_rows"));
-    assert!(bake(&cylinder(), new(MapSource::EXACT, 1 << 20)).contains("map_rows"));
-    assert!(
-        bake(
-            &cylinder(),
-            BakeOptions {
-                reach: f64::NAN,
-                ..new(MapSource::EXACT, 64)
-            }
-        )
-        .contains("finite")
-    );
-    assert!(
-        bake(
-            &cylinder(),
-            BakeOptions {
-                reach: 1e9,
-                ..new(MapSource::EXACT, 64)
-            }
-        )
-        .contains("columns")
-    );
+    let cylinder = cylinder();
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
-    assert!(bake(&thin, new(BINARY, 16)).contains("no texel"));
-    assert!(ShapeMap::bake(&thin, &new(MapSource::EXACT, 16)).is_ok());
+    for (profile, source, rows, reach, word) in [
+        (&cylinder, MapSource::EXACT, 1, 0.0, "map_rows"),
+        (&cylinder, MapSource::EXACT, 1 << 20, 0.0, "map_rows"),
+        (&cylinder, MapSource::EXACT, 64, f64::NAN, "finite"),
+        (&cylinder, MapSource::EXACT, 64, 1e9, "columns"),
+        (&thin, BINARY, 16, 0.0, "no texel"),
+    ] {
+        let text = baked(profile, source, rows, reach).unwrap_err().to_string();
+        assert!(text.contains(word), "{text}");
+    }
+    assert!(baked(&thin, MapSource::EXACT, 16, 0.0).is_ok());
 }
 
 #[test]
 fn the_same_on_any_number_of_threads() {
     for source in SOURCES {
-        let options = BakeOptions::new(source, 200);
-        let many = ShapeMap::bake(&cylinder(), &options).unwrap();
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .unwrap();
-        assert_eq!(
-            pool.install(|| ShapeMap::bake(&cylinder(), &options))
-                .unwrap(),
-            many
-        );
+        let bake = || baked(&cylinder(), source, 200, 0.0).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        assert_eq!(pool.unwrap().install(bake), bake());
     }
 }
 
@@ -152,9 +117,7 @@ fn balls() -> Vec<ShapeMap> {
         .map(|a| [0.37 * a.sin(), 0.5 - 0.37 * a.cos()])
         .collect();
     let ball = Profile::polygon(&points, 0.5).unwrap();
-    SOURCES
-        .map(|s| ShapeMap::bake(&ball, &BakeOptions::new(s, 100)).unwrap())
-        .to_vec()
+    SOURCES.map(|s| baked(&ball, s, 100, 0.0).unwrap()).to_vec()
 }
 
 #[test]
@@ -236,7 +199,7 @@ proptest! {
     // rounding to 32 bits.
     #[test]
     fn exact_maps_hold_the_outlines_distances(profile in star()) {
-        let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 40)).unwrap();
+        let map = baked(&profile, MapSource::EXACT, 40, 0.0).unwrap();
         for (k, &d) in map.distance.iter().enumerate() {
             let p = DVec2::new(((k % 28) as f64 + 0.5) / 40.0, 1.0 - ((k / 28) as f64 + 0.5) / 40.0);
             let exact = profile.outline.signed_distance(p);
@@ -249,7 +212,7 @@ proptest! {
     // more beyond the map.
     #[test]
     fn reconstruction_is_bounded(profile in star(), r in -1.5f64..1.5, z in -1.0f64..2.0) {
-        let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 40)).unwrap();
+        let map = baked(&profile, MapSource::EXACT, 40, 0.0).unwrap();
         let exact = profile.outline.signed_distance(DVec2::new(r.abs(), z));
         let read = map.distance_at(r, z);
         let slack = map.texel() * std::f64::consts::FRAC_1_SQRT_2 + 1e-6;
@@ -263,7 +226,7 @@ proptest! {
     #[test]
     fn every_source_is_lipschitz(profile in star()) {
         for source in SOURCES {
-            let map = ShapeMap::bake(&profile, &BakeOptions::new(source, 40)).unwrap();
+            let map = baked(&profile, source, 40, 0.0).unwrap();
             for row in map.distance.chunks(28) {
                 for pair in row.windows(2) {
                     let step = f64::from(pair[1] - pair[0]).abs() * 40.0;
