@@ -134,8 +134,8 @@
 //! # Other crates
 //!
 //! `revmap-files` reads profiles from SVG drawings and pictures, and scenes from TOML; it writes
-//! frames as PNG and EXR. Ground truth is `revmap-reference`; comparison, benchmarks and reports are
-//! in `revmap-lab`; the program is `revmap-cli`.
+//! frames as PNG and EXR. Ground truth is `revmap-reference`; comparison, benchmarks and reports
+//! are in `revmap-lab`; the program is `revmap-cli`.
 
 pub mod antialias;
 pub mod error;

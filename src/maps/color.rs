@@ -20,7 +20,8 @@ impl ColorMap {
     /// top.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content): no texels, or not `width * height` of them.
+    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content): no texels, or not `width * height`
+    /// of them.
     pub fn from_texels(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self> {
         check_count("colours", texels.len(), width, height)?;
         let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();

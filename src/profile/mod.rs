@@ -47,8 +47,8 @@ pub struct Profile {
     /// `R`: the shape box is `[-R, R]^2 x [0, 1]`.
     pub radius: f64,
     /// The pixels of the picture that the outline was traced from, for maps that are measured in
-    /// them. `None` for drawings and polygons, and for pictures whose axis is the middle of a column
-    /// of pixels.
+    /// them. `None` for drawings and polygons, and for pictures whose axis is the middle of a
+    /// column of pixels.
     pub raster: Option<Raster>,
     /// Features of the picture that look unintended: one sentence each, with the key that changes
     /// it.
@@ -74,9 +74,9 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content), with the key `polygon` or `radius`,
-    /// for fewer than 3 points, a coordinate that is not finite or beyond 10,000, a point with
-    /// `r < 0`, no area, or a radius that is not positive.
+    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content), with the key `polygon` or
+    /// `radius`, for fewer than 3 points, a coordinate that is not finite or beyond 10,000, a point
+    /// with `r < 0`, no area, or a radius that is not positive.
     pub fn polygon(points: &[[f64; 2]], radius: f64) -> Result<Self> {
         polygon::profile(points, radius)
     }

@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// written directly, since it cannot be replaced.
 ///
 /// # Errors
-/// The errors of `fill`; [`ErrorKind::File`](revmap::error::ErrorKind::File) if the file cannot be made or written (folder missing,
-/// no permission, full disk). Both errors name the file.
+/// The errors of `fill`; [`ErrorKind::File`](revmap::error::ErrorKind::File) if the file cannot be
+/// made or written (folder missing, no permission, full disk). Both errors name the file.
 pub fn write_atomically(
     target: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,

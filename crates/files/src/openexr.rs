@@ -3,19 +3,23 @@
 use crate::{file_fault, write_atomically};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, MetaData,
-    ReadChannels, ReadLayers, SmallVec, Text, WritableImage, read,
+    ReadChannels, ReadLayers, Text, WritableImage, read,
 };
 use revmap::error::Result;
 use revmap::frame::{CHANNELS, Frame, pixel_count};
 use revmap::maps::MAX_SIDE;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufReader, Read, Seek, Write};
 use std::path::Path;
+
+/// A layer of an EXR file.
+type FloatLayer = Layer<AnyChannels<FlatSamples>>;
 
 /// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed.
 ///
 /// # Errors
-/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be written.
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
+/// written.
 pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
     for index in 0..frame.pixels() {
@@ -23,36 +27,48 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
             plane.push(value);
         }
     }
-    let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = CHANNELS
-        .iter()
-        .zip(planes)
-        .map(|(name, plane)| AnyChannel::new(Text::new_or_panic(name), FlatSamples::F32(plane)))
-        .collect();
-    let size = (frame.width as usize, frame.height as usize);
     let attributes = LayerAttributes {
         software_name: Text::new_or_none("revmap"),
         ..LayerAttributes::default()
     };
-    let image = Image::from_layer(Layer::new(
-        size,
+    let channels = CHANNELS.into_iter().zip(planes);
+    let layer = layer([frame.width, frame.height], attributes, channels);
+    write_atomically(path.as_ref(), |writer| {
+        write_layer(layer, writer).map_err(|e| file_fault(format!("cannot be written: {e}")))
+    })
+}
+
+/// A layer of 32-bit float channels, ZIP-compressed.
+pub(crate) fn layer<'a>(
+    [width, height]: [u32; 2],
+    attributes: LayerAttributes,
+    channels: impl IntoIterator<Item = (&'a str, Vec<f32>)>,
+) -> FloatLayer {
+    let channel = |(name, values)| AnyChannel::new(name, FlatSamples::F32(values));
+    let channels = channels.into_iter().map(channel).collect();
+    Layer::new(
+        (width as usize, height as usize),
         attributes,
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels),
-    ));
-    write_atomically(path.as_ref(), |writer| {
-        image
-            .write()
-            .non_parallel()
-            .to_buffered(writer)
-            .map_err(|e| file_fault(format!("cannot be written: {}", one_line(&e))))
-    })
+    )
+}
+
+/// Writes a file of one layer; the error is one line.
+pub(crate) fn write_layer(
+    layer: FloatLayer,
+    writer: &mut (impl Write + Seek),
+) -> std::result::Result<(), String> {
+    let image = Image::from_layer(layer);
+    let written = image.write().non_parallel().to_buffered(writer);
+    written.map_err(|e| one_line(&e))
 }
 
 /// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
 ///
 /// # Errors
-/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be read or lacks a channel, which is the
-/// key; the errors of [`Frame::new`].
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be read
+/// or lacks a channel, which is the key; the errors of [`Frame::new`].
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Frame> {
     let path = path.as_ref();
     read_checked(path).map_err(|e| e.in_file(path))
@@ -123,9 +139,7 @@ pub(crate) fn layer_sizes(
 }
 
 /// The first layer of an EXR file, with all its channels.
-pub(crate) fn first_layer(
-    file: impl Read + Seek,
-) -> std::result::Result<Layer<AnyChannels<FlatSamples>>, String> {
+pub(crate) fn first_layer(file: impl Read + Seek) -> std::result::Result<FloatLayer, String> {
     let image = read()
         .no_deep_data()
         .largest_resolution_level()

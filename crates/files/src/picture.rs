@@ -10,7 +10,8 @@ use std::path::Path;
 /// linear.
 ///
 /// # Errors
-/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be written.
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
+/// written.
 pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     Picture::of(frame).write_png(path)
 }
@@ -43,7 +44,8 @@ impl Picture {
     /// Writes a PNG.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be written.
+    /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
+    /// written.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
         write_atomically(path.as_ref(), |writer| self.encode_png(writer))
     }
@@ -51,7 +53,8 @@ impl Picture {
     /// Writes the bytes of a PNG.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](revmap::error::ErrorKind::File) if they cannot be written, or if there are not `width * height` pixels.
+    /// [`ErrorKind::File`](revmap::error::ErrorKind::File) if they cannot be written, or if there
+    /// are not `width * height` pixels.
     pub fn encode_png(&self, writer: impl Write) -> Result<()> {
         let write = || -> std::result::Result<(), png::EncodingError> {
             let mut encoder = png::Encoder::new(writer, self.width, self.height);

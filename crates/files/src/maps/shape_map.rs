@@ -3,14 +3,11 @@
 use super::header::{Header, KEYWORD, shape_header};
 use super::source::{BINARY, binary_distances};
 use super::{encode_png, extension};
-use crate::openexr::{first_layer, layer_sizes};
+use crate::openexr::{first_layer, layer, layer_sizes, write_layer};
 use crate::pixels::{Pixels, Png, Samples};
 use crate::{file_fault, raster, write_bytes};
 use exr::meta::attribute::AttributeValue;
-use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
-    LayerAttributes, LineOrder, Text, WritableImage,
-};
+use exr::prelude::{FlatSamples, LayerAttributes, Text};
 use revmap::error::{Error, Result};
 use revmap::maps::{EncodedMap, MAX_SIDE, MapFormat, ShapeMap};
 use revmap::profile::Raster;
@@ -19,10 +16,10 @@ use std::path::Path;
 
 /// Writes the map in the format of the file's extension:
 ///
-/// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), with the scale and the
-///   other values in a text chunk;
-/// * `.exr`: lossless, 32-bit float channels `distance` (object units) and
-///   `form` (1 solid, 0 empty).
+/// * `.png`: the papers' texture, 8-bit RGBA ([`MapFormat::Rgba8`]), with the scale and the other
+///   values in a text chunk;
+/// * `.exr`: lossless, 32-bit float channels `distance` (object units) and `form` (1 solid, 0
+///   empty).
 ///
 /// The file is written completely or not at all.
 ///
@@ -80,34 +77,21 @@ fn to_png(map: &ShapeMap) -> Result<Vec<u8>> {
 }
 
 fn to_exr(map: &ShapeMap) -> Result<Vec<u8>> {
-    let form = map.form.iter().map(|&s| f32::from(u8::from(s))).collect();
-    let channels = [("distance", map.distance.clone()), ("form", form)]
-        .map(|(name, values)| AnyChannel::new(name, FlatSamples::F32(values)));
     let mut attributes = LayerAttributes::named("shape map");
-    attributes.other.insert(
-        Text::from(KEYWORD),
-        AttributeValue::Text(Text::from(&*shape_header(map, 1.0))),
-    );
-    let layer = Layer::new(
-        (map.columns as usize, map.rows as usize),
-        attributes,
-        Encoding {
-            compression: Compression::ZIP16,
-            blocks: Blocks::ScanLines,
-            line_order: LineOrder::Increasing,
-        },
-        AnyChannels::sort(channels.into_iter().collect()),
-    );
+    let header = AttributeValue::Text(Text::from(&*shape_header(map, 1.0)));
+    attributes.other.insert(Text::from(KEYWORD), header);
+    let form = map.form.iter().map(|&s| f32::from(u8::from(s))).collect();
+    let channels = [("distance", map.distance.clone()), ("form", form)];
     let mut out = Cursor::new(Vec::new());
-    Image::from_layer(layer)
-        .write()
-        .non_parallel()
-        .to_buffered(&mut out)
-        .map_err(|e| {
-            file_fault(format!(
-                "the map cannot be written as EXR ({e}); write a .png"
-            ))
-        })?;
+    write_layer(
+        layer([map.columns, map.rows], attributes, channels),
+        &mut out,
+    )
+    .map_err(|e| {
+        file_fault(format!(
+            "the map cannot be written as EXR ({e}); write a .png"
+        ))
+    })?;
     Ok(out.into_inner())
 }
 

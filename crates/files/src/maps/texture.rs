@@ -23,8 +23,8 @@ pub fn color_map(path: impl AsRef<Path>) -> Result<ColorMap> {
     })
 }
 
-/// Computes the slopes of an image file (PNG, JPEG); its luminance, as stored, is the height. A file
-/// that [`write_displacement_map`] wrote is loaded with its slopes.
+/// Computes the slopes of an image file (PNG, JPEG); its luminance, as stored, is the height. A
+/// file that [`write_displacement_map`] wrote is loaded with its slopes.
 ///
 /// # Errors
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File): missing, damaged, no picture, larger than

@@ -68,18 +68,11 @@ fn count_along_row(line: &[bool], out: &mut [u32]) {
         let value = line[start];
         let length = line[start..].iter().take_while(|&&v| v == value).count();
         let end = start + length;
-        let left = start > 0;
-        let right = end < line.len() || value;
-        let run = &mut out[start..end];
-        match (left, right) {
-            (true, true) => {
-                for (k, d) in run.iter_mut().enumerate() {
-                    *d = (k + 1).min(length - k) as u32;
-                }
-            }
-            (true, false) => run.iter_mut().zip(1..).for_each(|(d, k)| *d = k),
-            (false, true) => run.iter_mut().rev().zip(1..).for_each(|(d, k)| *d = k),
-            (false, false) => {}
+        for (k, distance) in out[start..end].iter_mut().enumerate() {
+            let left = if start > 0 { k + 1 } else { usize::MAX };
+            let meets_right = end < line.len() || value;
+            let right = if meets_right { length - k } else { usize::MAX };
+            *distance = u32::try_from(left.min(right)).unwrap_or(NONE);
         }
         start = end;
     }

@@ -154,39 +154,29 @@ impl Canvas {
     fn draw_path(&self, path: &usvg::Path, to_profile: Affine, layer: &mut Layer) -> Result<usize> {
         let curve = curve(path.data());
         check_reach(&curve, to_profile)?;
-        let mut count = 0;
-        let mut fill = |layer: &mut Layer| -> Result<()> {
-            if let Some(fill) = path.fill() {
-                let region = self.enclosed(&curve, to_profile, FLATNESS, rule(fill.rule()));
-                layer.paint(region, self.color(fill.paint(), fill.opacity().get())?);
-                count += 1;
-            }
-            Ok(())
-        };
-        let stroke_last = path.paint_order() == usvg::PaintOrder::FillAndStroke;
-        if stroke_last {
-            fill(layer)?;
+        let mut paints = Vec::new();
+        if let Some(fill) = path.fill() {
+            let region = self.enclosed(&curve, to_profile, FLATNESS, rule(fill.rule()));
+            paints.push((region, self.color(fill.paint(), fill.opacity().get())?));
         }
         if let Some(stroke) = path.stroke() {
             let color = self.color(stroke.paint(), stroke.opacity().get())?;
             // Half of the tolerance is for the stroke's outline, half for its flattening.
             let tolerance = 0.5 * FLATNESS / magnification(to_profile);
             check_dashes(&curve, stroke)?;
-            let band = kurbo::stroke(
-                curve.iter(),
-                &stroke_style(stroke),
-                &StrokeOpts::default(),
-                tolerance,
-            );
-            layer.paint(
-                self.enclosed(&band, to_profile, 0.5 * FLATNESS, FillRule::NonZero),
-                color,
-            );
+            let (style, options) = (stroke_style(stroke), StrokeOpts::default());
+            let band = kurbo::stroke(curve.iter(), &style, &options, tolerance);
+            let region = self.enclosed(&band, to_profile, 0.5 * FLATNESS, FillRule::NonZero);
+            paints.push((region, color));
         }
-        if !stroke_last {
-            fill(layer)?;
+        if path.paint_order() == usvg::PaintOrder::StrokeAndFill {
+            paints.reverse();
         }
-        Ok(count + usize::from(path.stroke().is_some()))
+        let count = paints.len();
+        for (region, color) in paints {
+            layer.paint(region, color);
+        }
+        Ok(count)
     }
 
     /// The union of a clip path's shapes, cut by its own clip path.

@@ -20,8 +20,8 @@ use std::path::Path;
 /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the bottom
 /// edge `z = 0`. Everything darker than one half over white is solid, unless the options say
 /// otherwise. Pictures are traced as by [`trace`](crate::trace()). The curves of drawings are
-/// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, and half of
-/// that with the axis in the middle.
+/// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, and half
+/// of that with the axis in the middle.
 ///
 /// ```no_run
 /// let pawn = revmap_files::profile("pawn.svg", revmap_files::ProfileAxis::Center)?;
@@ -32,8 +32,8 @@ use std::path::Path;
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File) for a file that is missing, a folder,
 /// damaged, or neither picture nor drawing.
 /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) for a picture of more than 16384 or
-/// less than 2 pixels on a side, all light or all dark, or a drawing with parts that have no outline
-/// (text, pictures, patterns, masks, filters). The error names the file in both cases.
+/// less than 2 pixels on a side, all light or all dark, or a drawing with parts that have no
+/// outline (text, pictures, patterns, masks, filters). The error names the file in both cases.
 pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Profile> {
     let (path, options) = (path.as_ref(), options.into());
     let read = || profile_from_bytes(&read_file(path)?, options);

@@ -26,25 +26,23 @@ pub fn resample(raster: &Raster, columns: u32, rows: u32) -> Raster {
         raster.columns as usize,
         f64::from(raster.rows) / f64::from(rows),
     );
-    let across = spans(columns as usize, ratio, width);
-    let down = spans(rows as usize, ratio, raster.rows as usize);
-    coverage
-        .par_chunks_mut(columns as usize)
-        .zip(&down)
-        .for_each(|(out, rows_of)| {
-            // First the columns of the old grid, then, by a running sum, intervals of it.
-            let mut sums = vec![0.0f64; width];
-            for (row, weight) in rows_of.pixels() {
-                let line = &raster.coverage[row * width..][..width];
-                for (sum, &c) in sums.iter_mut().zip(line) {
-                    *sum += weight * f64::from(c);
-                }
+    let rows_of = |row| covered(row, ratio, raster.rows as usize);
+    let lines = coverage.par_chunks_mut(columns as usize).enumerate();
+    lines.for_each(|(row, out)| {
+        // First the rows of the old grid, then intervals of their sums.
+        let mut sums = vec![0.0f64; width];
+        for (row, weight) in rows_of(row) {
+            let line = &raster.coverage[row * width..][..width];
+            for (sum, &c) in sums.iter_mut().zip(line) {
+                *sum += weight * f64::from(c);
             }
-            for (value, span) in out.iter_mut().zip(&across) {
-                let sum: f64 = span.pixels().map(|(c, weight)| weight * sums[c]).sum();
-                *value = (sum / (ratio * ratio)).clamp(0.0, 1.0) as f32;
-            }
-        });
+        }
+        for (column, value) in out.iter_mut().enumerate() {
+            let parts = covered(column, ratio, width);
+            let sum: f64 = parts.map(|(c, weight)| weight * sums[c]).sum();
+            *value = (sum / (ratio * ratio)).clamp(0.0, 1.0) as f32;
+        }
+    });
     Raster {
         columns,
         rows,
@@ -100,33 +98,15 @@ pub(crate) fn bounds(raster: &Raster) -> Option<Bounds> {
     })
 }
 
-/// An interval of a line of pixels, in pixels.
-#[derive(Clone, Copy)]
-struct Span {
-    from: f64,
-    to: f64,
-}
-
-impl Span {
-    /// The pixels that the interval touches, with the covered part of each.
-    fn pixels(self) -> impl Iterator<Item = (usize, f64)> {
-        let last = self.to.ceil().max(self.from) as usize;
-        (self.from as usize..last).filter_map(move |k| {
-            let part = self.to.min(k as f64 + 1.0) - self.from.max(k as f64);
-            (part > 0.0).then_some((k, part))
-        })
-    }
-}
-
-/// The part of a line of `length` old pixels that each of `count` new pixels covers.
-fn spans(count: usize, ratio: f64, length: usize) -> Vec<Span> {
-    let end = length as f64;
-    (0..count)
-        .map(|k| Span {
-            from: (k as f64 * ratio).min(end),
-            to: ((k + 1) as f64 * ratio).min(end),
-        })
-        .collect()
+/// The old pixels, of a line of `length`, that pixel `k` of the new line covers, each with the
+/// covered part of it. A new pixel is `ratio` old ones long.
+fn covered(k: usize, ratio: f64, length: usize) -> impl Iterator<Item = (usize, f64)> {
+    let [from, to] = [k, k + 1].map(|k| (k as f64 * ratio).min(length as f64));
+    let touched = from as usize..to.ceil().max(from) as usize;
+    touched.filter_map(move |k| {
+        let part = to.min(k as f64 + 1.0) - from.max(k as f64);
+        (part > 0.0).then_some((k, part))
+    })
 }
 
 #[cfg(test)]

@@ -112,8 +112,8 @@ impl SceneFile {
     /// `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] and [`ErrorKind::File`], with file and key; [`ErrorKind::Usage`] for a
-    /// malformed assignment, with its key or `sets`.
+    /// [`ErrorKind::Content`] and [`ErrorKind::File`], with file and key; [`ErrorKind::Usage`] for
+    /// a malformed assignment, with its key or `sets`.
     pub fn scene(&mut self, sets: &[String]) -> Result<Scene> {
         let mut read = || {
             let scene = self.reader.scene(&overrides::applied(&self.root, sets)?)?;

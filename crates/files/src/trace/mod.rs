@@ -38,8 +38,8 @@ use std::collections::HashMap;
 /// and right border is empty.
 ///
 /// # Errors
-/// [`ErrorKind::Content`](revmap::error::ErrorKind::Content): no pixel is more than half covered, or
-/// the list of coverages has not `columns * rows` values.
+/// [`ErrorKind::Content`](revmap::error::ErrorKind::Content): no pixel is more than half covered,
+/// or the list of coverages has not `columns * rows` values.
 pub fn trace(raster: Raster) -> Result<Profile> {
     trace_split(raster, false)
 }

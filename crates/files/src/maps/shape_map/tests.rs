@@ -14,14 +14,15 @@ fn map(source: MapSource) -> ShapeMap {
         [0.0, 0.2],
     ];
     let profile = Profile::polygon(&cup, 1.0 / 3.0).unwrap();
-    ShapeMap::bake(
-        &profile,
-        &BakeOptions {
-            reach: 0.45,
-            ..BakeOptions::new(source, 97)
-        },
-    )
-    .unwrap()
+    bake(&profile, source)
+}
+
+fn bake(profile: &Profile, source: MapSource) -> ShapeMap {
+    let options = BakeOptions {
+        reach: 0.45,
+        ..BakeOptions::new(source, 97)
+    };
+    ShapeMap::bake(profile, &options).unwrap()
 }
 
 #[test]
@@ -59,14 +60,7 @@ fn the_papers_texture_comes_back_within_its_bytes() {
     // The file read as a profile is the form, in the box of the original map.
     let profile = profile(&file, ProfileAxis::Center).unwrap();
     assert_eq!(profile.radius, map.radius);
-    let again = ShapeMap::bake(
-        &profile,
-        &BakeOptions {
-            reach: 0.45,
-            ..BakeOptions::new(BINARY, 97)
-        },
-    );
-    assert_eq!(again.unwrap().form, map.form);
+    assert_eq!(bake(&profile, BINARY).form, map.form);
 }
 
 #[test]

@@ -47,40 +47,38 @@ fn a_circle_is_flattened_within_the_tolerance() {
 
 #[test]
 fn later_paint_covers_earlier_paint() {
-    let square = r#"<rect x="10" y="10" width="40" height="40"/>"#;
-    near(area(square), 1600.0);
-    let hole = r##"<rect x="20" y="20" width="10" height="20" fill="#fff"/>"##;
-    near(area(&format!("{square}{hole}")), 1400.0);
-    near(area(&format!("{hole}{square}")), 1600.0);
-    let dot = r#"<rect x="24" y="24" width="2" height="2" fill="navy"/>"#;
-    near(area(&format!("{square}{hole}{dot}")), 1404.0);
-    near(
-        area(&format!(
-            "<g id='a'>{square}</g><use xlink:href='#a' x='45'/>"
-        )),
-        3200.0,
-    );
+    let square = "<rect x='10' y='10' width='40' height='40'/>";
+    let hole = "<rect x='20' y='20' width='10' height='20' fill='#fff'/>";
+    let dot = "<rect x='24' y='24' width='2' height='2' fill='navy'/>";
+    let twice = format!("<g id='a'>{square}</g><use xlink:href='#a' x='45'/>");
+    for (body, wanted) in [
+        (square.to_owned(), 1600.0),
+        (format!("{square}{hole}"), 1400.0),
+        (format!("{hole}{square}"), 1600.0),
+        (format!("{square}{hole}{dot}"), 1404.0),
+        (twice, 3200.0),
+    ] {
+        near(area(&body), wanted);
+    }
 }
 
 #[test]
 fn fill_rules_and_transforms() {
-    let two = "M10,10h40v40h-40z M20,20h10v10h-10z";
-    near(area(&format!("<path d='{two}'/>")), 1600.0);
-    near(
-        area(&format!("<path fill-rule='evenodd' d='{two}'/>")),
-        1500.0,
-    );
-    near(
-        area(
-            "<g transform='translate(10 10) scale(2 0.5)'><rect width='10' height='40' transform='skewX(30)'/></g>",
+    for (body, wanted) in [
+        ("<path d='M10,10h40v40h-40z M20,20h10v10h-10z'/>", 1600.0),
+        (
+            "<path fill-rule='evenodd' d='M10,10h40v40h-40z M20,20h10v10h-10z'/>",
+            1500.0,
         ),
-        400.0,
-    );
-    // Out of the viewport on all sides: cut to it.
-    near(
-        area("<rect x='50' y='-500' width='5000' height='550'/>"),
-        2500.0,
-    );
+        (
+            "<g transform='translate(10 10) scale(2 0.5)'><rect width='10' height='40' transform='skewX(30)'/></g>",
+            400.0,
+        ),
+        // Out of the viewport on all sides: cut to it.
+        ("<rect x='50' y='-500' width='5000' height='550'/>", 2500.0),
+    ] {
+        near(area(body), wanted);
+    }
 }
 
 #[test]
@@ -106,45 +104,35 @@ fn strokes_with_caps_joins_and_dashes() {
     near(angle("bevel"), 775.0 + 12.5);
     near(angle("round"), 775.0 + PI * 25.0 / 4.0);
     // Fill below stroke: a light border takes its half from the dark inside.
-    near(
-        area("<rect x='20' y='20' width='40' height='40' stroke='#fff' stroke-width='10'/>"),
-        900.0,
-    );
-    near(
-        area(
-            "<rect x='20' y='20' width='40' height='40' stroke='#fff' stroke-width='10' paint-order='stroke'/>",
-        ),
-        1600.0,
-    );
+    let bordered = |order: &str| {
+        area(&format!(
+            "<rect x='20' y='20' width='40' height='40' stroke='#fff' stroke-width='10' {order}/>"
+        ))
+    };
+    near(bordered(""), 900.0);
+    near(bordered("paint-order='stroke'"), 1600.0);
 }
 
 #[test]
 fn opacity_and_groups() {
     let square =
         |x: u32, more: &str| format!("<rect x='{x}' y='10' width='40' height='40' {more}/>");
+    let two = |a: &str, x, b: &str| square(10, a) + &square(x, b);
+    let translucent = "fill-opacity='0.4'";
+    for (body, wanted) in [
+        (square(10, "fill-opacity='0.6'"), 1600.0),
+        // Two layers that are each light are dark together.
+        (two(translucent, 20, translucent), 30.0 * 40.0),
+        // Half-transparent white over black: grey, still dark below 0.5.
+        (two("", 30, "fill='#fff' fill-opacity='0.4'"), 1600.0),
+        (two("", 30, "fill='#fff' fill-opacity='0.6'"), 800.0),
+    ] {
+        near(area(&body), wanted);
+    }
     assert!(drawn(&square(10, "opacity='0.4'")).is_err());
-    near(area(&square(10, "fill-opacity='0.6'")), 1600.0);
-    // Two layers that are each light are dark together.
-    let both = square(10, "fill-opacity='0.4'") + &square(20, "fill-opacity='0.4'");
-    near(area(&both), 30.0 * 40.0);
-    // In a group of that opacity they are not.
-    assert!(
-        drawn(&format!(
-            "<g opacity='0.4'>{}{}</g>",
-            square(10, ""),
-            square(20, "")
-        ))
-        .is_err()
-    );
-    // Half-transparent white over black: grey, still dark below 0.5.
-    near(
-        area(&(square(10, "") + &square(30, "fill='#fff' fill-opacity='0.4'"))),
-        1600.0,
-    );
-    near(
-        area(&(square(10, "") + &square(30, "fill='#fff' fill-opacity='0.6'"))),
-        800.0,
-    );
+    // In a group of that opacity two layers stay light.
+    let group = format!("<g opacity='0.4'>{}</g>", two("", 20, ""));
+    assert!(drawn(&group).is_err());
 }
 
 #[test]
