@@ -1,6 +1,7 @@
 //! How far apart two silhouettes are.
 
 use revmap::frame::Frame;
+use revmap::maps::transform::{Surroundings, squared_to_other};
 
 /// Hausdorff distance of the silhouettes in pixels: the farthest that a pixel of one lies from the
 /// nearest of the other.
@@ -18,14 +19,11 @@ pub fn silhouette_hausdorff(a: &Frame, b: &Frame) -> f64 {
     }
     let farthest = |from: &[bool], to: &[bool]| {
         let squares = squares_to(to, a.width as usize);
-        from.iter()
-            .zip(squares)
-            .filter(|(is, _)| **is)
-            .fold(0.0, |m: f64, (_, s)| m.max(s))
+        let own = from.iter().zip(squares).filter(|(is, _)| **is);
+        own.fold(0.0, |m: f64, (_, s)| m.max(s))
     };
-    farthest(&edge_a, &edge_b)
-        .max(farthest(&edge_b, &edge_a))
-        .sqrt()
+    let both = farthest(&edge_a, &edge_b).max(farthest(&edge_b, &edge_a));
+    both.sqrt()
 }
 
 /// Whether each pixel belongs to the silhouette.
@@ -44,56 +42,15 @@ pub(super) fn silhouette(frame: &Frame) -> Vec<bool> {
         .collect()
 }
 
-/// Square of the distance of every pixel to the nearest marked one, exact: along columns, then the
-/// lower envelope of parabolas along rows (Felzenszwalb and Huttenlocher, Distance Transforms of
-/// Sampled Functions, 2012).
+/// Square of the distance of every pixel to the nearest marked one, exact.
 pub(super) fn squares_to(marked: &[bool], width: usize) -> Vec<f64> {
-    // Farther than anything in the picture, and finite: differences stay numbers.
-    let far = 4.0 * (marked.len() as f64 + 1.0).powi(2);
-    let mut squares: Vec<f64> = marked.iter().map(|&m| if m { 0.0 } else { far }).collect();
-    let height = marked.len() / width;
-    let mut line = Vec::with_capacity(width.max(height));
-    for x in 0..width {
-        line.clear();
-        line.extend((0..height).map(|y| squares[y * width + x]));
-        for (y, value) in envelope(&line).into_iter().enumerate() {
-            squares[y * width + x] = value;
-        }
-    }
-    for row in squares.chunks_mut(width) {
-        let values = envelope(row);
-        row.copy_from_slice(&values);
-    }
-    squares
-}
-
-/// `min over p of (q - p)^2 + f[p]` for every `q`.
-fn envelope(f: &[f64]) -> Vec<f64> {
-    // Parabolas of the envelope: place of the vertex, and where it takes over from the one before.
-    let mut parts: Vec<(usize, f64)> = Vec::with_capacity(f.len());
-    for (q, &value) in f.iter().enumerate() {
-        let mut start = f64::NEG_INFINITY;
-        while let Some(&(p, from)) = parts.last() {
-            let (x, y) = (q as f64, p as f64);
-            start = (value - f[p] + x * x - y * y) / (2.0 * (x - y));
-            if start > from {
-                break;
-            }
-            parts.pop();
-            start = f64::NEG_INFINITY;
-        }
-        parts.push((q, start));
-    }
-    let mut part = 0;
-    (0..f.len())
-        .map(|q| {
-            while part + 1 < parts.len() && parts[part + 1].1 <= q as f64 {
-                part += 1;
-            }
-            let p = parts[part].0;
-            (q as f64 - p as f64).powi(2) + f[p]
-        })
-        .collect()
+    let around = Surroundings {
+        left: false,
+        others: false,
+    };
+    let squares = squared_to_other(marked, width, around);
+    let own = |(is_marked, square): (&bool, u32)| if *is_marked { 0.0 } else { square.into() };
+    marked.iter().zip(squares).map(own).collect()
 }
 
 #[cfg(test)]
@@ -122,11 +79,9 @@ mod tests {
         for (dx, dy) in [(1, 0), (0, 2), (3, 4), (-5, 2)] {
             let moved = frame(|x, y| block(x - dx, y - dy));
             let expected = f64::from(dx * dx + dy * dy).sqrt();
-            assert!((silhouette_hausdorff(&base, &moved) - expected).abs() < 1e-12);
-            assert_eq!(
-                silhouette_hausdorff(&base, &moved),
-                silhouette_hausdorff(&moved, &base)
-            );
+            let found = silhouette_hausdorff(&base, &moved);
+            assert!((found - expected).abs() < 1e-12);
+            assert_eq!(found, silhouette_hausdorff(&moved, &base));
         }
         // One ghost, 7 to the right of the block and 3 below it.
         let spot = frame(|x, y| block(x, y) || (x, y) == (36, 27));
@@ -142,24 +97,21 @@ mod tests {
         assert_eq!(silhouette_hausdorff(&none, &none), 0.0);
         assert_eq!(silhouette_hausdorff(&all, &all), 0.0);
         assert_eq!(silhouette_hausdorff(&all, &none), f64::INFINITY);
-        assert_eq!(
-            silhouette(&all).iter().filter(|&&s| s).count(),
-            2 * 60 + 2 * 38
-        );
+        let rim = silhouette(&all).iter().filter(|&&s| s).count();
+        assert_eq!(rim, 2 * 60 + 2 * 38);
     }
 
     #[test]
     fn the_transform_is_exact() {
         let (w, h) = (23, 17);
         for seed in 0u32..20 {
-            let marked: Vec<bool> = (0..w * h)
-                .map(|k| {
-                    ((k as u32)
-                        .wrapping_mul(2_654_435_761)
-                        .wrapping_add(seed * 977))
-                    .is_multiple_of(29 + seed)
-                })
-                .collect();
+            let hash = |k: usize| {
+                (k as u32)
+                    .wrapping_mul(2_654_435_761)
+                    .wrapping_add(seed * 977)
+            };
+            let is_marked = |k| hash(k).is_multiple_of(29 + seed);
+            let marked: Vec<bool> = (0..w * h).map(is_marked).collect();
             if !marked.contains(&true) {
                 continue;
             }
