@@ -16,6 +16,7 @@ mod prewarm;
 mod refresh;
 mod renderer;
 pub(crate) mod resources;
+mod scene_view;
 #[cfg(feature = "other-shaders")]
 #[doc(hidden)]
 pub use vk::compiler;
@@ -33,7 +34,7 @@ pub use frame::target::ComputeTarget;
 pub use memory::Buffer;
 pub use memory::budget::MemoryUse;
 pub use object_id::ObjectId;
-pub use offscreen::{Guest, Offscreen, Times};
+pub use offscreen::{Guest, Offscreen, OffscreenOptions, Times};
 pub use prewarm::Prewarm;
 pub use renderer::Renderer;
 pub use vk::call::{allocation_error, vulkan_error};
