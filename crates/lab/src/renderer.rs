@@ -67,7 +67,7 @@ impl MethodDevice {
             let (pipelines, samples) = (&self.pipelines, options.samples);
             let mut new = MeshLayer::new(pipelines, &offscreen, settings, samples)?;
             new.update(scene, || Ok(*offscreen.view()))?;
-            meshes = Some(new);
+            meshes = Some(Box::new(new));
         }
         Ok(MethodRenderer { meshes, offscreen })
     }
@@ -111,7 +111,7 @@ impl MethodDevice {
 /// A scene on a device and a picture that it is drawn into, by any method.
 pub struct MethodRenderer {
     // Dropped first: its frames were waited for.
-    meshes: Option<MeshLayer>,
+    meshes: Option<Box<MeshLayer>>,
     /// Of meshes without the scene's objects.
     offscreen: Box<Offscreen>,
 }
@@ -147,9 +147,9 @@ impl MethodRenderer {
     /// # Errors
     /// Of drawing.
     pub fn draw(&mut self) -> Result<Times> {
-        let guest = self.meshes.as_ref().map(MeshLayer::guest);
+        let guest = self.meshes.as_ref().map(|meshes| meshes.guest());
         let times = self.offscreen.draw_with(guest)?;
-        self.meshes.iter_mut().for_each(MeshLayer::drop_staging);
+        self.meshes.iter_mut().for_each(|m| m.drop_staging());
         Ok(times)
     }
 
@@ -164,7 +164,7 @@ impl MethodRenderer {
     /// As [`Offscreen::rebuild_count`], or how many meshes were made.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
-        let meshes = self.meshes.as_ref().map(MeshLayer::made_count);
+        let meshes = self.meshes.as_ref().map(|meshes| meshes.made_count());
         meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
     }
 
@@ -185,7 +185,7 @@ impl MethodRenderer {
     /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
-        let meshes = self.meshes.as_ref().map(MeshLayer::bytes);
+        let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
         meshes.unwrap_or_else(|| self.offscreen.device_bytes())
     }
 

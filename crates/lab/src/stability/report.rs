@@ -106,8 +106,10 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     outcome.trials.iter().filter(is_failure).map(line).collect()
 }
 
+type Text = fn(&Judged) -> String;
+
 /// The columns of `results.csv` that a judged picture fills.
-const JUDGED: [(&str, fn(&Judged) -> String); 11] = [
+const JUDGED: [(&str, Text); 11] = [
     ("hits", |j| j.hits.to_string()),
     ("missed", |j| j.missed.to_string()),
     ("ghost", |j| j.ghost.to_string()),
