@@ -2,7 +2,7 @@
 
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
-use crate::frame::Frame;
+use crate::frame::{Frame, Picture};
 use crate::gpu::device::{Device, Shared};
 use crate::gpu::frame::costs::ObjectCost;
 use crate::gpu::frame::output::{Output, PassFormats, PassKind};
@@ -348,6 +348,27 @@ impl Offscreen {
             Some(by) => read_back::smoothed(settings, background, &planes, by, &self.view),
             None => read_back::frame(settings, background, &planes),
         }
+    }
+
+    /// The colours of the frame that was drawn last, without smoothed silhouettes: for a window,
+    /// which has no time to make a [`Frame`].
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way, and for
+    /// other planes than [`Planes::Color`].
+    pub fn picture(&mut self) -> Result<Picture> {
+        self.check_whole()?;
+        if self.settings.planes != Planes::Color {
+            let message = "pictures are of colours alone; read a frame of all planes";
+            return Err(Error::new(ErrorKind::Usage, message));
+        }
+        let planes = self.target.read(&self.commands)?;
+        let colors = planes.first().copied().unwrap_or_default();
+        Ok(Picture {
+            width: self.settings.width,
+            height: self.settings.height,
+            rgba: colors.as_chunks().0.to_vec(),
+        })
     }
 
     /// Same as [`Renderer::map_bytes`].
