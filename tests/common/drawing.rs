@@ -1,7 +1,7 @@
 //! Drawing on one validated device, and in the reference.
 
 use revmap::frame::Frame;
-use revmap::gpu::{self, Device};
+use revmap::gpu::{self, Device, Offscreen};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::OnceLock;
@@ -17,6 +17,18 @@ pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
     gpu::draw(device(), scene, settings)
         .unwrap_or_else(|e| panic!("{e}"))
         .frame
+}
+
+/// The next frame of a renderer.
+pub fn next_frame(renderer: &mut Offscreen) -> Frame {
+    renderer.draw().unwrap();
+    renderer.read().unwrap()
+}
+
+/// The first frame of a renderer for this scene, after an update to it.
+pub fn updated(renderer: &mut Offscreen, scene: &Scene) -> Frame {
+    renderer.update(scene).unwrap();
+    next_frame(renderer)
 }
 
 /// Draws the reference.

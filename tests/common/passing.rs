@@ -1,7 +1,7 @@
 //! Checks that a picture's hits are first hits. Counts surfaces that a search has missed by more
 //! than a texel, and hits that do not exist.
 
-use super::{device, reference};
+use super::{device, reference, updated};
 use rayon::prelude::*;
 use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
@@ -92,12 +92,8 @@ pub fn counts<const N: usize>(
     let mut renderers = settings.map(|s| Offscreen::new(device(), &scenes[0], s).unwrap());
     let all = scenes.iter().map(|scene| {
         let truth = reference(scene, settings[0]);
-        renderers.each_mut().map(|renderer| {
-            renderer.update(scene).unwrap();
-            renderer.draw().unwrap();
-            let frame = renderer.read().unwrap();
-            count(scene, &truth, &frame, texel)
-        })
+        let frames = renderers.each_mut().map(|r| updated(r, scene));
+        frames.map(|frame| count(scene, &truth, &frame, texel))
     });
     let all = all.collect();
     drop(renderers);

@@ -1,10 +1,10 @@
 //! Fragment and compute pictures of one scene are equal bit for bit, in every channel.
 
-use crate::common::{draw, eye, placement, scene_of, shapes};
+use crate::common::{draw, eye, from_boxes, hits, in_compute, placement, scene_of, shapes, sized};
 use glam::DVec3;
 use revmap::maps::MapFormat;
 use revmap::scene::{Camera, Object, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{Settings, Solver};
 use std::sync::Arc;
 
 /// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
@@ -22,8 +22,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         }),
         ("stretched and turned", {
             let mut scene = scene_of(shapes::column(), eye(20.0, 2.4));
-            scene.objects[0].placement =
-                placement([0.1, -0.2, 0.3], [0.7, -0.4, 1.1], [2.0, 0.5, 1.0]);
+            let (at, turn) = ([0.1, -0.2, 0.3], [0.7, -0.4, 1.1]);
+            scene.objects[0].placement = placement(at, turn, [2.0, 0.5, 1.0]);
             scene
         }),
         ("small and far", {
@@ -49,21 +49,12 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         let mut object = Object::new(name, Arc::new(profile));
         let turn = n as f64 * 0.8;
         object.color = [0.2 + 0.1 * n as f32, 0.9 - 0.1 * n as f32, 0.5];
-        object.placement = placement(
-            [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn],
-            [0.2 * turn, 0.1, turn],
-            [0.8, 1.1, 0.7],
-        );
+        let at = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
+        object.placement = placement(at, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
         // Copies that pass through one another.
-        object.instances = vec![
-            object.placement,
-            placement(
-                [0.3 - 0.1 * turn, 0.2, 0.2],
-                [turn, 0.0, 0.4],
-                [0.5, 0.5, 0.9],
-            ),
-        ]
-        .into();
+        let at = [0.3 - 0.1 * turn, 0.2, 0.2];
+        let copy = placement(at, [turn, 0.0, 0.4], [0.5, 0.5, 0.9]);
+        object.instances = vec![object.placement, copy].into();
         crowd.objects.push(object);
     }
     all.push(("crowd", crowd));
@@ -87,26 +78,15 @@ fn fragment_and_compute_agree_bit_for_bit() {
         [(*n, scene, Solver::Quadric), (*n, scene, second)]
     });
     for (n, (name, scene), solver) in pairs {
-        let settings = Settings {
-            width: 400,
-            height: 301,
+        let settings = from_boxes(Settings {
             map_format: formats[n % 3],
             solver,
             max_steps: Some(48),
-            // Cells and lists of patches change where rays start; culled tiles count no steps.
-            proxy_min_pixels: u32::MAX,
-            occlusion_culling: false,
-            ..Settings::exact()
-        };
+            ..sized(400, 301)
+        });
         let mut fragment = draw(scene, &settings);
-        let mut compute = draw(
-            scene,
-            &Settings {
-                stage: DrawStage::Compute,
-                ..settings
-            },
-        );
-        let hits = fragment.distance.iter().filter(|d| d.is_finite()).count();
+        let mut compute = draw(scene, &in_compute(settings));
+        let hits = hits(&fragment);
         assert!(hits > 200, "{name}: only {hits} pixels are hit");
         if *name == "crowd" {
             // Depths of other objects end a search of copies in compute; the depth test comes after
@@ -117,14 +97,11 @@ fn fragment_and_compute_agree_bit_for_bit() {
         if let Some(difference) = fragment.first_difference(&compute) {
             panic!("{name}, {solver:?}: {difference}");
         }
-        let mut culled = draw(
-            scene,
-            &Settings {
-                stage: DrawStage::Compute,
-                occlusion_culling: true,
-                ..settings
-            },
-        );
+        let culling = Settings {
+            occlusion_culling: true,
+            ..in_compute(settings)
+        };
+        let mut culled = draw(scene, &culling);
         fragment.steps.fill(0.0);
         culled.steps.fill(0.0);
         culled.exhausted = fragment.exhausted;
@@ -139,10 +116,8 @@ fn fragment_and_compute_agree_bit_for_bit() {
 fn one_changed_bit_is_noticed() {
     let (_, scene) = scenes().remove(0);
     let settings = Settings {
-        width: 64,
-        height: 48,
         solver: Solver::Quadric,
-        ..Settings::exact()
+        ..sized(64, 48)
     };
     let fragment = draw(&scene, &settings);
     let mut other = fragment.clone();

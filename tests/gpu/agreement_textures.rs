@@ -1,10 +1,13 @@
 //! Fragment and compute pictures are equal bit for bit with all textures, bumps and offsets.
 
-use crate::common::{assert_sound, draw, eye, placement, scene_of, shapes};
+use crate::common::{
+    assert_sound, draw, eye, from_boxes, hits, in_compute, offset, placement, scene_of, shapes,
+    sized,
+};
 use glam::DVec3;
 use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
 use revmap::scene::{BumpForm, Object, Offset, Scene, Shadow, Texturing};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{Planes, Settings, Solver};
 use revmap_searches::CIRCLE;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,11 +41,7 @@ fn covered(maps: &Maps, projection: Projection, bump_form: BumpForm) -> Texturin
     }
 }
 
-const CHAMFERED: Offset = Offset {
-    extend: -0.02,
-    bevel: 0.7,
-    chamfer: 0.15,
-};
+const CHAMFERED: Offset = offset(-0.02, 0.7, 0.15);
 
 fn scenes() -> Vec<(String, Scene)> {
     let maps = maps();
@@ -57,17 +56,12 @@ fn scenes() -> Vec<(String, Scene)> {
         all.push((format!("{projection:?}"), scene));
     }
     for (name, offset) in [
-        ("extended", [0.04, 0.0, 1.0]),
-        ("inset", [-0.01, 0.0, 1.0]),
-        ("beveled", [0.01, 0.3, 1.0]),
+        ("extended", offset(0.04, 0.0, 1.0)),
+        ("inset", offset(-0.01, 0.0, 1.0)),
+        ("beveled", offset(0.01, 0.3, 1.0)),
     ] {
         let mut scene = scene_of(shapes::glass(), eye(30.0, 1.9));
-        let [extend, bevel, chamfer] = offset;
-        scene.objects[0].offset = Offset {
-            extend,
-            bevel,
-            chamfer,
-        };
+        scene.objects[0].offset = offset;
         scene.objects[0].texturing = covered(&maps, Projection::Arc, BumpForm::SurfaceGradient);
         all.push((name.into(), scene));
     }
@@ -103,50 +97,31 @@ fn fragment_and_compute_agree_bit_for_bit() {
     let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     for (n, (name, scene)) in scenes().into_iter().enumerate() {
         let inset = scene.objects[0].offset.extend < 0.0; // the papers' format cannot hold this
-        let settings = Settings {
-            width: 200,
-            height: 151,
+        let settings = from_boxes(Settings {
             map_rows: Some(256),
             solver: [Solver::Live, CIRCLE, Solver::Quadric][n % 3],
-            map_format: if inset {
-                MapFormat::R16
-            } else {
-                formats[(n + n / 3) % 3]
+            map_format: match inset {
+                true => MapFormat::R16,
+                false => formats[(n + n / 3) % 3],
             },
-            // Cells and lists of patches change where rays start; culled tiles count no steps.
-            proxy_min_pixels: u32::MAX,
-            occlusion_culling: false,
-            ..Settings::exact()
-        };
-        let compute = Settings {
-            stage: DrawStage::Compute,
-            ..settings
-        };
+            ..sized(200, 151)
+        });
+        let compute = in_compute(settings);
         let fragment = draw(&scene, &settings);
         assert_sound(&fragment, &name);
-        let hits = (0..fragment.pixels()).filter(|&i| fragment.hits(i)).count();
+        let hits = hits(&fragment);
         assert!(hits > 1500, "{name}: only {hits} pixels are hit");
-        let tilted =
-            (0..fragment.pixels()).filter(|&i| fragment.normal[i] != fragment.shading_normal[i]);
-        let tilted = tilted.count();
+        let normals = fragment.normal.iter().zip(&fragment.shading_normal);
+        let tilted = normals.filter(|(a, b)| a != b).count();
         println!("{name}: {hits} hits, {tilted} with bumps");
         assert!(tilted > 300, "{name}: no bumps are seen");
         if let Some(difference) = fragment.first_difference(&draw(&scene, &compute)) {
             panic!("{name}: {difference}");
         }
         // Colour only: 8 bits, encoded separately by each stage.
-        let color = |stage| {
-            draw(
-                &scene,
-                &Settings {
-                    stage,
-                    planes: Planes::Color,
-                    ..settings
-                },
-            )
-            .color
-        };
-        let (a, b) = (color(DrawStage::Fragment), color(DrawStage::Compute));
+        let planes = Planes::Color;
+        let color = |settings| draw(&scene, &Settings { planes, ..settings }).color;
+        let (a, b) = (color(settings), color(compute));
         let most = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| {
             let code = |v: f32| revmap::frame::srgb_from_linear(f64::from(v)) * 255.0;
             (code(*a) - code(*b)).abs()

@@ -4,7 +4,7 @@
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 /// One machine word: a handle, a pointer or a number. Each wrapped function takes at most six.
 /// Every 64-bit calling convention passes them in the same places whatever their type (on Windows
@@ -143,9 +143,7 @@ impl Drop for Layer {
 
 impl Layer {
     pub fn take() -> Self {
-        let one = ONE
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         ALIVE.store(0, Ordering::SeqCst);
         Self { _one: one }
     }
@@ -191,9 +189,8 @@ impl Layer {
 
     /// The call that was made to fail.
     pub fn failed(&self) -> Option<&'static str> {
-        CALLS
-            .get(FAILED.load(Ordering::SeqCst))
-            .map(|name| name.to_str().unwrap())
+        let call = CALLS.get(FAILED.load(Ordering::SeqCst));
+        call.map(|name| name.to_str().unwrap())
     }
 
     /// Loses the device from now on; the call `told_by` reports the loss.
@@ -258,17 +255,7 @@ pub struct Mask {
     pub format: Option<vk::Format>,
 }
 
-static MASK: Mutex<Mask> = Mutex::new(Mask {
-    version: false,
-    stores: false,
-    anisotropy: false,
-    timestamps: false,
-    compute: false,
-    varyings: false,
-    sub_pixels: false,
-    samples: false,
-    format: None,
-});
+static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
 
 const QUERIES: [&CStr; 5] = [
     c"vkGetPhysicalDeviceProperties",
@@ -287,38 +274,43 @@ unsafe fn real<F: Copy>(n: usize) -> F {
     unsafe { std::mem::transmute_copy(&pointer) }
 }
 
-unsafe extern "system" fn properties(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: the driver's own function, and the caller's pointer.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceProperties>(0)(physical, out);
+/// Functions in place of the queries, by their numbers: the mask changes what the driver says.
+macro_rules! queries {
+    ($($n:literal $name:ident: $driver:ident($($arg:ident: $of:ty),*) $(-> $result:ty)?, |$mask:ident| $change:block)*) => {
+        $(unsafe extern "system" fn $name($($arg: $of),*) $(-> $result)? {
+            let $mask = *MASK.lock().unwrap();
+            // SAFETY: the driver's own function, and the caller's pointers.
+            unsafe {
+                let said = real::<vk::$driver>($n)($($arg),*);
+                $change
+                said
+            }
+        })*
+    };
+}
+
+queries! {
+    0 properties: PFN_vkGetPhysicalDeviceProperties(
+        physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties
+    ), |mask| {
+        let limits = &mut (*out).limits;
         if mask.version {
             (*out).api_version = vk::API_VERSION_1_1;
         }
         if mask.samples {
-            (*out).limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
+            limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
         }
         if mask.sub_pixels {
-            (*out).limits.sub_pixel_precision_bits = 4;
+            limits.sub_pixel_precision_bits = 4;
         }
         if mask.varyings {
-            (*out).limits.max_fragment_input_components = 64;
-            (*out).limits.max_vertex_output_components = 64;
+            limits.max_fragment_input_components = 64;
+            limits.max_vertex_output_components = 64;
         }
     }
-}
-
-unsafe extern "system" fn features(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceFeatures,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceFeatures>(1)(physical, out);
+    1 features: PFN_vkGetPhysicalDeviceFeatures(
+        physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures
+    ), |mask| {
         if mask.stores {
             (*out).fragment_stores_and_atomics = vk::FALSE;
         }
@@ -326,63 +318,33 @@ unsafe extern "system" fn features(
             (*out).sampler_anisotropy = vk::FALSE;
         }
     }
-}
-
-unsafe extern "system" fn families(
-    physical: vk::PhysicalDevice,
-    count: *mut u32,
-    out: *mut vk::QueueFamilyProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above; `out` has room for `count`, or is null.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceQueueFamilyProperties>(2)(physical, count, out);
-        if out.is_null() {
-            return;
-        }
-        for family in std::slice::from_raw_parts_mut(out, *count as usize) {
+    2 families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
+        physical: vk::PhysicalDevice, count: *mut u32, out: *mut vk::QueueFamilyProperties
+    ), |mask| {
+        // `out` has room for `count`, or is null.
+        let room = if out.is_null() { 0 } else { *count as usize };
+        for n in 0..room {
             if mask.timestamps {
-                family.timestamp_valid_bits = 0;
+                (*out.add(n)).timestamp_valid_bits = 0;
             }
             if mask.compute {
-                family.queue_flags &= !vk::QueueFlags::COMPUTE;
+                (*out.add(n)).queue_flags &= !vk::QueueFlags::COMPUTE;
             }
         }
     }
-}
-
-unsafe extern "system" fn formats(
-    physical: vk::PhysicalDevice,
-    format: vk::Format,
-    out: *mut vk::FormatProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceFormatProperties>(3)(physical, format, out);
+    3 formats: PFN_vkGetPhysicalDeviceFormatProperties(
+        physical: vk::PhysicalDevice, format: vk::Format, out: *mut vk::FormatProperties
+    ), |mask| {
         if mask.format == Some(format) {
             *out = vk::FormatProperties::default();
         }
     }
-}
-
-unsafe extern "system" fn image_formats(
-    physical: vk::PhysicalDevice,
-    format: vk::Format,
-    kind: vk::ImageType,
-    tiling: vk::ImageTiling,
-    usage: vk::ImageUsageFlags,
-    flags: vk::ImageCreateFlags,
-    out: *mut vk::ImageFormatProperties,
-) -> vk::Result {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        let real = real::<vk::PFN_vkGetPhysicalDeviceImageFormatProperties>(4);
-        let result = real(physical, format, kind, tiling, usage, flags, out);
+    4 image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
+        physical: vk::PhysicalDevice, format: vk::Format, kind: vk::ImageType, tiling: vk::ImageTiling,
+        usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags, out: *mut vk::ImageFormatProperties
+    ) -> vk::Result, |mask| {
         if mask.samples {
             (*out).sample_counts = vk::SampleCountFlags::TYPE_1;
         }
-        result
     }
 }
