@@ -44,13 +44,8 @@ pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height).unwrap();
     // F changes along a ray by at most 1 + b per unit of length, with b below 3 here, times the
     // number of cells along an axis of the box.
-    let cells = scene
-        .objects
-        .iter()
-        .flat_map(|o| o.repeat)
-        .max()
-        .unwrap_or(1);
-    let near = 0.25 * texel / f64::from(cells);
+    let cells = scene.objects.iter().flat_map(|o| o.repeat).max();
+    let near = 0.25 * texel / f64::from(cells.unwrap_or(1));
     (0..truth.pixels())
         .into_par_iter()
         .map(|index| {

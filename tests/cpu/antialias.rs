@@ -73,11 +73,7 @@ fn error(covered: &[f64], frame: &Frame) -> [f64; 2] {
 }
 
 fn cases() -> Vec<(String, Scene)> {
-    let eyes = [
-        DVec3::new(2.2, 0.4, 1.3),
-        DVec3::new(-0.6, 1.9, 0.5),
-        DVec3::new(0.3, -0.9, 2.1),
-    ];
+    let eyes = [[2.2, 0.4, 1.3], [-0.6, 1.9, 0.5], [0.3, -0.9, 2.1]].map(DVec3::from_array);
     let outlines = [
         ("ball", samples::ball(0.4, 400)),
         ("cylinder", samples::cylinder(0.3, 0.1, 0.9)),

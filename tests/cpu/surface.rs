@@ -208,11 +208,8 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
             0.5 * theirs.wrong as f64 / theirs.hits as f64,
             0.5 * quantile(&theirs.depth, 0.99),
         );
-        println!(
-            "{name:8} papers: wrong {:.3} %, depth p99 {:.3} texels",
-            200.0 * limits.0,
-            2.0 * limits.1
-        );
+        let (wrong, p99) = (200.0 * limits.0, 2.0 * limits.1);
+        println!("{name:8} papers: wrong {wrong:.3} %, depth p99 {p99:.3} texels");
         for (kind, traced) in [("binary", binary), ("grey", bytes)] {
             let (tally, words) = shoot(&profile, &traced.outline, Offset::default(), count);
             let wrong = tally.wrong as f64 / tally.hits as f64;

@@ -1,10 +1,15 @@
-//! Fragment and compute pictures of one scene are equal bit for bit, in every channel.
+//! Fragment and compute pictures of one scene are equal bit for bit, in every channel: also with all
+//! textures, bumps and offsets.
 
-use crate::common::{draw, eye, from_boxes, hits, in_compute, placement, scene_of, shapes, sized};
+use crate::common::{
+    assert_sound, draw, eye, from_boxes, hits, in_compute, offset, placement, scene_of, shapes,
+    sized,
+};
 use glam::DVec3;
-use revmap::maps::MapFormat;
-use revmap::scene::{Camera, Object, Scene};
-use revmap::settings::{Settings, Solver};
+use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use revmap::scene::{BumpForm, Camera, Object, Offset, Scene, Shadow, Texturing};
+use revmap::settings::{Planes, Settings, Solver};
+use revmap_searches::CIRCLE;
 use std::sync::Arc;
 
 /// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
@@ -126,4 +131,121 @@ fn one_changed_bit_is_noticed() {
     *value = f32::from_bits(value.to_bits() ^ 1);
     let difference = fragment.first_difference(&other).unwrap().to_string();
     assert!(difference.starts_with("N.Y at pixel"), "{difference}");
+}
+
+struct Maps {
+    earth: Arc<ColorMap>,
+    bricks: Arc<DisplacementMap>,
+}
+
+fn maps() -> Maps {
+    let asset = |name| format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
+    let earth = ColorMap::load(asset("colors/natural-earth.png"));
+    let bricks = DisplacementMap::from_image(asset("heights/brick.png"));
+    Maps {
+        earth: Arc::new(earth.unwrap()),
+        bricks: Arc::new(bricks.unwrap()),
+    }
+}
+
+fn covered(maps: &Maps, projection: Projection, bump_form: BumpForm) -> Texturing {
+    Texturing {
+        color_map: Some(maps.earth.clone()),
+        displacement_map: Some(maps.bricks.clone()),
+        bump: 0.02,
+        bump_form,
+        projection,
+        repeat: [2.0, 1.0],
+    }
+}
+
+const CHAMFERED: Offset = offset(-0.02, 0.7, 0.15);
+
+/// Scenes with textures, bumps, offsets, replicas and shadows.
+fn textured_scenes() -> Vec<(String, Scene)> {
+    let maps = maps();
+    let mut all = Vec::new();
+    let forms = [BumpForm::SurfaceGradient, BumpForm::Papers];
+    for (n, projection) in Projection::ALL.into_iter().enumerate() {
+        let mut scene = scene_of(shapes::vase(), eye(20.0 + 15.0 * n as f64, 1.7));
+        let object = &mut scene.objects[0];
+        object.texturing = covered(&maps, projection, forms[n % 2]);
+        object.offset = CHAMFERED;
+        object.placement = placement([0.05, 0.0, 0.1], [0.3, -0.2, 0.4], [1.1, 0.8, 0.9]);
+        all.push((format!("{projection:?}"), scene));
+    }
+    for (name, offset) in [
+        ("extended", offset(0.04, 0.0, 1.0)),
+        ("inset", offset(-0.01, 0.0, 1.0)),
+        ("beveled", offset(0.01, 0.3, 1.0)),
+    ] {
+        let mut scene = scene_of(shapes::glass(), eye(30.0, 1.9));
+        scene.objects[0].offset = offset;
+        scene.objects[0].texturing = covered(&maps, Projection::Arc, BumpForm::SurfaceGradient);
+        all.push((name.into(), scene));
+    }
+    for mirror in [false, true] {
+        let mut scene = scene_of(shapes::jewel(), eye(25.0, 1.8));
+        let object = &mut scene.objects[0];
+        object.repeat = [3, 2, 2];
+        object.mirror = [mirror; 3];
+        object.axis = [0.4, 0.55];
+        object.texturing = covered(&maps, Projection::Cylindrical, BumpForm::SurfaceGradient);
+        all.push((format!("replicas, mirrored: {mirror}"), scene));
+    }
+    for shadow in [Shadow::Hard, Shadow::Soft] {
+        let mut scene = scene_of(shapes::torus(), DVec3::new(1.9, 1.1, 1.6));
+        scene.shadow = shadow;
+        scene.objects[0].texturing =
+            covered(&maps, Projection::Spherical, BumpForm::SurfaceGradient);
+        scene.objects[0].texturing.bump = 0.005;
+        let mut table = Object::new("table", Arc::new(shapes::cone()));
+        table.placement = placement([0.0, 0.0, -0.3], [0.0; 3], [2.5, 2.5, 0.6]);
+        let mut several = Object::new("several", Arc::new(shapes::discs()));
+        several.repeat = [2, 2, 1];
+        several.placement = placement([-0.5, 0.7, 0.1], [0.5, 0.3, 0.0], [0.8; 3]);
+        several.offset.extend = 0.005;
+        scene.objects.extend([table, several]);
+        all.push((format!("{shadow:?} shadows"), scene));
+    }
+    all
+}
+
+#[test]
+fn textures_agree_bit_for_bit() {
+    let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
+    for (n, (name, scene)) in textured_scenes().into_iter().enumerate() {
+        let inset = scene.objects[0].offset.extend < 0.0; // the papers' format cannot hold this
+        let settings = from_boxes(Settings {
+            map_rows: Some(256),
+            solver: [Solver::Live, CIRCLE, Solver::Quadric][n % 3],
+            map_format: match inset {
+                true => MapFormat::R16,
+                false => formats[(n + n / 3) % 3],
+            },
+            ..sized(200, 151)
+        });
+        let compute = in_compute(settings);
+        let fragment = draw(&scene, &settings);
+        assert_sound(&fragment, &name);
+        let hits = hits(&fragment);
+        assert!(hits > 1500, "{name}: only {hits} pixels are hit");
+        let normals = fragment.normal.iter().zip(&fragment.shading_normal);
+        let tilted = normals.filter(|(a, b)| a != b).count();
+        println!("{name}: {hits} hits, {tilted} with bumps");
+        assert!(tilted > 300, "{name}: no bumps are seen");
+        if let Some(difference) = fragment.first_difference(&draw(&scene, &compute)) {
+            panic!("{name}: {difference}");
+        }
+        // Colour only: 8 bits, encoded separately by each stage.
+        let planes = Planes::Color;
+        let color = |settings| draw(&scene, &Settings { planes, ..settings }).color;
+        let (a, b) = (color(settings), color(compute));
+        let most = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| {
+            let code = |v: f32| revmap::frame::srgb_from_linear(f64::from(v)) * 255.0;
+            (code(*a) - code(*b)).abs()
+        });
+        let most = most.fold(0.0, f64::max);
+        assert!(most < 1.01, "{name}: colours differ by {most} of 255");
+    }
 }

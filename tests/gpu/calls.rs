@@ -153,26 +153,15 @@ impl Layer {
         let calls =
             each!(call: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25);
         let ends = each!(end: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
-        let get = instance.fp_v1_0().get_device_proc_addr;
-        let handle = device.handle();
-        // SAFETY: each wrapper has the parameters and result of the function that it replaces.
-        unsafe {
-            ash::Device::load_with(
-                |name| {
-                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
-                    if let Some(n) = CALLS.iter().position(|known| *known == name) {
-                        REAL[n].store(real, Ordering::SeqCst);
-                        return calls[n];
-                    }
-                    if let Some(n) = ENDS.iter().position(|known| *known == name) {
-                        REAL_ENDS[n].store(real, Ordering::SeqCst);
-                        return ends[n];
-                    }
-                    real as *const c_void
-                },
-                handle,
-            )
-        }
+        planted_device(instance, device, |name, real| {
+            if let Some(n) = CALLS.iter().position(|known| *known == name) {
+                REAL[n].store(real, Ordering::SeqCst);
+                return Some(calls[n]);
+            }
+            let n = ENDS.iter().position(|known| *known == name)?;
+            REAL_ENDS[n].store(real, Ordering::SeqCst);
+            Some(ends[n])
+        })
     }
 
     /// Makes the `n`-th call from now on fail, counting calls that allocate or create something.
@@ -213,29 +202,48 @@ impl Layer {
         mask: Mask,
     ) -> ash::Instance {
         *MASK.lock().unwrap() = mask;
-        let get = entry.static_fn().get_instance_proc_addr;
-        let handle = instance.handle();
-        // SAFETY: as for devices.
-        unsafe {
-            ash::Instance::load_with(
-                |name| {
-                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
-                    let Some(n) = QUERIES.iter().position(|known| *known == name) else {
-                        return real as *const c_void;
-                    };
-                    REAL_QUERIES[n].store(real, Ordering::SeqCst);
-                    [
-                        properties as *const c_void,
-                        features as *const c_void,
-                        families as *const c_void,
-                        formats as *const c_void,
-                        image_formats as *const c_void,
-                    ][n]
-                },
-                handle,
-            )
-        }
+        planted_instance(entry, instance, |name, real| {
+            let n = QUERIES.iter().position(|known| *known == name)?;
+            REAL_QUERIES[n].store(real, Ordering::SeqCst);
+            let queries = [
+                properties as *const c_void,
+                features as *const c_void,
+                families as *const c_void,
+                formats as *const c_void,
+                image_formats as *const c_void,
+            ];
+            Some(queries[n])
+        })
     }
+}
+
+/// A device whose functions `plant` may replace: it gets their names and the driver's own. Those in
+/// their place have their parameters and results.
+pub fn planted_device(
+    instance: &ash::Instance,
+    device: &ash::Device,
+    plant: impl Fn(&CStr, usize) -> Option<*const c_void>,
+) -> ash::Device {
+    let (get, handle) = (instance.fp_v1_0().get_device_proc_addr, device.handle());
+    // SAFETY: plain queries of a live device.
+    let real = |name: &CStr| unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
+    let load = |name: &CStr| plant(name, real(name)).unwrap_or(real(name) as *const c_void);
+    // SAFETY: the functions are the driver's, or like them.
+    unsafe { ash::Device::load_with(load, handle) }
+}
+
+/// The same for an instance.
+pub fn planted_instance(
+    entry: &ash::Entry,
+    instance: &ash::Instance,
+    plant: impl Fn(&CStr, usize) -> Option<*const c_void>,
+) -> ash::Instance {
+    let (get, handle) = (entry.static_fn().get_instance_proc_addr, instance.handle());
+    // SAFETY: as for devices.
+    let real = |name: &CStr| unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
+    let load = |name: &CStr| plant(name, real(name)).unwrap_or(real(name) as *const c_void);
+    // SAFETY: as for devices.
+    unsafe { ash::Instance::load_with(load, handle) }
 }
 
 /// Features removed from a physical device.
@@ -267,9 +275,9 @@ const QUERIES: [&CStr; 5] = [
 static REAL_QUERIES: [AtomicUsize; QUERIES.len()] = [const { AtomicUsize::new(0) }; QUERIES.len()];
 
 /// # Safety
-/// `n` is the number of the query, whose type is `F`.
-unsafe fn real<F: Copy>(n: usize) -> F {
-    let pointer = REAL_QUERIES[n].load(Ordering::SeqCst);
+/// The function that is kept has the type `F`.
+pub unsafe fn real<F: Copy>(kept: &AtomicUsize) -> F {
+    let pointer = kept.load(Ordering::SeqCst);
     // SAFETY: a pointer to a function.
     unsafe { std::mem::transmute_copy(&pointer) }
 }
@@ -281,7 +289,7 @@ macro_rules! queries {
             let $mask = *MASK.lock().unwrap();
             // SAFETY: the driver's own function, and the caller's pointers.
             unsafe {
-                let said = real::<vk::$driver>($n)($($arg),*);
+                let said = real::<vk::$driver>(&REAL_QUERIES[$n])($($arg),*);
                 $change
                 said
             }

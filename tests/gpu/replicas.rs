@@ -52,11 +52,8 @@ fn singles(replicas: &Object) -> Vec<Object> {
             false => replicas.axis[k],
         });
         for cell in 0..COUNT.iter().product::<u32>() {
-            let at = [
-                cell % COUNT[0],
-                cell / COUNT[0] % COUNT[1],
-                cell / (COUNT[0] * COUNT[1]),
-            ];
+            let [nx, ny, _] = COUNT;
+            let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
             if (0..3).any(|k| (replicas.mirror[k] && at[k] % 2 == 1) != reflected[k]) {
                 continue;
             }
@@ -110,13 +107,11 @@ fn cases() -> Vec<(&'static str, Scene)> {
         change(object);
         scene
     };
-    let oblique = DVec3::new(1.35, 0.8, 1.25);
+    let mirrored = |o: &mut Object| o.mirror = [true; 3];
+    let [oblique, within] = [[1.35, 0.8, 1.25], [0.17, 0.16, 0.5]].map(DVec3::from_array);
     vec![
         ("plain", case(shapes::vase(), oblique, &|_| {})),
-        (
-            "mirrored",
-            case(shapes::vase(), oblique, &|o| o.mirror = [true; 3]),
-        ),
+        ("mirrored", case(shapes::vase(), oblique, &mirrored)),
         (
             "mirrored, axis off the middle, cut by their cells",
             case(shapes::torus(), DVec3::new(-1.2, 0.9, -0.4), &|o| {
@@ -139,12 +134,7 @@ fn cases() -> Vec<(&'static str, Scene)> {
                 o.placement = placement([0.1, 0.0, 0.0], [0.2, -0.1, 0.4], [1.1, 0.8, 1.2]);
             }),
         ),
-        (
-            "between them",
-            case(shapes::sphere(), DVec3::new(0.17, 0.16, 0.5), &|o| {
-                o.mirror = [true; 3]
-            }),
-        ),
+        ("between them", case(shapes::sphere(), within, &mirrored)),
     ]
 }
 

@@ -49,16 +49,12 @@ fn cases() -> Vec<(&'static str, Scene)> {
         o.offset.chamfer = 0.8;
     };
     let replicas = |o: &mut Object| o.repeat = [2, 2, 1];
+    let extended = |o: &mut Object| o.offset.extend = 0.08;
+    let inset = |o: &mut Object| o.offset.extend = -0.15;
     vec![
         ("plain", scene(vec![caster(shapes::jewel(), &|_| {})])),
-        (
-            "extended",
-            scene(vec![caster(shapes::jewel(), &|o| o.offset.extend = 0.08)]),
-        ),
-        (
-            "inset",
-            scene(vec![caster(shapes::sphere(), &|o| o.offset.extend = -0.15)]),
-        ),
+        ("extended", scene(vec![caster(shapes::jewel(), &extended)])),
+        ("inset", scene(vec![caster(shapes::sphere(), &inset)])),
         ("beveled", scene(vec![caster(shapes::cone(), &beveled)])),
         ("replicas", scene(vec![caster(shapes::sphere(), &replicas)])),
         ("beveled, and replicas beside", {

@@ -186,31 +186,23 @@ fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
 fn assert_same(a: &Frame, b: &Frame) {
     assert_eq!(a.pixels(), b.pixels());
     let bits = |frame: &Frame, i| frame.pixel(i).map(f32::to_bits);
-    let differ = (0..a.pixels())
-        .filter(|&i| bits(a, i) != bits(b, i))
-        .count();
-    assert_eq!(differ, 0, "pixels differ");
+    let differ = (0..a.pixels()).filter(|&i| bits(a, i) != bits(b, i));
+    assert_eq!(differ.count(), 0, "pixels differ");
 }
 
 /// A device without a required feature is refused, and the error names the feature.
 #[test]
 fn a_device_without_what_is_needed_is_refused() {
     let (layer, host, entry) = (Layer::take(), open(), entry());
-    let (single, four) = (vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT);
+    const HALF: Option<vk::Format> = Some(vk::Format::R16_SFLOAT);
+    const FLOAT: Option<vk::Format> = Some(vk::Format::R32_SFLOAT);
+    const FLOATS: Option<vk::Format> = Some(vk::Format::R32G32B32A32_SFLOAT);
+    const DEPTH: Option<vk::Format> = Some(vk::Format::D32_SFLOAT);
     let lacks: [(&dyn Fn(&mut Mask), &str); 7] = [
-        (
-            &|m| m.format = Some(vk::Format::R16_SFLOAT),
-            "sampled 16-bit float images",
-        ),
-        (&|m| m.format = Some(single), "sampled 32-bit float images"),
-        (
-            &|m| m.format = Some(four),
-            "render targets and storage images",
-        ),
-        (
-            &|m| m.format = Some(vk::Format::D32_SFLOAT),
-            "a 32-bit float depth buffer",
-        ),
+        (&|m| m.format = HALF, "sampled 16-bit float images"),
+        (&|m| m.format = FLOAT, "sampled 32-bit float images"),
+        (&|m| m.format = FLOATS, "render targets and storage images"),
+        (&|m| m.format = DEPTH, "a 32-bit float depth buffer"),
         (&|m| m.version = true, "Vulkan 1.2"),
         (&|m| m.stores = true, "fragmentStoresAndAtomics"),
         (&|m| m.compute = true, "a queue for graphics and compute"),

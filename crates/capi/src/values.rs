@@ -148,16 +148,6 @@ impl From<RevmapOffset> for Offset {
     }
 }
 
-impl From<Offset> for RevmapOffset {
-    fn from(from: Offset) -> Self {
-        Self {
-            extend: from.extend,
-            bevel: from.bevel,
-            chamfer: from.chamfer,
-        }
-    }
-}
-
 impl RevmapLighting {
     pub(crate) fn defaults() -> Self {
         static LIGHTS: LazyLock<[RevmapLight; 2]> = LazyLock::new(|| {

@@ -87,12 +87,10 @@ impl Shaders {
             }
         }
         if self.csv {
-            let head = [
-                "technique,stage,solver,path,shader,module",
-                &said.join(","),
-                "device,driver",
-            ];
-            output::result(&head.join(","));
+            let names = said.join(",");
+            output::result(&format!(
+                "technique,stage,solver,path,shader,module,{names},device,driver"
+            ));
             for shader in &shaders {
                 let of_device = [quoted(&device.name), quoted(&device.driver)];
                 let words = [

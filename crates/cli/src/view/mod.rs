@@ -83,8 +83,12 @@ impl View {
             tolerance: self.tolerance,
             ..SearchSettings::default()
         };
-        let mut shown = shown::Shown::new(scene, search);
-        (shown.stage, shown.inspected) = (self.stage, self.show);
+        let shown = shown::Shown {
+            scene,
+            search,
+            stage: self.stage,
+            inspected: self.show,
+        };
         let (title, (width, height)) = (app::title(&self.scene), self.size);
         let mut app = app::App::new(self, file, shown)?;
         let window = eframe::NativeOptions {

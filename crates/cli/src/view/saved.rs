@@ -143,7 +143,12 @@ mod tests {
     #[test]
     fn a_turntable_comes_round() {
         let scene = revmap::scene::file::parse(TEXT, ".", &[]).unwrap();
-        let shown = Shown::new(scene, revmap::settings::SearchSettings::default());
+        let shown = Shown {
+            scene,
+            search: revmap::settings::SearchSettings::default(),
+            stage: revmap::settings::DrawStage::Fragment,
+            inspected: super::super::shown::Inspected::Color,
+        };
         let quarter = turned(&shown, TURNTABLE / 4).scene.camera.eye;
         assert!((quarter - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12);
         let round = turned(&shown, TURNTABLE).scene.camera.eye;

@@ -39,16 +39,6 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// The lit scene, by the fragment stage.
-    pub fn new(scene: Scene, search: SearchSettings) -> Self {
-        Self {
-            scene,
-            search,
-            stage: DrawStage::Fragment,
-            inspected: Inspected::Color,
-        }
-    }
-
     /// Settings of a frame of this size with what is inspected.
     pub fn settings(&self, (width, height): (u32, u32)) -> Settings {
         Settings {
