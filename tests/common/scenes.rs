@@ -1,11 +1,9 @@
 //! Scenes of one solid, and the errors of their pictures.
 
-pub use super::shapes::offset;
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_lab::compare::{CompareOptions, Comparison, compare};
 use std::sync::Arc;
 
@@ -35,47 +33,6 @@ pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
 pub fn eye(elevation: f64, distance: f64) -> DVec3 {
     let (s, c) = elevation.to_radians().sin_cos();
     DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
-}
-
-/// Exact settings of a picture of this size.
-pub fn sized(width: u32, height: u32) -> Settings {
-    Settings {
-        width,
-        height,
-        ..Settings::exact()
-    }
-}
-
-/// Exact settings of a picture of this size, drawn in a stage by a search.
-pub fn drawn_by((width, height): (u32, u32), stage: DrawStage, solver: Solver) -> Settings {
-    Settings {
-        stage,
-        solver,
-        ..sized(width, height)
-    }
-}
-
-/// The same settings in compute.
-pub fn in_compute(settings: Settings) -> Settings {
-    Settings {
-        stage: DrawStage::Compute,
-        ..settings
-    }
-}
-
-/// The same settings without cells, which change where rays start, and without culling, after which
-/// tiles count no steps.
-pub fn from_boxes(settings: Settings) -> Settings {
-    Settings {
-        proxy_min_pixels: u32::MAX,
-        occlusion_culling: false,
-        ..settings
-    }
-}
-
-/// The number of pixels with a hit.
-pub fn hits(frame: &Frame) -> usize {
-    (0..frame.pixels()).filter(|&i| frame.hits(i)).count()
 }
 
 pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {

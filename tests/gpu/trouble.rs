@@ -198,14 +198,15 @@ fn a_device_without_what_is_needed_is_refused() {
     const FLOAT: Option<vk::Format> = Some(vk::Format::R32_SFLOAT);
     const FLOATS: Option<vk::Format> = Some(vk::Format::R32G32B32A32_SFLOAT);
     const DEPTH: Option<vk::Format> = Some(vk::Format::D32_SFLOAT);
-    let lacks: [(&dyn Fn(&mut Mask), &str); 7] = [
-        (&|m| m.format = HALF, "sampled 16-bit float images"),
-        (&|m| m.format = FLOAT, "sampled 32-bit float images"),
-        (&|m| m.format = FLOATS, "render targets and storage images"),
-        (&|m| m.format = DEPTH, "a 32-bit float depth buffer"),
-        (&|m| m.version = true, "Vulkan 1.2"),
-        (&|m| m.stores = true, "fragmentStoresAndAtomics"),
-        (&|m| m.compute = true, "a queue for graphics and compute"),
+    type Change = fn(&mut Mask);
+    let lacks: [(Change, &str); 7] = [
+        (|m| m.format = HALF, "sampled 16-bit float images"),
+        (|m| m.format = FLOAT, "sampled 32-bit float images"),
+        (|m| m.format = FLOATS, "render targets and storage images"),
+        (|m| m.format = DEPTH, "a 32-bit float depth buffer"),
+        (|m| m.version = true, "Vulkan 1.2"),
+        (|m| m.stores = true, "fragmentStoresAndAtomics"),
+        (|m| m.compute = true, "a queue for graphics and compute"),
     ];
     for (change, lack) in lacks {
         let mut mask = Mask::default();
