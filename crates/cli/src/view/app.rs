@@ -70,6 +70,7 @@ impl App {
         Ok(Self {
             painter: Painter::open(options.device.as_deref(), &shown, options.size)?,
             source: options.scene.clone(),
+            framing: Framing::new(options.size, 0),
             options,
             file,
             first: shown.clone(),
@@ -90,7 +91,6 @@ impl App {
             help: false,
             hint: true,
             quit: false,
-            framing: Framing::default(),
             drawn: 0,
             ended: Ok(()),
         })

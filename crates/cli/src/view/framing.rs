@@ -4,7 +4,7 @@ use revmap::frame::Picture;
 use revmap::scene::Camera;
 
 /// Pixels of the window, and those at its left that the panel covers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Framing {
     pub window: (u32, u32),
     left: u32,
