@@ -2,7 +2,7 @@
 
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
-use crate::frame::{Frame, Picture};
+use crate::frame::Frame;
 use crate::gpu::content::costs::ObjectCost;
 use crate::gpu::content::object_id::ObjectId;
 use crate::gpu::device::{Device, Shared};
@@ -350,13 +350,13 @@ impl Offscreen {
         }
     }
 
-    /// The colours of the frame that was drawn last, without smoothed silhouettes: for a window,
-    /// which has no time to make a [`Frame`].
+    /// The colours of the frame that was drawn last, sRGB with alpha in 8 bits each, row 0 on top,
+    /// without smoothed silhouettes: for a window, which has no time to make a [`Frame`].
     ///
     /// # Errors
     /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way, and for
     /// other planes than [`Planes::Color`].
-    pub fn picture(&mut self) -> Result<Picture> {
+    pub fn rgba(&mut self) -> Result<Vec<[u8; 4]>> {
         self.check_whole()?;
         if self.settings.planes != Planes::Color {
             let message = "pictures are of colours alone; read a frame of all planes";
@@ -364,11 +364,7 @@ impl Offscreen {
         }
         let planes = self.target.read(&self.commands)?;
         let colors = planes.first().copied().unwrap_or_default();
-        Ok(Picture {
-            width: self.settings.width,
-            height: self.settings.height,
-            rgba: colors.as_chunks().0.to_vec(),
-        })
+        Ok(colors.as_chunks().0.to_vec())
     }
 
     /// Same as [`Renderer::map_bytes`].

@@ -2,7 +2,8 @@
 
 pub use super::random::Random;
 use super::shapes;
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::Profile;
+use revmap_files::ProfileAxis;
 
 /// Profiles by name: those of [`shapes`], and the drawings of chess pieces. The environment
 /// variable `ONLY` selects one of them.
@@ -11,7 +12,7 @@ pub fn profiles() -> Vec<(String, Profile)> {
     all.extend(shapes::all().into_iter().map(|(name, p)| (name.into(), p)));
     for name in ["bishop", "king", "pawn", "rook"] {
         let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        let profile = Profile::load(file, ProfileAxis::Center).unwrap();
+        let profile = revmap_files::profile(file, ProfileAxis::Center).unwrap();
         all.push((name.into(), profile));
     }
     if let Ok(only) = std::env::var("ONLY") {

@@ -140,8 +140,8 @@ struct Maps {
 
 fn maps() -> Maps {
     let asset = |name| format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
-    let earth = ColorMap::load(asset("colors/natural-earth.png"));
-    let bricks = DisplacementMap::from_image(asset("heights/brick.png"));
+    let earth = revmap_files::color_map(asset("colors/natural-earth.png"));
+    let bricks = revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default());
     Maps {
         earth: Arc::new(earth.unwrap()),
         bricks: Arc::new(bricks.unwrap()),

@@ -8,7 +8,7 @@ use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
 use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
-use revmap::frame::Picture;
+use revmap_files::Picture;
 use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
 };

@@ -7,7 +7,6 @@ mod common;
 mod accuracy;
 mod agreement;
 mod antialias;
-#[cfg(feature = "drawing")]
 mod bitmaps;
 mod bumps;
 #[allow(unsafe_code)]
@@ -22,9 +21,7 @@ mod embedding_outputs;
 mod exhausted;
 mod extremes;
 mod fallback;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod gallery;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod golden;
 mod hulls;
 mod limits;
@@ -36,7 +33,6 @@ mod proxy_hulls;
 mod refusals;
 mod replicas;
 mod shadows;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod smallest;
 mod texturing;
 mod tolerance;

@@ -55,7 +55,7 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     unsafe {
         create(profile, || {
             let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            let made = Profile::from_bytes(bytes, enums::axis(axis)?)?;
+            let made = revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?;
             Ok(Arc::new(made))
         })
     }
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     // SAFETY: the caller's pointers.
     unsafe {
         create(profile, || {
-            let made = Profile::load(text(path, "path")?, enums::axis(axis)?)?;
+            let made = revmap_files::profile(text(path, "path")?, enums::axis(axis)?)?;
             Ok(Arc::new(made))
         })
     }

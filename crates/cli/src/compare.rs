@@ -3,7 +3,7 @@
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame;
+use revmap_files::read_exr;
 use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
 use serde_json::json;
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ impl Compare {
             }
         }
         output::check(&self.heat, "--heat", &["png"], &[&self.a, &self.b])?;
-        let (a, b) = (frame::read_exr(&self.a)?, frame::read_exr(&self.b)?);
+        let (a, b) = (read_exr(&self.a)?, read_exr(&self.b)?);
         let mut options = CompareOptions::default();
         options.texel = self.texel.unwrap_or(options.texel);
         let outcome = compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;

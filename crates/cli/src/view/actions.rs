@@ -3,12 +3,13 @@
 use super::app::App;
 use super::controls::Asked;
 use super::keys::Action;
+use super::picture::colors;
 use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
 use revmap::error::{self, Error, Result};
-use revmap::scene::file::SceneFile;
 use revmap::settings::{Planes, Settings};
+use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
 
 /// The number of changes that can be undone.
@@ -129,7 +130,7 @@ impl App {
             let turned = saved::turned(&self.shown, n);
             let (drawn, _) = self.painter.draw(&turned, settings)?;
             let file = folder.join(format!("frame-{n:04}.png"));
-            drawn.picture()?.write_png(file)?;
+            colors(drawn, &settings)?.write_png(file)?;
         }
         Ok(())
     }

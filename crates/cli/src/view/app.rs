@@ -15,8 +15,7 @@ use eframe::egui::{
     ScrollArea, Sense, Shape, Ui, Vec2, ViewportCommand, pos2,
 };
 use revmap::error::Result;
-use revmap::frame::Picture;
-use revmap::scene::file::SceneFile;
+use revmap_files::{Picture, SceneFile};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -19,8 +19,8 @@ use super::output;
 use clap::Args;
 use eframe::egui::{ViewportBuilder, vec2};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::scene::file::SceneFile;
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
+use revmap_files::SceneFile;
 use std::path::PathBuf;
 
 /// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to

@@ -7,10 +7,11 @@ use super::shown::{Inspected, Shown};
 use super::times::Cost;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::{Frame, Picture};
+use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen, Times};
 use revmap::settings::Settings;
 use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
+use revmap_files::Picture;
 use revmap_lab::report::pictures::steps;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
@@ -128,7 +129,7 @@ impl Painter {
         self.words.clear();
         let (offscreen, times) = self.draw(&framed, settings)?;
         let (picture, legend) = if shown.inspected == Inspected::Color {
-            (offscreen.picture()?, None)
+            (colors(offscreen, &settings)?, None)
         } else {
             let frame = offscreen.read()?;
             let (picture, legend) = match (shown.inspected, reference) {
@@ -225,6 +226,15 @@ impl Painter {
         );
         heat_map(reference, frame, &options, Heat::Depth)
     }
+}
+
+/// The colours of a frame with these settings.
+pub fn colors(offscreen: &mut Offscreen, settings: &Settings) -> Result<Picture> {
+    Ok(Picture {
+        width: settings.width,
+        height: settings.height,
+        rgba: offscreen.rgba()?,
+    })
 }
 
 /// Distances of the nearest and the farthest hit; reversed without a hit.

@@ -2,8 +2,9 @@
 //! of and says.
 
 use crate::run::{Bench, asset, lines};
-use revmap::frame::{Frame, read_exr};
-use revmap::maps::DisplacementMap;
+use revmap::frame::Frame;
+use revmap::maps::{DisplacementMap, SlopeFilter};
+use revmap_files::read_exr;
 
 const PAWN: &str = "render @scenes/pawn.toml -q";
 
@@ -40,8 +41,9 @@ fn rays_out_of_steps_are_warned_of() {
 fn maps_are_written_and_weighed() {
     let bench = Bench::new();
     bench.done("bake @profiles/bottle.png -o bottle.png --height-map @heights/brick.png");
-    let baked = DisplacementMap::from_image(bench.path("bottle.displacement.png")).unwrap();
-    let own = DisplacementMap::from_image(asset("heights/brick.png")).unwrap();
+    let read = |file| revmap_files::displacement_map(file, SlopeFilter::default()).unwrap();
+    let baked = read(bench.path("bottle.displacement.png"));
+    let own = read(asset("heights/brick.png").into());
     assert_eq!(baked.size(), own.size());
     let values = |m: &DisplacementMap| m.levels[0].texels.concat();
     let (a, b) = (values(&baked), values(&own));

@@ -254,12 +254,15 @@ mod tests {
             )
             .unwrap()
         };
-        let exact = error(MapSource::Exact, 512);
+        let exact = error(MapSource::EXACT, 512);
         assert!(
             exact.wrong() < 0.01 && exact.depth.unwrap().p99 < 0.5,
             "{exact}"
         );
-        let (fine, coarse) = (error(MapSource::Binary, 512), error(MapSource::Binary, 128));
+        let (fine, coarse) = (
+            error(revmap_files::BINARY, 512),
+            error(revmap_files::BINARY, 128),
+        );
         assert!(
             fine.depth.unwrap().rms > 2.0 * exact.depth.unwrap().rms,
             "{fine}"
@@ -284,7 +287,7 @@ mod tests {
             ..MethodSettings::default()
         };
         let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
-        let frame = draw(&view.scene, (100, 75), MapSource::Exact, 512).unwrap();
+        let frame = draw(&view.scene, (100, 75), MapSource::EXACT, 512).unwrap();
         let errors = compare(
             &truth,
             &frame,
@@ -307,7 +310,7 @@ mod tests {
         let settings = MethodSettings {
             width: 40,
             height: 30,
-            map_source: Some(MapSource::Exact),
+            map_source: Some(MapSource::EXACT),
             map_rows: Some(64),
             ..MethodSettings::default()
         };

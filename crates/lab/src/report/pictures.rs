@@ -7,8 +7,9 @@ use super::plan::{Labels, is_rbm_baseline};
 use crate::compare::{EMPTY, Heat, Scale, heat_map};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
-use revmap::frame::{Frame, Picture};
+use revmap::frame::Frame;
 use revmap::settings::DrawStage;
+use revmap_files::Picture;
 use std::path::{Path, PathBuf};
 
 /// A picture made smaller for a page.

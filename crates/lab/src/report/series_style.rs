@@ -8,6 +8,7 @@ use super::row::Row;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::settings::{DrawStage, Solver};
+use revmap_files::{BINARY, COVERAGE};
 
 /// How a method looks in the fragment stage, meshes of every fineness alike. The default stands
 /// out; searches of one family have one colour: equal steps, and cones.
@@ -72,11 +73,14 @@ pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
 /// How a source of distances looks, in charts that compare sources.
 #[must_use]
 pub fn of_source(source: MapSource) -> Style {
-    match source {
-        MapSource::Binary => Style::new(color::BLACK, Marker::Square),
-        MapSource::Coverage => Style::new(color::BLUE, Marker::Disk),
-        MapSource::Exact => Style::new(color::VERMILION, Marker::Up),
-    }
+    let (color, marker) = if source == BINARY {
+        (color::BLACK, Marker::Square)
+    } else if source == COVERAGE {
+        (color::BLUE, Marker::Disk)
+    } else {
+        (color::VERMILION, Marker::Up)
+    };
+    Style::new(color, marker)
 }
 
 /// Names and looks of the ways of drawing that one report holds.
@@ -198,7 +202,7 @@ mod tests {
                 assert_ne!(a.dash, Dash::Guide);
             }
         }
-        let sources = [MapSource::Binary, MapSource::Coverage, MapSource::Exact].map(of_source);
+        let sources = [BINARY, COVERAGE, MapSource::EXACT].map(of_source);
         assert!(sources[0].color != sources[1].color && sources[1].color != sources[2].color);
     }
 

@@ -5,8 +5,9 @@ use super::measure::RenderedCase;
 use crate::compare::{PIXELS_PER_DEGREE, flip_map};
 use crate::method::{Edges, Method};
 use revmap::error::Result;
-use revmap::frame::{Frame, write_png};
+use revmap::frame::Frame;
 use revmap::settings::DrawStage;
+use revmap_files::write_png;
 use std::path::{Path, PathBuf};
 
 /// Pixels of a part either way, and how often each is repeated.

@@ -290,7 +290,7 @@ impl Chart {
                 )
             }
             SeriesBy::Source => (
-                s.map_source?.name().to_owned(),
+                s.map_source?.name.to_owned(),
                 of_source(s.map_source?),
                 false,
             ),

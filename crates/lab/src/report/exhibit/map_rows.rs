@@ -51,7 +51,7 @@ impl Chart {
             };
             if let Some(y) = (column.cell)(context, row).value() {
                 add(
-                    format!("{}, drawn", source.name()),
+                    format!("{}, drawn", source.name),
                     of_source(source),
                     count.into(),
                     y,
@@ -67,7 +67,7 @@ impl Chart {
                     filled: false,
                     ..of_source(error.source)
                 };
-                let name = format!("{}, the map by itself", error.source.name());
+                let name = format!("{}, the map by itself", error.source.name);
                 add(name, style, error.rows.into(), depth.p99);
             }
         }

@@ -49,7 +49,7 @@ pub(super) fn stages<'de, D: Deserializer<'de>>(
 pub(super) fn sources<'de, D: Deserializer<'de>>(
     from: D,
 ) -> std::result::Result<Vec<MapSource>, D::Error> {
-    named(from, &MapSource::NAMES)
+    named(from, &revmap_files::MAP_SOURCES)
 }
 
 pub(super) fn formats<'de, D: Deserializer<'de>>(
