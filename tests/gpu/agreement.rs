@@ -6,7 +6,7 @@ use crate::common::{
     sized,
 };
 use glam::DVec3;
-use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection, SlopeFilter};
 use revmap::scene::{BumpForm, Camera, Object, Offset, Scene, Shadow, Texturing};
 use revmap::settings::{Planes, Settings, Solver};
 use revmap_searches::CIRCLE;
@@ -166,7 +166,7 @@ fn textured_scenes() -> Vec<(String, Scene)> {
     let maps = maps();
     let mut all = Vec::new();
     let forms = [BumpForm::SurfaceGradient, BumpForm::Papers];
-    for (n, projection) in Projection::ALL.into_iter().enumerate() {
+    for (n, (_, projection)) in Projection::NAMES.into_iter().enumerate() {
         let mut scene = scene_of(shapes::vase(), eye(20.0 + 15.0 * n as f64, 1.7));
         let object = &mut scene.objects[0];
         object.texturing = covered(&maps, projection, forms[n % 2]);

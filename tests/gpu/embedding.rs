@@ -6,10 +6,10 @@ pub use crate::common::host::assert_silent;
 use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
 use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use revmap_files::Picture;
 use revmap::gpu::{Device, Offscreen, Renderer, View};
 use revmap::scene::{Camera, CameraFrame, Lighting, Object, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
+use revmap_files::Picture;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 

@@ -8,12 +8,12 @@ use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
 use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
-use revmap_files::Picture;
 use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
 };
 use revmap::scene::{Clip, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
+use revmap_files::Picture;
 use revmap_searches::CIRCLE;
 
 /// Records commands, submits them and waits.

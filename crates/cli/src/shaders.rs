@@ -125,7 +125,7 @@ struct CompiledShader {
     technique: &'static str,
     stage: DrawStage,
     solver: Solver,
-    path: &'static str,
+    path: String,
     executable: Executable,
 }
 
@@ -166,7 +166,7 @@ fn words(shader: &CompiledShader) -> [&str; 6] {
         shader.technique,
         shader.stage.name(),
         shader.solver.name(),
-        shader.path,
+        &shader.path,
         &shader.executable.shader,
         &shader.executable.module,
     ]
