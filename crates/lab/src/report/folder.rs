@@ -12,6 +12,7 @@ use super::plan::Plan;
 use super::report::results;
 use super::row::{CLOCKS_APART, Clocks, Row};
 use super::table::Table;
+use crate::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Picture;
 pub use revmap::frame::atomic_file::write_bytes;
@@ -19,9 +20,6 @@ use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
 /// never overwritten.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be made.
 pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
     let mut folder = base.join(name);
     let mut count = 1;
@@ -114,9 +112,6 @@ fn clear(folder: &Path) -> std::io::Result<()> {
 }
 
 /// Makes a folder and those above it.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be made.
 pub fn make(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| {
         Error::new(
@@ -128,18 +123,12 @@ pub fn make(folder: &Path) -> Result<()> {
 }
 
 /// Writes a text file, whole or not at all.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write_text(file: &Path, text: &str) -> Result<()> {
     write_bytes(file, text.as_bytes())
 }
 
 /// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
 /// title.
-///
-/// # Errors
-/// When a file cannot be written.
 pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     let charts = folder.join("charts");
     make(&charts)?;
@@ -152,9 +141,6 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
 }
 
 /// A picture as a PNG file.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be encoded.
 pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     picture.encode_png(&mut bytes)?;
@@ -163,7 +149,6 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
 
 /// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds
 /// count from 1.
-#[must_use]
 pub fn raw(rows: &[Row]) -> Table {
     let header = [
         "row", "scene", "stage", "solver", "pass", "round", "gpu_ms", "frame_ms",
@@ -171,66 +156,65 @@ pub fn raw(rows: &[Row]) -> Table {
     let mut table = Table::new(header, Vec::new());
     for (number, row) in rows.iter().enumerate() {
         for (pass, samples) in row.passes.iter().enumerate() {
-            for (round, sample) in samples.iter().enumerate() {
-                table.records.push(vec![
-                    (number + 1).to_string(),
-                    row.scene.clone(),
-                    row.settings.stage.name().into(),
-                    row.settings.method.to_string(),
-                    (pass + 1).to_string(),
-                    (round + 1).to_string(),
-                    sample
-                        .gpu_ms
-                        .map(|ms| names::number(ms, 7))
-                        .unwrap_or_default(),
-                    names::number(sample.frame_ms, 7),
-                ]);
-            }
+            table
+                .records
+                .extend(samples.iter().enumerate().map(|(round, sample)| {
+                    let mut record = named(Some(number), &row.scene, &row.settings).to_vec();
+                    record.extend([pass + 1, round + 1].map(|n| n.to_string()));
+                    let times = [sample.gpu_ms, Some(sample.frame_ms)];
+                    record.extend(
+                        times.map(|ms| ms.map_or(String::new(), |ms| names::number(ms, 7))),
+                    );
+                    record
+                }));
         }
     }
     table
+}
+
+/// The cells that name a row (counted from 1) or a measurement that could not be made.
+fn named(row: Option<usize>, scene: &str, settings: &MethodSettings) -> [String; 4] {
+    [
+        row.map_or(String::new(), |number| (number + 1).to_string()),
+        scene.to_owned(),
+        settings.stage.name().to_owned(),
+        settings.method.to_string(),
+    ]
 }
 
 /// The rows in no summary, and why: those whose clocks disagree (`row` is their number in
 /// `results.csv`), and measurements that could not be made (`row` is empty).
-#[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
-    let mut table = Table::new(["row", "scene", "stage", "solver", "reason"], Vec::new());
-    for (number, row) in measured.rows.iter().enumerate() {
-        if let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() {
-            table.records.push(vec![
-                (number + 1).to_string(),
-                row.scene.clone(),
-                row.settings.stage.name().into(),
-                row.settings.method.to_string(),
-                format!(
-                    "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
-                    names::number(gpu_ms, 4),
-                    names::number(frame_ms, 4),
-                    100.0 * CLOCKS_APART
-                ),
-            ]);
-        }
-    }
-    for (case, reason) in &measured.left_out {
-        table.records.push(vec![
-            String::new(),
-            plan.views
-                .get(case.view)
-                .map(|v| v.name.clone())
-                .unwrap_or_default(),
-            case.settings.stage.name().into(),
-            case.settings.method.to_string(),
-            reason.clone(),
-        ]);
-    }
-    table
+    let lies = measured
+        .rows
+        .iter()
+        .enumerate()
+        .filter_map(|(number, row)| {
+            let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() else {
+                return None;
+            };
+            let reason = format!(
+                "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
+                names::number(gpu_ms, 4),
+                names::number(frame_ms, 4),
+                100.0 * CLOCKS_APART
+            );
+            Some((named(Some(number), &row.scene, &row.settings), reason))
+        });
+    let left_out = measured.left_out.iter().map(|(case, reason)| {
+        let scene = plan.views.get(case.view).map_or("", |v| &v.name);
+        (named(None, scene, &case.settings), reason.clone())
+    });
+    let records = lies
+        .chain(left_out)
+        .map(|(name, reason)| [&name[..], &[reason]].concat());
+    Table::new(
+        ["row", "scene", "stage", "solver", "reason"],
+        records.collect(),
+    )
 }
 
 /// Writes `results.csv` and `raw.csv`.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write_rows(
     folder: &Path,
     rows: &[Row],
@@ -244,9 +228,6 @@ pub fn write_rows(
 }
 
 /// Writes the four files that every run has.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write(
     folder: &Path,
     plan: &Plan,
@@ -260,9 +241,8 @@ pub fn write(
         &folder.join("excluded.csv"),
         &excluded(plan, measured).csv(),
     )?;
-    let note: String = machine
-        .lines()
-        .iter()
+    let lines = machine.lines().into_iter();
+    let note: String = lines
         .map(|(what, which)| format!("{what}: {which}\n"))
         .collect();
     write_text(&folder.join("machine.txt"), &note)

@@ -21,7 +21,6 @@ impl View {
     /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill
     /// nine tenths of the picture's height, as the papers' pictures do, and lights them from the
     /// front and the side.
-    #[must_use]
     pub fn framed(mut self, elevation: f64) -> Self {
         let corners = self.corners();
         let count = corners.len().max(1) as f64;
@@ -66,7 +65,6 @@ impl View {
     /// The view in a framing. Close up the eye stays, turns to the middle of all boxes and narrows
     /// its field of view, which is never made wider; the name gets `:close`. An eye between or
     /// within the boxes is close already: its field of view stays.
-    #[must_use]
     pub fn in_framing(mut self, framing: Framing) -> Self {
         if framing == Framing::Whole {
             return self;

@@ -9,7 +9,6 @@ use crate::method::Method;
 use revmap::settings::Solver;
 
 /// The meaning of a method's name.
-#[must_use]
 pub fn meaning(method: Method) -> &'static str {
     match method {
         Method::Search(Solver::Other(search)) => search.about,
@@ -46,7 +45,6 @@ const SOURCES: [&str; 4] = [
 
 /// The names that occur in these rows, each with its meaning, in the order in which reports list
 /// them.
-#[must_use]
 pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);
     let mut all: Vec<(&'static str, String)> = Vec::new();

@@ -27,7 +27,6 @@ pub struct Machine {
 
 impl Machine {
     /// This machine, now. `version` is that of the program which measures.
-    #[must_use]
     pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
         let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -56,7 +55,6 @@ impl Machine {
     }
 
     /// The note as `(what, which)`.
-    #[must_use]
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("device", format!("{} ({})", self.device, self.kind)),
@@ -77,7 +75,6 @@ impl Machine {
 
     /// A name for a folder of results, after day, device and the driver's version:
     /// `2026-01-31-lavapipe-22.3.6`.
-    #[must_use]
     pub fn folder(&self) -> String {
         let words: String = self
             .device

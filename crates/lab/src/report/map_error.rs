@@ -70,9 +70,6 @@ impl Truths {
 /// Measures the maps that a plan sweeps over, for views of solids without repetition; the reference
 /// is drawn where `truths` has none. Of the errors depth and wrong pixels count: colours and
 /// normals are not compared. `progress` is told what is done and how much there is.
-///
-/// # Errors
-/// Baking, or the reference, fails.
 pub fn measure(
     plan: &Plan,
     size: (u32, u32),
@@ -122,9 +119,6 @@ pub fn measure(
 }
 
 /// Draws the distances (no colours, no normals) of the surface that the maps hold.
-///
-/// # Errors
-/// Baking fails, or the camera is wrong.
 pub fn draw(scene: &Scene, size: (u32, u32), source: MapSource, rows: u32) -> Result<Frame> {
     let mut maps = Vec::new();
     for object in &scene.objects {

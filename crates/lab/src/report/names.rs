@@ -1,7 +1,6 @@
 //! Numbers and names of files, as results have them.
 
 /// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
-#[must_use]
 pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 {
@@ -36,8 +35,20 @@ pub(super) fn safe(name: &str) -> String {
         .collect()
 }
 
+/// `0.97 to 1.07`.
+pub(super) fn range((low, high): (f64, f64)) -> String {
+    format!("{} to {}", number(low, 3), number(high, 3))
+}
+
+/// `1 picture`, `4 pictures`.
+pub(super) fn count(number: usize, what: &str) -> String {
+    match number {
+        1 => format!("1 {what}"),
+        number => format!("{number} {what}s"),
+    }
+}
+
 /// A share of pixels in percent.
-#[must_use]
 pub fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share, 3))
 }

@@ -25,7 +25,6 @@ const STYLE: &str = include_str!("page.css");
 
 impl Page {
     /// An empty page.
-    #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -133,7 +132,6 @@ impl Page {
     }
 
     /// The whole file.
-    #[must_use]
     pub fn html(&self) -> String {
         let font = BASE64_STANDARD.encode(FONT);
         let face =

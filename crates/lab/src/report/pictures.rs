@@ -52,9 +52,6 @@ pub struct Album {
 
 impl Album {
     /// An album in `folder/pictures`, with heat maps or without.
-    ///
-    /// # Errors
-    /// When the folder cannot be made.
     pub fn new(folder: &Path, labels: Labels, heat_maps: bool) -> Result<Self> {
         let folder = folder.join("pictures");
         make(&folder)?;
@@ -71,9 +68,6 @@ impl Album {
     /// Takes what is worth showing of a picture: each view once as it should look, then each way of
     /// drawing it at that size, from one stage (the stages' pictures are alike): look-ups and
     /// errors.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let view = seen.case.view;
@@ -160,7 +154,6 @@ fn worth(s: &MethodSettings) -> bool {
 }
 
 /// The meaning of the colours of heat maps.
-#[must_use]
 pub fn heat_key() -> String {
     format!(
         "Look-ups: dark blue is 1, pale yellow {} or more, each doubling an equal step of brightness; grey is where nothing was looked up. \
@@ -171,7 +164,6 @@ pub fn heat_key() -> String {
 }
 
 /// Look-ups as a heat map.
-#[must_use]
 pub fn steps(frame: &Frame) -> Picture {
     let color = |&steps: &f32| {
         let [r, g, b] = if steps < 1.0 {
@@ -189,7 +181,6 @@ pub fn steps(frame: &Frame) -> Picture {
 }
 
 /// A picture with each square of `factor` pixels made one, by their mean.
-#[must_use]
 pub fn reduced(picture: &Picture, factor: u32) -> Picture {
     let (width, height) = (
         (picture.width / factor).max(1),

@@ -2,7 +2,6 @@
 
 use super::columns::{COLUMNS, Context};
 use super::exhibit::{self, Exhibit, Extra};
-use super::findings::{findings, unresolved};
 use super::flight::{self, FlightTimes};
 use super::folder::{excluded, keep_figure, write_text};
 use super::glossary;
@@ -39,27 +38,17 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn context(&self) -> Context<'_> {
-        Context {
-            rows: &self.measured.rows,
-            plan: self.plan,
-            styles: SeriesStyles::of(&self.measured.rows),
-            device: &self.machine.device,
-            driver: &self.machine.driver,
-            resolved: self.file.time.resolved,
-        }
-    }
-
     /// Writes the page, the charts and the tables that are files; returns the text of the tables
     /// that are printed.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<String> {
-        let context = self.context();
+        let rows: Vec<&Row> = self.measured.rows.iter().collect();
+        let resolved = self.file.time.resolved;
+        let context = Context::new(&rows, self.plan, self.machine, resolved);
         let mut page = Page::new(self.file.title.as_str());
-        findings(&mut page, &context);
-        if let Some(note) = unresolved(&context) {
+        exhibit::findings(&context)
+            .into_iter()
+            .for_each(|found| page.lead(found));
+        if let Some(note) = exhibit::unresolved(&context) {
             page.note(&note);
         }
         if self.measured.interrupted {
@@ -301,18 +290,8 @@ fn capital(words: &str) -> String {
 }
 
 /// `results.csv`: one record a row.
-///
-/// # Errors
-/// A column of this name does not exist.
 pub fn results(rows: &[Row], plan: &Plan, machine: &Machine, resolved: f64) -> Result<Table> {
-    let context = Context {
-        rows,
-        plan,
-        styles: SeriesStyles::of(rows),
-        device: &machine.device,
-        driver: &machine.driver,
-        resolved,
-    };
-    let names: Vec<&str> = super::columns::results().collect();
-    context.file(&rows.iter().collect::<Vec<_>>(), &names)
+    let rows: Vec<&Row> = rows.iter().collect();
+    let context = Context::new(&rows, plan, machine, resolved);
+    context.file(&rows, &super::columns::results().collect::<Vec<_>>())
 }

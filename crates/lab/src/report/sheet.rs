@@ -27,7 +27,6 @@ pub struct Sheets {
 
 impl Sheets {
     /// Sheets in a folder.
-    #[must_use]
     pub fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -41,9 +40,6 @@ impl Sheets {
     }
 
     /// Takes a picture.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let of = Some((seen.case.view, settings.stage));
@@ -63,9 +59,6 @@ impl Sheets {
     }
 
     /// Writes the last sheet.
-    ///
-    /// # Errors
-    /// When it cannot be written.
     pub fn finish(&mut self) -> Result<()> {
         let mut colors = std::mem::take(&mut self.colors);
         if colors.is_empty() {

@@ -31,14 +31,17 @@ pub enum Verdict {
 }
 
 impl Interval {
+    /// A value and the ends of its interval.
+    pub const fn new(value: f64, low: f64, high: f64) -> Self {
+        Self { value, low, high }
+    }
+
     /// Half the width, relative to the value.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         (self.high - self.low) / (2.0 * self.value)
     }
 
     /// What the ratio of two times says; `resolved`: half the width, relative, that is allowed.
-    #[must_use]
     pub fn verdict(&self, resolved: f64) -> Verdict {
         match (self.relative() <= resolved, self.low, self.high) {
             (false, ..) => Verdict::Unresolved,
@@ -49,14 +52,12 @@ impl Interval {
     }
 
     /// Both ends, where they are known.
-    #[must_use]
     pub fn ends(&self) -> Option<(f64, f64)> {
         self.high.is_finite().then_some((self.low, self.high))
     }
 }
 
 /// The value below which the share `q` of all lie (nearest rank); `None` of nothing.
-#[must_use]
 pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -65,7 +66,6 @@ pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
 }
 
 /// The middle value, or the mean of the two in the middle; `None` of nothing.
-#[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -90,59 +90,38 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
 /// The geometric mean of positive observations with Student's interval of their logarithms. One
 /// observation has an interval that excludes nothing; `None` of nothing, or of what is not
 /// positive.
-#[must_use]
 pub fn geometric(observations: &[f64]) -> Option<Interval> {
     if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
         return None;
     }
     let logs: Vec<f64> = observations.iter().map(|v| v.ln()).collect();
     let Some((mean, error)) = mean_and_error(&logs) else {
-        return Some(Interval {
-            value: observations[0],
-            low: 0.0,
-            high: f64::INFINITY,
-        });
+        return Some(Interval::new(observations[0], 0.0, f64::INFINITY));
     };
     let reach = student(logs.len() as f64 - 1.0) * error;
-    Some(Interval {
-        value: mean.exp(),
-        low: (mean - reach).exp(),
-        high: (mean + reach).exp(),
-    })
+    let [value, low, high] = [mean, mean - reach, mean + reach].map(f64::exp);
+    Some(Interval::new(value, low, high))
 }
 
 /// The mean of observations with Student's interval; a single one has an interval that excludes
 /// nothing. `None` of nothing.
-#[must_use]
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {
-        return observations.first().map(|&value| Interval {
-            value,
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
-        });
+        let alone = |&value| Interval::new(value, f64::NEG_INFINITY, f64::INFINITY);
+        return observations.first().map(alone);
     };
     let reach = student(observations.len() as f64 - 1.0) * error;
-    Some(Interval {
-        value,
-        low: value - reach,
-        high: value + reach,
-    })
+    Some(Interval::new(value, value - reach, value + reach))
 }
 
 /// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's
 /// interval.
-#[must_use]
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
     let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();
     let (Some((_, ea)), Some((_, eb))) = (mean_and_error(&logs(a)), mean_and_error(&logs(b)))
     else {
-        return Some(Interval {
-            value,
-            low: 0.0,
-            high: f64::INFINITY,
-        });
+        return Some(Interval::new(value, 0.0, f64::INFINITY));
     };
     let (va, vb) = (ea * ea, eb * eb);
     let degrees = if va + vb > 0.0 {
@@ -151,18 +130,13 @@ pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
         1e9
     };
     let reach = (student(degrees) * (va + vb).sqrt()).exp();
-    Some(Interval {
-        value,
-        low: value / reach,
-        high: value * reach,
-    })
+    Some(Interval::new(value, value / reach, value * reach))
 }
 
 /// The factor on the standard error that gives a two-sided 95 % interval with `degrees` of freedom
 /// (Student's t).
 ///
 /// Between the tabled degrees it is interpolated in `1 / degrees`, within 0.5 %.
-#[must_use]
 pub fn student(degrees: f64) -> f64 {
     const TABLE: [(f64, f64); 13] = [
         (1.0, 12.706),
@@ -199,44 +173,31 @@ pub struct PowerLaw {
 
 impl PowerLaw {
     /// Fits positive points; `None` below two different `x`.
-    #[must_use]
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
-        let logs: Vec<(f64, f64)> = points
-            .iter()
-            .filter(|(x, y)| *x > 0.0 && *y > 0.0)
-            .map(|(x, y)| (x.ln(), y.ln()))
-            .collect();
+        let positive = points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0);
+        let logs: Vec<(f64, f64)> = positive.map(|(x, y)| (x.ln(), y.ln())).collect();
         let n = logs.len() as f64;
-        let (mx, my) = logs
-            .iter()
-            .fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+        let mx = logs.iter().map(|l| l.0).sum::<f64>() / n;
+        let my = logs.iter().map(|l| l.1).sum::<f64>() / n;
         let sxx: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
         let sxy: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
         if logs.len() < 2 || sxx <= 1e-12 {
             return None;
         }
         let slope = sxy / sxx;
-        let residual: f64 = logs
-            .iter()
-            .map(|(x, y)| (y - my - slope * (x - mx)).powi(2))
-            .sum();
-        let reach = if logs.len() > 2 {
-            student(n - 2.0) * (residual / (n - 2.0) / sxx).sqrt()
-        } else {
-            f64::INFINITY
+        let off = logs.iter().map(|(x, y)| y - my - slope * (x - mx));
+        let residual: f64 = off.map(|off| off.powi(2)).sum();
+        let reach = match logs.len() {
+            2 => f64::INFINITY,
+            _ => student(n - 2.0) * (residual / (n - 2.0) / sxx).sqrt(),
         };
         Some(Self {
-            exponent: Interval {
-                value: slope,
-                low: slope - reach,
-                high: slope + reach,
-            },
+            exponent: Interval::new(slope, slope - reach, slope + reach),
             factor: (my - slope * mx).exp(),
         })
     }
 
     /// `y` at `x`.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         self.factor * x.powf(self.exponent.value)
     }

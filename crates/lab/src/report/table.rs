@@ -13,6 +13,9 @@ pub struct Table {
     pub records: Vec<Vec<String>>,
 }
 
+/// A column's name, and its text for what a record is of.
+pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
 impl Table {
     /// A table with these columns.
     pub fn new(
@@ -25,13 +28,21 @@ impl Table {
         }
     }
 
+    /// A record for each of these.
+    pub(crate) fn of<T>(all: &[T], columns: &[Column<T>]) -> Self {
+        let record = |one| columns.iter().map(|(_, text)| text(one)).collect();
+        Self::new(
+            columns.iter().map(|c| c.0),
+            all.iter().map(record).collect(),
+        )
+    }
+
     /// The header, then the records.
     fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
         std::iter::once(&self.header).chain(&self.records)
     }
 
     /// Its text as comma-separated values (RFC 4180), lines ended by a line feed.
-    #[must_use]
     pub fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let written = self.lines().try_for_each(|line| writer.write_record(line));
@@ -41,7 +52,6 @@ impl Table {
     }
 
     /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
-    #[must_use]
     pub fn aligned(&self) -> String {
         let width = |column: usize| {
             let fields = self.lines().filter_map(|line| line.get(column));
@@ -94,9 +104,6 @@ impl Table {
     }
 
     /// Reads a file of comma-separated values.
-    ///
-    /// # Errors
-    /// See [`Table::parse`]; also when the file cannot be read.
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
             Error::new(
@@ -109,9 +116,6 @@ impl Table {
     }
 
     /// The place of a column.
-    ///
-    /// # Errors
-    /// [`ErrorKind::File`] when there is none of this name.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.header.iter().position(|n| n == name).ok_or_else(|| {
             Error::new(

@@ -13,7 +13,6 @@ use revmap_lab::report::plan::is_rbm_baseline;
 use revmap_lab::report::ratios::{Over, Ratio, over};
 use revmap_lab::report::report::results;
 use revmap_lab::report::row::{Clocks, Row};
-use revmap_lab::report::series_style::SeriesStyles;
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 
@@ -90,14 +89,8 @@ fn a_search_that_sleeps_is_charted_slower() {
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let plan = plan();
-    let context = Context {
-        rows: &outcome.rows,
-        plan: &plan,
-        styles: SeriesStyles::of(&outcome.rows),
-        device: &machine.device,
-        driver: &machine.driver,
-        resolved: 0.25,
-    };
+    let all: Vec<&Row> = outcome.rows.iter().collect();
+    let context = Context::new(&all, &plan, &machine, 0.25);
     let charts = exhibit::all(&[]).unwrap();
     let chart = &charts.iter().find(|e| e.name == "error").unwrap().chart[0];
     let figure = chart

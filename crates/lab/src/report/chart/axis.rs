@@ -20,7 +20,6 @@ pub struct Axis {
 
 impl Axis {
     /// A logarithmic axis.
-    #[must_use]
     pub fn log(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
@@ -32,7 +31,6 @@ impl Axis {
     }
 
     /// An even axis.
-    #[must_use]
     pub fn linear(label: impl Into<String>) -> Self {
         Self {
             log: false,
@@ -41,14 +39,12 @@ impl Axis {
     }
 
     /// With a floor.
-    #[must_use]
     pub fn from(mut self, floor: f64) -> Self {
         self.floor = Some(floor);
         self
     }
 
     /// With ticks at these values, and only there.
-    #[must_use]
     pub fn at(mut self, ticks: impl IntoIterator<Item = f64>) -> Self {
         self.ticks.extend(ticks);
         self.ticks.sort_by(f64::total_cmp);
@@ -57,7 +53,6 @@ impl Axis {
     }
 
     /// With a value that must be in sight.
-    #[must_use]
     pub fn with(mut self, value: f64) -> Self {
         self.include.push(value);
         self
@@ -78,7 +73,6 @@ pub struct Scale {
 impl Scale {
     /// Fits an axis to values; those that have no place on it (not finite; on a logarithmic axis
     /// not positive and no floor) are left out.
-    #[must_use]
     pub fn new(axis: &Axis, values: impl IntoIterator<Item = f64>) -> Self {
         let shown = |v: f64| match axis.floor {
             Some(floor) if axis.log => v.max(floor),
@@ -185,7 +179,6 @@ impl Scale {
 
     /// The place of a value: 0 at the low end, 1 at the high one. `None` where it has no place on
     /// this axis.
-    #[must_use]
     pub fn place(&self, value: f64) -> Option<f64> {
         if !self.log {
             return value

@@ -57,7 +57,6 @@ const STEP: f64 = 22.0;
 
 impl DotChart {
     /// Lays the chart out.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         let lines = || self.blocks.iter().flat_map(|b| &b.lines);
         // An interval without an end or too wide must not stretch the axis.
@@ -84,9 +83,9 @@ impl DotChart {
             }
         }
         if let Some(x) = self.mark.and_then(at) {
-            sheet.line([(x, top), (x, bottom)], PALE, 1.5, Dash::Guide);
+            sheet.line([(x, top), (x, bottom)], PALE, 1.5, Dash::GUIDE);
         }
-        sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::Solid);
+        sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::SOLID);
         self.lines(&mut sheet, (top, left), at);
         sheet.axis((left, right), bottom, &self.axis.label);
         let mut end = bottom + 2.0 * TEXT + 16.0;
@@ -124,7 +123,7 @@ impl DotChart {
                         [(a, level), (b, level)],
                         line.style.color,
                         width,
-                        Dash::Solid,
+                        Dash::SOLID,
                     );
                 }
                 if let Some(x) = at(line.value.value) {

@@ -42,7 +42,7 @@ pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
         (PAPER, (style.color, 1.8))
     };
     Mark::Shape {
-        points: style.corners(x, y, MARKER),
+        points: style.corners((x, y), MARKER),
         fill,
         stroke: Some(stroke),
     }
@@ -60,7 +60,7 @@ pub(super) fn strike((x, y): (f64, f64)) -> Mark {
         points: vec![(x - reach, y + reach), (x + reach, y - reach)],
         color: INK,
         width: 1.2,
-        dash: Dash::Solid,
+        dash: Dash::SOLID,
     }
 }
 
@@ -92,7 +92,7 @@ impl Sheet {
     /// A line of the grid across a plot, and its value below; a word that would touch the last one,
     /// which ends at `end`, or leave the figure, is left out.
     pub(super) fn tick(&mut self, x: f64, (top, bottom): (f64, f64), text: &str, end: &mut f64) {
-        self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::Solid);
+        self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::SOLID);
         let half = width(text, TEXT) / 2.0;
         if x - half > *end + 6.0 && x + half < WIDTH {
             self.word((x, bottom + TEXT + 5.0), text, Anchor::Middle, INK);
@@ -145,7 +145,7 @@ impl Sheet {
                     }
                     Key::Struck => {
                         let middle = ((left + right) / 2.0 - 1.0, level);
-                        self.0.push(dot(Style::new(GREY, Marker::Disk), middle));
+                        self.0.push(dot(Style::new(GREY, Marker::DISK), middle));
                         self.0.push(strike(middle));
                     }
                     Key::Line(color, dash) => self.line(ends, color, 1.6, dash),

@@ -27,7 +27,6 @@ fn advance(face: &Face, letter: char) -> f64 {
 }
 
 /// The width of a word at a size, pixels.
-#[must_use]
 pub fn width(text: &str, size: f64) -> f64 {
     match face() {
         Some(face) => size * text.chars().map(|c| advance(&face, c)).sum::<f64>(),
@@ -36,7 +35,6 @@ pub fn width(text: &str, size: f64) -> f64 {
 }
 
 /// Cuts a text into lines no wider than `limit`, between words.
-#[must_use]
 pub fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

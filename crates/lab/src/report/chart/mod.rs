@@ -100,7 +100,6 @@ pub type Bounds = [f64; 4];
 
 impl Mark {
     /// A level word.
-    #[must_use]
     pub fn word(
         at: (f64, f64),
         text: &str,
@@ -119,18 +118,14 @@ impl Mark {
     }
 
     /// The rectangle that it covers.
-    #[must_use]
     pub fn bounds(&self) -> Bounds {
         match self {
-            Self::Shape { points, .. } | Self::Line { points, .. } => points.iter().fold(
-                [
-                    f64::INFINITY,
-                    f64::INFINITY,
-                    f64::NEG_INFINITY,
-                    f64::NEG_INFINITY,
-                ],
-                |b, p| [b[0].min(p.0), b[1].min(p.1), b[2].max(p.0), b[3].max(p.1)],
-            ),
+            Self::Shape { points, .. } | Self::Line { points, .. } => {
+                let (far, near) = (f64::INFINITY, f64::NEG_INFINITY);
+                points.iter().fold([far, far, near, near], |b, p| {
+                    [b[0].min(p.0), b[1].min(p.1), b[2].max(p.0), b[3].max(p.1)]
+                })
+            }
             Self::Word {
                 at,
                 text,
@@ -153,7 +148,6 @@ impl Mark {
 }
 
 /// True if two rectangles have more than an edge in common.
-#[must_use]
 pub fn overlap(a: Bounds, b: Bounds) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
@@ -161,16 +155,12 @@ pub fn overlap(a: Bounds, b: Bounds) -> bool {
 impl Figure {
     /// Pairs of words that cover each other, and words that reach past the figure: none in a good
     /// figure.
-    #[must_use]
     pub fn faults(&self) -> Vec<String> {
-        let words: Vec<(&String, Bounds)> = self
-            .marks
-            .iter()
-            .filter_map(|m| match m {
-                Mark::Word { text, .. } => Some((text, m.bounds())),
-                _ => None,
-            })
-            .collect();
+        let words = self.marks.iter().filter_map(|m| match m {
+            Mark::Word { text, .. } => Some((text, m.bounds())),
+            _ => None,
+        });
+        let words: Vec<(&String, Bounds)> = words.collect();
         let mut faults = Vec::new();
         for (i, (text, b)) in words.iter().enumerate() {
             if b[0] < 0.0 || b[1] < 0.0 || b[2] > self.width || b[3] > self.height {

@@ -23,7 +23,6 @@ const GLYPHS: SystemInfo = SystemInfo {
 };
 
 /// A figure as a PDF of one page.
-#[must_use]
 pub fn pdf(figure: &Figure) -> Vec<u8> {
     let points = COLUMN / figure.width.max(1.0);
     let height = figure.height - figure.top;
@@ -113,7 +112,7 @@ fn draw(content: &mut Content, mark: &Mark) {
             let [r, g, b] = rgb(fill);
             content.set_fill_rgb(r, g, b);
             if let Some((color, width)) = stroke {
-                pen(content, color, *width, Dash::Solid);
+                pen(content, color, *width, Dash::SOLID);
             }
             path(content, points);
             content.close_path();
@@ -178,7 +177,7 @@ fn pen(content: &mut Content, color: &str, width: f64, dash: Dash) {
     let [r, g, b] = rgb(color);
     content.set_stroke_rgb(r, g, b);
     content.set_line_width(width as f32);
-    content.set_dash_pattern(dash.pattern().iter().copied(), 0.0);
+    content.set_dash_pattern(dash.0.iter().copied(), 0.0);
 }
 
 /// `#rrggbb` as parts of 1.
@@ -202,7 +201,7 @@ mod tests {
             points: vec![(10.0, 50.0), (90.0, 70.0)],
             color: "#ff0000",
             width: 2.0,
-            dash: Dash::Guide,
+            dash: Dash::GUIDE,
         };
         let figure = Figure {
             width: 482.0,

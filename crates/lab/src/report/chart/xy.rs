@@ -62,7 +62,7 @@ impl Guide {
             name: name.to_owned(),
             points,
             color: PALE,
-            dash: Dash::Guide,
+            dash: Dash::GUIDE,
             width: 1.8,
         }
     }
@@ -113,7 +113,6 @@ impl Plot {
 
 impl XyChart {
     /// Lays the chart out.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         let points = || self.series.iter().flat_map(|s| &s.points);
         // Intervals that are too wide must not stretch an axis.
@@ -209,7 +208,7 @@ impl Drawing {
             };
             self.taken
                 .push([a.0 - 1.0, a.1 - 1.0, b.0 + 1.0, b.1 + 1.0]);
-            self.sheet.line([a, b], color, 1.2, Dash::Solid);
+            self.sheet.line([a, b], color, 1.2, Dash::SOLID);
         }
     }
 
@@ -266,7 +265,7 @@ fn axes(sheet: &mut Sheet, plot: &Plot, x_label: &str, y_label: &str) {
             continue;
         };
         let y = bottom - place * (bottom - top);
-        sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::Solid);
+        sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::SOLID);
         if y + TEXT * 0.6 < end {
             sheet.word((left - 7.0, y + TEXT * 0.35), text, Anchor::End, INK);
             end = y - TEXT * 0.6;
@@ -276,7 +275,7 @@ fn axes(sheet: &mut Sheet, plot: &Plot, x_label: &str, y_label: &str) {
         [(left, top), (left, bottom), (right, bottom)],
         INK,
         1.0,
-        Dash::Solid,
+        Dash::SOLID,
     );
     sheet.axis((left, right), bottom, x_label);
     sheet.0.push(Mark::Word {

@@ -1,6 +1,6 @@
 //! Cells of tables.
 
-use crate::report::names::{number, percent};
+use crate::report::names::{number, percent, range};
 use crate::report::stats::Interval;
 
 /// The content of a cell.
@@ -24,7 +24,6 @@ pub enum Cell {
 
 impl Cell {
     /// Its text in files.
-    #[must_use]
     pub fn csv(&self) -> String {
         match self {
             Self::Empty => String::new(),
@@ -36,17 +35,15 @@ impl Cell {
     }
 
     /// Its text in tables.
-    #[must_use]
     pub fn shown(&self) -> String {
         match self {
             Self::Empty => "–".to_owned(),
             Self::Number(value) => number(*value, 3),
             Self::Share(share) => percent(*share),
-            Self::Known(i) if i.high.is_finite() => {
-                let [value, low, high] = [i.value, i.low, i.high].map(|v| number(v, 3));
-                format!("{value} ({low} to {high})")
-            }
-            Self::Known(interval) => number(interval.value, 3),
+            Self::Known(i) => match i.ends() {
+                Some(ends) => format!("{} ({})", number(i.value, 3), range(ends)),
+                None => number(i.value, 3),
+            },
             Self::Unresolved(i) => format!("{}, not resolved", Self::Known(*i).shown()),
             Self::Text(_) | Self::Count(_) => self.csv(),
         }
@@ -61,7 +58,6 @@ impl Cell {
     }
 
     /// The value, if it is a number.
-    #[must_use]
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Empty | Self::Text(_) => None,

@@ -5,11 +5,10 @@ mod answers;
 mod charts;
 mod dots;
 mod guides;
-mod map_rows;
 mod tables;
 
 pub use answers::Question;
-pub(in crate::report) use answers::count;
+pub(in crate::report) use answers::{findings, unresolved};
 pub use charts::{Chart, Extra};
 pub use tables::{Records, Table, left, ways_table};
 
@@ -79,9 +78,6 @@ const OWN: [&str; 3] = [
 ];
 
 /// The program's own exhibits, then `more`.
-///
-/// # Errors
-/// [`ErrorKind::Other`] if the program's own are damaged.
 pub fn all(more: &[Exhibit]) -> Result<Vec<Exhibit>> {
     let mut all = more.to_vec();
     for text in OWN {
@@ -96,9 +92,6 @@ pub fn all(more: &[Exhibit]) -> Result<Vec<Exhibit>> {
 
 impl Exhibit {
     /// Checks names of columns and of the plan's entries.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`], naming the exhibit.
     pub fn check(&self, sweeps: &[&str]) -> Result<()> {
         let at = |e: Error| e.at_key(format!("exhibit {}", self.name));
         for name in self.only.iter().chain(&self.except) {
@@ -136,7 +129,7 @@ impl Exhibit {
         let counts = |row: &&Row| {
             (self.only.is_empty() || row.sweeps & only != 0) && row.sweeps & !except != 0
         };
-        context.rows.iter().filter(counts).collect()
+        context.rows.iter().copied().filter(counts).collect()
     }
 }
 

@@ -98,9 +98,6 @@ impl TryFrom<Names> for Extent {
 
 /// The suite's views: each solid upright, filling nine tenths of the picture, from each of the
 /// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
-///
-/// # Errors
-/// A profile that the program carries cannot be read.
 pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
     let wanted = |place: usize, name: &str| match extent {
         Extent::One => place < 1,

@@ -95,7 +95,7 @@ fn points_stand_where_their_values_are() {
     let mut chart = crowded();
     chart.series = vec![Series {
         name: String::new(),
-        style: Style::new(color::BLUE, Marker::Disk),
+        style: Style::new(color::BLUE, Marker::DISK),
         joined: false,
         points: vec![],
     }];
@@ -146,7 +146,7 @@ fn piled() -> XyChart {
         }],
         joined: false,
     };
-    let plain = Style::new(color::BLUE, Marker::Disk);
+    let plain = Style::new(color::BLUE, Marker::DISK);
     let hollow = Style {
         filled: false,
         ..plain
