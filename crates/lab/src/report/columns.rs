@@ -1,12 +1,8 @@
 //! The one description of every column: its name in files, its heading on pages, its meaning, and the
 //! cell of a row.
 
-mod cell;
-
-pub use cell::Cell;
-
 use super::machine::Machine;
-use super::names::range;
+use super::names::{number, percent, range};
 use super::plan::{Plan, RBM_BASELINE, is_rbm_baseline};
 use super::ratios::{Over, above_floor, baseline_stage, between};
 use super::row::{Clocks, Row};
@@ -71,9 +67,7 @@ pub const CONTRACT: usize = 31;
 
 /// The time by the device's clock, where it has one that agrees with the wall clock.
 fn gpu(row: &Row) -> Option<Interval> {
-    (row.clocks() == Clocks::Agree)
-        .then(|| row.time())
-        .flatten()
+    row.time().filter(|_| row.clocks() == Clocks::Agree)
 }
 
 /// The cell of a search's own column; a mesh has none.
@@ -220,6 +214,87 @@ pub static COLUMNS: &[Column] = columns! {
     "within", "within", "whether the 99.9th percentile and the farthest contour are below the tolerance" => |_, r| within(r);
 };
 
+/// The content of a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing.
+    Empty,
+    /// Words.
+    Text(String),
+    /// A number that is a count.
+    Count(u64),
+    /// A number.
+    Number(f64),
+    /// A share, shown in percent.
+    Share(f64),
+    /// A value with its interval.
+    Known(Interval),
+    /// A value whose interval is wider than the plan allows.
+    Unresolved(Interval),
+}
+
+impl Cell {
+    /// Its text in files.
+    pub fn csv(&self) -> String {
+        match self {
+            Self::Empty => String::new(),
+            Self::Text(text) => text.clone(),
+            Self::Count(count) => count.to_string(),
+            Self::Number(value) | Self::Share(value) => number(*value, 6),
+            Self::Known(interval) | Self::Unresolved(interval) => number(interval.value, 6),
+        }
+    }
+
+    /// Its text in tables.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Empty => "–".to_owned(),
+            Self::Number(value) => number(*value, 3),
+            Self::Share(share) => percent(*share),
+            Self::Known(i) => match i.ends() {
+                Some(ends) => format!("{} ({})", number(i.value, 3), range(ends)),
+                None => number(i.value, 3),
+            },
+            Self::Unresolved(i) => format!("{}, not resolved", Self::Known(*i).shown()),
+            Self::Text(_) | Self::Count(_) => self.csv(),
+        }
+    }
+
+    /// The interval of its value, if it has one.
+    pub(super) fn interval(&self) -> Option<Interval> {
+        match self {
+            Self::Known(interval) | Self::Unresolved(interval) => Some(*interval),
+            _ => None,
+        }
+    }
+
+    /// The value, if it is a number.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Self::Empty | Self::Text(_) => None,
+            Self::Count(count) => Some(*count as f64),
+            Self::Number(value) | Self::Share(value) => Some(*value),
+            Self::Known(interval) | Self::Unresolved(interval) => Some(interval.value),
+        }
+    }
+
+    pub(super) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    pub(super) fn number(value: impl Into<Option<f64>>) -> Self {
+        value.into().map_or(Self::Empty, Self::Number)
+    }
+
+    fn count(count: impl Into<Option<usize>>) -> Self {
+        count.into().map_or(Self::Empty, |n| Self::Count(n as u64))
+    }
+
+    fn name(text: Option<&str>) -> Self {
+        text.map_or(Self::Empty, Self::text)
+    }
+}
+
 /// Names of the columns of `results.csv`.
 pub fn results() -> impl Iterator<Item = &'static str> {
     COLUMNS[..RESULTS].iter().map(|c| c.name)
@@ -282,13 +357,13 @@ impl<'a> Context<'a> {
     /// A file's table of these columns: a record a row.
     pub fn file(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         // A number in each cell: an interval is two columns.
-        let split = |name: &str| match name {
-            "time_interval" => ["time_low_ms", "time_high_ms", "resolved"]
-                .map(str::to_owned)
-                .to_vec(),
-            name => vec![name.to_owned()],
-        };
-        let names: Vec<String> = names.iter().flat_map(|n| split(n.as_ref())).collect();
+        fn split(name: &str) -> Vec<&str> {
+            match name {
+                "time_interval" => vec!["time_low_ms", "time_high_ms", "resolved"],
+                name => vec![name],
+            }
+        }
+        let names: Vec<&str> = names.iter().flat_map(|n| split(n.as_ref())).collect();
         self.table(rows, &names, |c| c.name, Cell::csv)
     }
 

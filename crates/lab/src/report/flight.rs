@@ -94,11 +94,8 @@ pub fn fly(
 impl FlightTimes {
     /// Median and longest frame, milliseconds: preparing, recording and drawing it.
     pub fn frame_ms(&self) -> [f64; 2] {
-        let all: Vec<f64> = self
-            .times
-            .iter()
-            .map(|t| t.prepare_ms + t.frame_ms)
-            .collect();
+        let all = self.times.iter().map(|t| t.prepare_ms + t.frame_ms);
+        let all: Vec<f64> = all.collect();
         let median = stats::median(&all).unwrap_or(f64::NAN);
         [median, all.into_iter().fold(0.0, f64::max)]
     }

@@ -54,9 +54,8 @@ pub fn claim<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
     let usage = |message: &str| {
-        Error::new(ErrorKind::Usage, message)
-            .in_file(folder)
-            .at_key("out")
+        let error = Error::new(ErrorKind::Usage, message);
+        error.in_file(folder).at_key("out")
     };
     let written = |file: &Path| {
         let within = folder.canonicalize().ok()?;
@@ -92,15 +91,12 @@ fn clear(folder: &Path) -> std::io::Result<()> {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
         _ => Ok(()),
     };
-    FILES
-        .iter()
-        .try_for_each(|name| remove(&folder.join(name)))?;
-    for name in FOLDERS
-        .map(|name| folder.join(name))
-        .iter()
-        .filter(|f| f.is_dir())
-    {
-        for entry in std::fs::read_dir(name)? {
+    for name in FILES {
+        remove(&folder.join(name))?;
+    }
+    let folders = FOLDERS.map(|name| folder.join(name)).into_iter();
+    for own in folders.filter(|f| f.is_dir()) {
+        for entry in std::fs::read_dir(own)? {
             let file = entry?.path();
             let ending = file.extension().and_then(|e| e.to_str());
             if ending.is_some_and(|e| ["png", "svg", "pdf"].contains(&e)) {
@@ -114,11 +110,8 @@ fn clear(folder: &Path) -> std::io::Result<()> {
 /// Makes a folder and those above it.
 pub fn make(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| {
-        Error::new(
-            ErrorKind::File,
-            format!("cannot be made ({e}); choose another folder"),
-        )
-        .in_file(folder)
+        let message = format!("cannot be made ({e}); choose another folder");
+        Error::new(ErrorKind::File, message).in_file(folder)
     })
 }
 
@@ -134,10 +127,8 @@ pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<
     make(&charts)?;
     write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;
     write_bytes(&charts.join(format!("{name}.pdf")), &pdf(figure))?;
-    write_bytes(
-        &charts.join(format!("{name}.png")),
-        &png(&raster(figure, 2.0)?)?,
-    )
+    let picture = png(&raster(figure, 2.0)?)?;
+    write_bytes(&charts.join(format!("{name}.png")), &picture)
 }
 
 /// A picture as a PNG file.
@@ -156,17 +147,14 @@ pub fn raw(rows: &[Row]) -> Table {
     let mut table = Table::new(header, Vec::new());
     for (number, row) in rows.iter().enumerate() {
         for (pass, samples) in row.passes.iter().enumerate() {
-            table
-                .records
-                .extend(samples.iter().enumerate().map(|(round, sample)| {
-                    let mut record = named(Some(number), &row.scene, &row.settings).to_vec();
-                    record.extend([pass + 1, round + 1].map(|n| n.to_string()));
-                    let times = [sample.gpu_ms, Some(sample.frame_ms)];
-                    record.extend(
-                        times.map(|ms| ms.map_or(String::new(), |ms| names::number(ms, 7))),
-                    );
-                    record
-                }));
+            for (round, sample) in samples.iter().enumerate() {
+                let mut record = named(Some(number), &row.scene, &row.settings).to_vec();
+                record.extend([pass + 1, round + 1].map(|n| n.to_string()));
+                let text = |ms| names::number(ms, 7);
+                record.push(sample.gpu_ms.map_or(String::new(), text));
+                record.push(text(sample.frame_ms));
+                table.records.push(record);
+            }
         }
     }
     table
@@ -185,33 +173,27 @@ fn named(row: Option<usize>, scene: &str, settings: &MethodSettings) -> [String;
 /// The rows in no summary, and why: those whose clocks disagree (`row` is their number in
 /// `results.csv`), and measurements that could not be made (`row` is empty).
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
-    let lies = measured
-        .rows
-        .iter()
-        .enumerate()
-        .filter_map(|(number, row)| {
-            let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() else {
-                return None;
-            };
+    let header = ["row", "scene", "stage", "solver", "reason"];
+    let mut table = Table::new(header, Vec::new());
+    let mut add = |name: [String; 4], reason: &str| {
+        let record = [&name[..], &[reason.to_owned()]].concat();
+        table.records.push(record);
+    };
+    for (number, row) in measured.rows.iter().enumerate() {
+        if let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() {
+            let [gpu, wall] = [gpu_ms, frame_ms].map(|ms| names::number(ms, 4));
+            let apart = 100.0 * CLOCKS_APART;
             let reason = format!(
-                "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
-                names::number(gpu_ms, 4),
-                names::number(frame_ms, 4),
-                100.0 * CLOCKS_APART
+                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart"
             );
-            Some((named(Some(number), &row.scene, &row.settings), reason))
-        });
-    let left_out = measured.left_out.iter().map(|(case, reason)| {
+            add(named(Some(number), &row.scene, &row.settings), &reason);
+        }
+    }
+    for (case, reason) in &measured.left_out {
         let scene = plan.views.get(case.view).map_or("", |v| &v.name);
-        (named(None, scene, &case.settings), reason.clone())
-    });
-    let records = lies
-        .chain(left_out)
-        .map(|(name, reason)| [&name[..], &[reason]].concat());
-    Table::new(
-        ["row", "scene", "stage", "solver", "reason"],
-        records.collect(),
-    )
+        add(named(None, scene, &case.settings), reason);
+    }
+    table
 }
 
 /// Writes `results.csv` and `raw.csv`.
@@ -237,14 +219,10 @@ pub fn write(
 ) -> Result<()> {
     make(folder)?;
     write_rows(folder, &measured.rows, plan, machine, resolved)?;
-    write_text(
-        &folder.join("excluded.csv"),
-        &excluded(plan, measured).csv(),
-    )?;
-    let lines = machine.lines().into_iter();
-    let note: String = lines
-        .map(|(what, which)| format!("{what}: {which}\n"))
-        .collect();
+    let excluded = excluded(plan, measured).csv();
+    write_text(&folder.join("excluded.csv"), &excluded)?;
+    let line = |(what, which): &(&str, String)| format!("{what}: {which}\n");
+    let note: String = machine.lines().iter().map(line).collect();
     write_text(&folder.join("machine.txt"), &note)
 }
 

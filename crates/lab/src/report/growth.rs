@@ -8,7 +8,6 @@ use crate::method::MethodSettings;
 /// A way of drawing over a quantity.
 #[derive(Clone, Debug)]
 pub struct Growth {
-    /// The way, without what is varied.
     pub way: MethodSettings,
     /// `(quantity, ms)` of resolved times, growing.
     pub points: Vec<(f64, f64)>,
@@ -32,10 +31,13 @@ pub(super) fn growing(settings: &MethodSettings) -> MethodSettings {
 }
 
 /// Every way's growth with a quantity, from times whose intervals are no wider than `resolved`.
-pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>, resolved: f64) -> Vec<Growth> {
-    let known = rows
-        .iter()
-        .filter_map(|row| Some((quantity(row)?, row.time()?.value, *row)));
+pub fn growth<'a>(
+    rows: &[&'a Row],
+    quantity: impl Fn(&Row) -> Option<f64>,
+    resolved: f64,
+) -> Vec<Growth> {
+    let point = |row: &&'a Row| Some((quantity(row)?, row.time()?.value, *row));
+    let known = rows.iter().filter_map(point);
     let ways = grouped(known, |(_, _, row)| growing(&row.settings)).into_iter();
     ways.map(|(way, mut own)| {
         let measured = own.len();
@@ -45,11 +47,9 @@ pub fn growth(rows: &[&Row], quantity: impl Fn(&Row) -> Option<f64>, resolved: f
         let passes: Vec<Vec<f64>> = own.iter().map(|(.., row)| row.pass_medians()).collect();
         let count = passes.iter().map(Vec::len).min().unwrap_or(0);
         let of_pass = |pass: usize| {
-            let times = points
-                .iter()
-                .zip(&passes)
-                .map(|(p, times)| (p.0, times[pass]));
-            PowerLaw::fit(&times.collect::<Vec<_>>()).map(|law| law.exponent.value)
+            let points = points.iter().zip(&passes);
+            let points: Vec<_> = points.map(|(p, times)| (p.0, times[pass])).collect();
+            PowerLaw::fit(&points).map(|law| law.exponent.value)
         };
         Growth {
             way,

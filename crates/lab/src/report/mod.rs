@@ -36,7 +36,6 @@ pub mod ratios;
 pub mod report;
 pub mod row;
 pub mod series_style;
-pub mod sheet;
 mod stats;
 pub mod table;
 pub mod view;

@@ -3,11 +3,8 @@
 /// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
 pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".into()
-        } else {
-            format!("{value}").to_lowercase()
-        };
+        // Minus zero, too.
+        return format!("{}", value + 0.0).to_lowercase();
     }
     let magnitude = value.abs().log10().floor() as i32;
     let decimals = digits as i32 - 1 - magnitude;
@@ -24,15 +21,8 @@ pub fn number(value: f64, digits: usize) -> String {
 
 /// A name that may be part of a file's name.
 pub(super) fn safe(name: &str) -> String {
-    name.chars()
-        .map(|c| {
-            if c.is_alphanumeric() || "-_@.".contains(c) {
-                c
-            } else {
-                '-'
-            }
-        })
-        .collect()
+    let safe = |c: char| c.is_alphanumeric() || "-_@.".contains(c);
+    name.replace(|c| !safe(c), "-")
 }
 
 /// `0.97 to 1.07`.

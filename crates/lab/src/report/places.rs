@@ -87,10 +87,8 @@ pub(super) fn places<'a>(context: &Context, rows: &[&'a Row], per: Per) -> Vec<P
         Per::Size => {
             let sizes = grouped(own, |r| r.size());
             let several = sizes.len() > 1;
-            let sizes = sizes.into_iter();
-            sizes
-                .map(|(size, rows)| place(rows, several.then_some(size)))
-                .collect()
+            let place = |(size, rows)| place(rows, several.then_some(size));
+            sizes.into_iter().map(place).collect()
         }
         Per::Part => {
             let mut framings = grouped(own, |r| r.framing);
@@ -160,9 +158,8 @@ mod tests {
         ];
         with_context(&rows, |context| {
             let found = places(context, context.rows, Per::Part);
-            let parts = found
-                .iter()
-                .map(|p| (p.heading.clone().unwrap_or_default(), p.rows.len()));
+            let title = |p: &Place| p.heading.clone().unwrap_or_default();
+            let parts = found.iter().map(|p| (title(p), p.rows.len()));
             let wanted = [
                 (
                     "all together: 3 pictures, of which 10 to 75 % of the pixels are hit",

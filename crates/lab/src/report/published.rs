@@ -67,10 +67,8 @@ impl Printed {
         };
         let rates = self.rates[place];
         let unit = if over_first { rates[0] } else { 1.0 };
-        self.values
-            .into_iter()
-            .zip(rates.map(|r| r / unit))
-            .collect()
+        let rates = rates.map(|r| r / unit);
+        self.values.into_iter().zip(rates).collect()
     }
 }
 
@@ -92,12 +90,9 @@ pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Ta
     let Some(printed) = table(number_of) else {
         return Table::default();
     };
-    let values = printed
-        .values
-        .map(|v| format!("{} = {}", printed.letter, number(v, 3)));
-    let mut header = ["size", "method", "stage"].map(str::to_owned).to_vec();
-    header.extend(values);
-    header.extend(["last rate / first", "trend"].map(str::to_owned));
+    let [a, b, c] = (printed.values).map(|v| format!("{} = {}", printed.letter, number(v, 3)));
+    let names = ["size", "method", "stage", &a, &b, &c];
+    let header = names.into_iter().chain(["last rate / first", "trend"]);
     let mut out = Table::new(header, Vec::new());
     let place = |row: &Row| printed.values.iter().position(|v| Some(*v) == row.value);
     let own = rows.iter().copied().filter(|row| place(row).is_some());

@@ -43,9 +43,8 @@ impl Over {
             Self::Exact => find(&|r| is_exact_default(r) && stage(r)),
             Self::One => {
                 let mut like = row.settings;
-                if like.method == Method::Floor {
-                    like.method = Method::DEFAULT;
-                }
+                let floor = like.method == Method::Floor;
+                like.method = if floor { Method::DEFAULT } else { like.method };
                 find(&|r| r.view == 0 && row.view > 0 && r.settings == like)
             }
             Self::First => {
@@ -64,9 +63,8 @@ impl Over {
                 let search = |m: Method| m != Method::DEFAULT && m != Method::Floor && !m.is_mesh();
                 let near = |r: &Row| r.errors.depth.is_some_and(|d| d.p99 <= 1.0);
                 let own = |r: &&Row| search(r.settings.method) && stage(r) && near(r);
-                let timed = rows()
-                    .filter(own)
-                    .filter_map(|r| Some((r, r.time()?.value)));
+                let own = rows().filter(own);
+                let timed = own.filter_map(|r| Some((r, r.time()?.value)));
                 let fastest = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(r, _)| r);
                 fastest.filter(|_| is_exact_default(row))
             }
@@ -78,9 +76,11 @@ impl Over {
 /// a run that drew no baseline in the fragment stage.
 pub fn baseline_stage<'a>(rows: impl IntoIterator<Item = &'a Row>) -> DrawStage {
     let baselines = rows.into_iter().filter(|r| is_rbm_baseline(&r.settings));
-    let stages = baselines.map(|r| r.settings.stage);
-    let first = |a, b| if b == DrawStage::Fragment { b } else { a };
-    stages.reduce(first).unwrap_or(DrawStage::Fragment)
+    let stages: Vec<DrawStage> = baselines.map(|r| r.settings.stage).collect();
+    match stages.contains(&DrawStage::Compute) && !stages.contains(&DrawStage::Fragment) {
+        true => DrawStage::Compute,
+        false => DrawStage::Fragment,
+    }
 }
 
 /// True for the default search without tolerance, one ray per pixel.
@@ -145,9 +145,8 @@ pub fn over<'a>(rows: impl IntoIterator<Item = &'a Row>, over: Over) -> Vec<Rati
     ways.sort_by_key(|(way, _)| way.stage == DrawStage::Compute);
     if over != Over::Mesh {
         let other = |row: &Row| over.of(&rows, row);
-        let all = ways
-            .iter()
-            .filter_map(|(way, own)| of_way(way, own, None, other));
+        let ways = ways.iter();
+        let all = ways.filter_map(|(way, own)| of_way(way, own, None, other));
         return all.collect();
     }
     let meshes = ways.iter().map(|w| w.0.method).filter(|m| m.is_mesh());

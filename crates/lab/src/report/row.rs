@@ -120,6 +120,8 @@ impl Row {
         let objects = &view.scene.objects;
         let settings = case.settings;
         let searched = !settings.method.is_mesh();
+        let own = || one(objects.iter().map(|o| o.map_rows));
+        let rows = settings.map_rows.or_else(own);
         Self {
             view: case.view,
             scene: view.name.clone(),
@@ -127,10 +129,7 @@ impl Row {
             technique: view.technique(),
             offset: view.offset(),
             settings,
-            map_rows: settings
-                .map_rows
-                .or_else(|| one(objects.iter().map(|o| o.map_rows)))
-                .filter(|_| searched),
+            map_rows: rows.filter(|_| searched),
             source: searched.then(|| settings.map_source.unwrap_or_default()),
             shadow: view.scene.shadow,
             solids: view.solids(),

@@ -58,15 +58,14 @@ impl Table {
             fields.map(|f| f.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        let pad = |(column, (field, &width)): (usize, (&String, &usize))| match column {
+            0 => format!("{field:width$}"),
+            _ => format!("{field:>width$}"),
+        };
         let mut out = String::new();
         for line in self.lines() {
             let fields = line.iter().zip(&widths).enumerate();
-            let padded: Vec<String> = fields
-                .map(|(column, (field, &width))| match column {
-                    0 => format!("{field:width$}"),
-                    _ => format!("{field:>width$}"),
-                })
-                .collect();
+            let padded: Vec<String> = fields.map(pad).collect();
             out += padded.join("  ").trim_end();
             out.push('\n');
         }
@@ -93,37 +92,34 @@ impl Table {
             Ok(header) if !header.is_empty() => header.iter().map(str::to_owned).collect(),
             _ => return fault("is empty".into()),
         };
-        let mut records = Vec::new();
-        for record in reader.records() {
-            match record {
-                Ok(record) => records.push(record.iter().map(str::to_owned).collect()),
-                Err(e) => return fault(e.to_string()),
-            }
+        let owned = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let records = reader.records().map(|record| record.map(owned));
+        match records.collect() {
+            Ok(records) => Ok(Self { header, records }),
+            Err(e) => fault(e.to_string()),
         }
-        Ok(Self { header, records })
     }
 
     /// Reads a file of comma-separated values.
     pub fn load(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(|e| {
-            Error::new(
-                ErrorKind::File,
-                format!("cannot be read ({e}); give a folder that `revmap bench` wrote"),
-            )
-            .in_file(file)
-        })?;
-        Self::parse(&text).map_err(|e| e.in_file(file))
+        Self::parse(&text_of(file)?).map_err(|e| e.in_file(file))
     }
 
     /// The place of a column.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.header.iter().position(|n| n == name).ok_or_else(|| {
-            Error::new(
-                ErrorKind::File,
-                format!("has no column `{name}`; write it again with `revmap bench`"),
-            )
+            let message = format!("has no column `{name}`; write it again with `revmap bench`");
+            Error::new(ErrorKind::File, message)
         })
     }
+}
+
+/// The text of a run's file.
+pub(super) fn text_of(file: &Path) -> Result<String> {
+    std::fs::read_to_string(file).map_err(|e| {
+        let message = format!("cannot be read ({e}); give a folder that `revmap bench` wrote");
+        Error::new(ErrorKind::File, message).in_file(file)
+    })
 }
 
 #[cfg(test)]
@@ -138,26 +134,17 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let written = table(
-            &["a", "b,c", "d"],
-            &[
-                &["1", "", "x y"],
-                &["\"q\"", "l1\nl2", "a,b"],
-                &["", "", ""],
-            ],
-        );
+        let quoted: &[&str] = &["\"q\"", "l1\nl2", "a,b"];
+        let records = [&["1", "", "x y"], quoted, &["", "", ""]];
+        let written = table(&["a", "b,c", "d"], &records);
         let text = written.csv();
-        assert!(
-            text.starts_with("a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\","),
-            "{text}"
-        );
-        assert_eq!(Table::parse(&text).unwrap(), written);
+        let start = "a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\",";
+        assert!(text.starts_with(start), "{text}");
         let windows = text.replace('\n', "\r\n").replace("l1\r\n", "l1\n");
-        assert_eq!(Table::parse(&windows).unwrap(), written);
-        assert_eq!(
-            Table::parse(&format!("\u{feff}{windows}")).unwrap(),
-            written
-        );
+        let marked = format!("\u{feff}{windows}");
+        for text in [text, windows, marked] {
+            assert_eq!(Table::parse(&text).unwrap(), written);
+        }
         assert_eq!(written.column("d").unwrap(), 2);
         assert!(written.column("e").is_err());
     }

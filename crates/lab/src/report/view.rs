@@ -157,13 +157,9 @@ pub(crate) mod tests {
     /// A double cone.
     pub(crate) fn spindle() -> View {
         let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
-        let mut scene = Scene::new(Camera::new(
-            DVec3::new(2.0, 0.0, 0.5),
-            DVec3::new(0.0, 0.0, 0.5),
-        ));
-        scene
-            .objects
-            .push(Object::new("spindle", Arc::new(profile)));
+        let (eye, target) = (DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
+        let mut scene = Scene::new(Camera::new(eye, target));
+        scene.objects = vec![Object::new("spindle", Arc::new(profile))];
         View::new("spindle", scene)
     }
 
@@ -176,15 +172,12 @@ pub(crate) mod tests {
             (0.0, 0.2, 0.5, "chamfered"),
             (0.0, 0.2, 0.0, "revolution"),
         ] {
-            assert_eq!(
-                Technique::of(&Offset {
-                    extend,
-                    bevel,
-                    chamfer
-                })
-                .name(),
-                wanted
-            );
+            let offset = Offset {
+                extend,
+                bevel,
+                chamfer,
+            };
+            assert_eq!(Technique::of(&offset).name(), wanted);
         }
         let mut two = spindle();
         two.scene.objects.push(two.scene.objects[0].clone());
@@ -200,10 +193,8 @@ pub(crate) mod tests {
             let back = camera.eye - camera.target;
             assert!((back.length() - 2.0).abs() < 1e-12);
             assert!((back.z / 2.0 - degrees.to_radians().sin()).abs() < 1e-12);
-            assert!(
-                back.normalize().cross(camera.up).length() > 0.1,
-                "{degrees}"
-            );
+            let across = back.normalize().cross(camera.up);
+            assert!(across.length() > 0.1, "{degrees}");
         }
         assert_eq!(spindle().at_elevation(25.0).name, "spindle@25");
     }

@@ -5,31 +5,20 @@
 pub const INK: &str = "#222222";
 /// Paler ink, of what matters less.
 pub const PALE: &str = "#666666";
-/// Lines of the grid.
 pub const GRID: &str = "#dddddd";
-/// Paper.
 pub const PAPER: &str = "#ffffff";
 
 /// Colours of series: the palette of Okabe and Ito (2008), which people of every kind of colour vision
 /// can tell apart. Grey takes the place of its yellow, which is too pale on white.
 pub mod color {
-    /// Orange.
     pub const ORANGE: &str = "#e69f00";
-    /// Sky blue.
     pub const SKY: &str = "#56b4e9";
-    /// Bluish green.
     pub const GREEN: &str = "#009e73";
-    /// Blue.
     pub const BLUE: &str = "#0072b2";
-    /// Vermilion, the one that stands out.
     pub const VERMILION: &str = "#d55e00";
-    /// Reddish purple.
     pub const PURPLE: &str = "#cc79a7";
-    /// Black.
     pub const BLACK: &str = "#000000";
-    /// Grey.
     pub const GREY: &str = "#999999";
-    /// All of them.
     pub const ALL: [&str; 8] = [VERMILION, BLUE, BLACK, GREEN, PURPLE, SKY, ORANGE, GREY];
 }
 
@@ -44,29 +33,17 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// A disk.
     pub const DISK: Self = Self::ring(24, 0.0, 1.1, 1.0);
-    /// A square.
     pub const SQUARE: Self = Self::ring(4, 0.125, 1.35, 1.0);
-    /// A triangle that points up.
     pub const UP: Self = Self::ring(3, 0.0, 1.5, 1.0);
-    /// A square on its corner.
     pub const DIAMOND: Self = Self::ring(4, 0.0, 1.4, 1.0);
-    /// A star of four points, upright.
     pub const PLUS: Self = Self::ring(8, 0.0, 1.6, 0.45);
-    /// A triangle that points down.
     pub const DOWN: Self = Self::ring(3, 0.5, 1.5, 1.0);
-    /// A star of four points, slanting.
     pub const CROSS: Self = Self::ring(8, 0.125, 1.6, 0.45);
-    /// A star of five points.
     pub const STAR: Self = Self::ring(10, 0.0, 1.5, 0.45);
-    /// A triangle that points to the left.
     pub const LEFT: Self = Self::ring(3, 0.75, 1.5, 1.0);
-    /// A triangle that points to the right.
     pub const RIGHT: Self = Self::ring(3, 0.25, 1.5, 1.0);
-    /// A star of six points.
     pub const HEXAGRAM: Self = Self::ring(12, 0.0, 1.5, 0.577);
-    /// All shapes.
     pub const ALL: [Self; 11] = [
         Self::DISK,
         Self::SQUARE,
@@ -108,17 +85,12 @@ impl Marker {
 pub struct Dash(pub &'static [f32]);
 
 impl Dash {
-    /// A solid line.
     pub const SOLID: Self = Self(&[]);
     /// Of guides alone, fronts and prints, so that no search is taken for one.
     pub const GUIDE: Self = Self(&[5.0, 4.0]);
-    /// Long dashes.
     pub const LONG: Self = Self(&[12.0, 3.0]);
-    /// Short dashes.
     pub const SHORT: Self = Self(&[3.0, 2.0]);
-    /// Dots.
     pub const DOTS: Self = Self(&[1.5, 3.0]);
-    /// Dashes and dots.
     pub const DASH_DOT: Self = Self(&[8.0, 3.0, 1.5, 3.0]);
 }
 
@@ -127,13 +99,10 @@ impl Dash {
 pub struct Style {
     /// Colour of its markers and lines, `#rrggbb`.
     pub color: &'static str,
-    /// Shape of its markers.
     pub marker: Marker,
-    /// How its lines are broken.
     pub dash: Dash,
     /// True if it is prominent: larger markers, thicker lines.
     pub heavy: bool,
-    /// True if its markers are filled.
     pub filled: bool,
 }
 

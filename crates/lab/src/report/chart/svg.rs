@@ -22,42 +22,26 @@ pub(crate) fn svg(figure: &Figure) -> String {
 
 fn element(mark: &Mark) -> Markup {
     match mark {
-        Mark::Shape {
-            points,
-            fill,
-            stroke,
-        } => html! {
+        Mark::Shape(points, fill, stroke) => html! {
             path d=(path(points) + "Z") fill=(fill) stroke=[stroke.map(|s| s.0)] stroke-width=[stroke.map(|s| s.1)] {}
         },
-        Mark::Line {
-            points,
-            color,
-            width,
-            dash,
-        } => {
+        Mark::Line(points, color, width, dash) => {
             let lengths: Vec<String> = dash.0.iter().map(f32::to_string).collect();
             let dashes = (!lengths.is_empty()).then(|| lengths.join(" "));
             html! {
                 path d=(path(points)) fill="none" stroke=(color) stroke-width=(width) stroke-linejoin="round" stroke-dasharray=[dashes] {}
             }
         }
-        Mark::Word {
-            at,
-            text,
-            size,
-            anchor,
-            color,
-            upwards,
-        } => {
-            let anchor = match anchor {
+        Mark::Word(word) => {
+            let anchor = match word.anchor {
                 Anchor::Start => "start",
                 Anchor::Middle => "middle",
                 Anchor::End => "end",
             };
-            let (x, y) = (round(at.0), round(at.1));
-            let turn = upwards.then(|| format!("rotate(-90 {x} {y})"));
+            let (x, y) = (round(word.at.0), round(word.at.1));
+            let turn = word.upwards.then(|| format!("rotate(-90 {x} {y})"));
             html! {
-                text x=(x) y=(y) font-size=(size) text-anchor=(anchor) fill=(color) transform=[turn] { (shown(text)) }
+                text x=(x) y=(y) font-size=(word.size) text-anchor=(anchor) fill=(word.color) transform=[turn] { (shown(&word.text)) }
             }
         }
     }

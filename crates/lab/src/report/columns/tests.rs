@@ -21,16 +21,14 @@ pub(crate) fn csv_of(rows: &[Row], device: &str, driver: &str) -> Table {
             styles: context.styles.clone(),
             ..*context
         };
-        context
-            .file(context.rows, &results().collect::<Vec<_>>())
-            .unwrap()
+        let names: Vec<&str> = results().collect();
+        context.file(context.rows, &names).unwrap()
     })
 }
 
 fn record(row: &Row) -> Vec<String> {
-    csv_of(std::slice::from_ref(row), "dev", "drv")
-        .records
-        .remove(0)
+    let mut table = csv_of(std::slice::from_ref(row), "dev", "drv");
+    table.records.remove(0)
 }
 
 #[test]

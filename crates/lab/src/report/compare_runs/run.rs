@@ -3,7 +3,7 @@
 use crate::report::columns::{CONTRACT, results as columns};
 use crate::report::machine;
 use crate::report::stats;
-use crate::report::table::Table;
+use crate::report::table::{Table, text_of};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
 use std::collections::BTreeMap;
@@ -87,9 +87,8 @@ impl Run {
     /// The medians of a row (counted from 0) by pass; none where its clocks disagree.
     pub(super) fn medians(&self, row: usize) -> Vec<f64> {
         let passes = self.samples.range((row + 1, 0)..(row + 2, 0));
-        passes
-            .filter_map(|(_, times)| stats::median(times))
-            .collect()
+        let medians = passes.filter_map(|(_, times)| stats::median(times));
+        medians.collect()
     }
 
     /// The passes' medians of a row (counted from 0), each over that of the RBM baseline which
@@ -125,8 +124,8 @@ fn samples(file: &Path, results: &Table) -> Result<BTreeMap<(usize, usize), Vec<
     };
     let gpu = results.column("gpu_ms_median")?;
     let mut samples: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
-    let mut raw = csv::Reader::from_path(file).map_err(fault)?;
-    for sample in raw.deserialize() {
+    let text = text_of(file)?;
+    for sample in csv::Reader::from_reader(text.as_bytes()).deserialize() {
         let sample: Sample = sample.map_err(fault)?;
         let record = results.records.get(sample.row.wrapping_sub(1));
         let told = record.is_some_and(|r| !r[gpu].is_empty());

@@ -179,10 +179,8 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
         return None;
     }
     let of = |verdict| {
-        let own = all
-            .iter()
-            .filter(|p| p.2.verdict(context.resolved) == verdict);
-        own.count()
+        let verdicts = all.iter().map(|p| p.2.verdict(context.resolved));
+        verdicts.filter(|v| *v == verdict).count()
     };
     let pictures = grouped(rows, |r| r.picture()).len();
     let Some((row, other, time)) = worst(context, all.iter()) else {

@@ -85,13 +85,6 @@ pub enum SeriesBy {
     Source,
 }
 
-/// Figures in charts that are not rows.
-#[derive(Clone, Debug, Default)]
-pub struct Extra {
-    /// Errors of maps alone.
-    pub maps: Vec<MapError>,
-}
-
 /// A point before it is part of a line.
 struct Item {
     name: String,
@@ -113,8 +106,13 @@ impl Chart {
     }
 
     /// Draws the chart over these rows: none where there is nothing to show, several where one
-    /// would be longer than a page.
-    pub fn figures(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Vec<Figure>> {
+    /// would be longer than a page. `maps`: errors of maps alone, which are not rows.
+    pub fn figures(
+        &self,
+        context: &Context,
+        rows: &[&Row],
+        maps: &[MapError],
+    ) -> Result<Vec<Figure>> {
         if self.kind == Kind::Dots {
             return Ok(self.dots(context, rows));
         }
@@ -123,7 +121,7 @@ impl Chart {
         rows.sort_by_key(|r| r.settings.method.quads());
         let rows = rows.as_slice();
         let (items, floors) = match (self.kind, self.over) {
-            (Kind::MapRows, _) => (self.of_maps(context, rows, extra)?, Vec::new()),
+            (Kind::MapRows, _) => (self.of_maps(context, rows, maps)?, Vec::new()),
             (_, Some(reference)) => self.of_ways(context, rows, reference)?,
             (_, None) => self.of_rows(context, rows)?,
         };
@@ -262,18 +260,14 @@ impl Chart {
     }
 
     /// The errors of maps alone beside what the most exact search draws from them, over their rows.
-    fn of_maps(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Vec<Item>> {
+    fn of_maps(&self, context: &Context, rows: &[&Row], maps: &[MapError]) -> Result<Vec<Item>> {
         let column = columns::named(&self.y)?;
         let item = |name: &str, style: Style, count: u32, y: f64| Item {
             name: name.to_owned(),
             style,
             joined: true,
             stage: DrawStage::Fragment,
-            point: Point {
-                x: count.into(),
-                y,
-                ..Point::default()
-            },
+            point: Point::at(count.into(), y),
         };
         let Some(method) = most_exact(rows) else {
             return Ok(Vec::new());
@@ -294,7 +288,7 @@ impl Chart {
         // Colours and normals of maps are not compared.
         let compared = self.y == "depth_p99_texels";
         let alone = |error: &&MapError| compared && rows.iter().any(|r| r.view == error.view);
-        items.extend(extra.maps.iter().filter(alone).filter_map(|error| {
+        items.extend(maps.iter().filter(alone).filter_map(|error| {
             let mut style = of_source(error.source);
             style.filled = false;
             let name = format!("{}, the map by itself", error.source.name());

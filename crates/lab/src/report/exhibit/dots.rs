@@ -39,9 +39,8 @@ impl Chart {
                     let name = format!("{picture}, {} stage", row.settings.stage.name());
                     (picture, name)
                 };
-                let lines = rows
-                    .iter()
-                    .filter_map(|row| Some((block(row), line(&row.settings, row.time()?))));
+                let placed = |row: &&Row| Some((block(row), line(&row.settings, row.time()?)));
+                let lines = rows.iter().filter_map(placed);
                 (lines.collect(), "time of a frame (ms)".to_owned())
             }
         };

@@ -29,10 +29,8 @@ impl Chart {
         };
         let mut y = Axis::log(heading);
         (x.log, y.log) = (!self.linear[0], !self.linear[1]);
-        let name = self
-            .y
-            .split_once(' ')
-            .map_or(&*self.y, |(_, column)| column);
+        let parts = self.y.split_once(' ');
+        let name = parts.map_or(&*self.y, |(_, column)| column);
         let floor = columns::named(name).map_or(0.0, |column| column.floor);
         y.floor = (floor > 0.0).then_some(floor);
         if self.front {

@@ -9,7 +9,7 @@ mod tables;
 
 pub use answers::Question;
 pub(in crate::report) use answers::{findings, unresolved};
-pub use charts::{Chart, Extra};
+pub use charts::Chart;
 pub use tables::{Records, Table, left, ways_table};
 
 use super::columns::{self, Context};
@@ -96,20 +96,13 @@ impl Exhibit {
         let at = |e: Error| e.at_key(format!("exhibit {}", self.name));
         for name in self.only.iter().chain(&self.except) {
             if !sweeps.contains(&name.as_str()) {
-                let message = format!(
-                    "{name:?} is no name of a [[measure]]; give one of {}",
-                    sweeps.join(", ")
-                );
+                let all = sweeps.join(", ");
+                let message = format!("{name:?} is no name of a [[measure]]; give one of {all}");
                 return Err(at(Error::new(ErrorKind::Content, message)));
             }
         }
-        for chart in &self.chart {
-            chart.check().map_err(at)?;
-        }
-        for table in &self.table {
-            table.check().map_err(at)?;
-        }
-        Ok(())
+        self.chart.iter().try_for_each(Chart::check).map_err(at)?;
+        self.table.iter().try_for_each(Table::check).map_err(at)
     }
 
     /// The answers of its question from these rows.
@@ -136,7 +129,7 @@ impl Exhibit {
 /// Checks that a name is that of a column, or a name that tables over ways have.
 fn check_column(name: &str, over: Option<Over>) -> Result<()> {
     match over {
-        Some(_) => tables::check_summary(name),
+        Some(over) => tables::heading(name, over).map(|_| ()),
         None => columns::named(name).map(|_| ()),
     }
 }

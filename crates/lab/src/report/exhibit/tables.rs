@@ -62,19 +62,6 @@ pub enum Records {
     Flights,
 }
 
-/// Kinds of cells that sum rows up.
-const SUMS: [&str; 4] = ["mean", "worst", "average", "other"];
-
-pub(super) fn check_summary(name: &str) -> Result<()> {
-    match name.split_once(' ') {
-        Some((sum, column)) if SUMS.contains(&sum) => columns::named(column).map(|_| ()),
-        Some(("known", "ms") | ("total", "wrong") | ("no", "worse")) => Ok(()),
-        Some(("ratio" | "interval" | "range" | "known", other)) => reference(other).map(|_| ()),
-        None if name == "pictures" || name == "pair" => Ok(()),
-        _ => columns::named(name).map(|_| ()),
-    }
-}
-
 fn reference(name: &str) -> Result<Over> {
     Ok(match name {
         "baseline" => Over::Baseline,
@@ -92,9 +79,8 @@ fn reference(name: &str) -> Result<Over> {
 
 impl Table {
     pub(super) fn check(&self) -> Result<()> {
-        self.columns
-            .iter()
-            .try_for_each(|name| check_column(name, self.over))
+        let mut names = self.columns.iter();
+        names.try_for_each(|name| check_column(name, self.over))
     }
 
     /// The table over these rows, for a page.
@@ -143,9 +129,8 @@ pub fn ways_table(
         let shown = |name| Ok(cell(context, rows, (reference, &ratio), name)?.shown());
         names().map(shown).collect()
     };
-    let records = over(rows.iter().copied(), reference)
-        .into_iter()
-        .map(record);
+    let ratios = over(rows.iter().copied(), reference);
+    let records = ratios.into_iter().map(record);
     Ok(Text::new(header, records.collect::<Result<_>>()?))
 }
 
@@ -154,17 +139,19 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
     let head = |column: &str| columns::named(column).map(|c| c.heading);
     Ok(match name.split_once(' ') {
         Some(("known", "ms")) => "time (ms)".to_owned(),
-        Some(("ratio" | "known", other)) => match other {
-            "baseline" => "time / RBM baseline".to_owned(),
-            other => format!("time / {}", other.replace('-', " ")),
-        },
-        Some(("interval", _)) => "95 % interval".to_owned(),
-        Some(("range", _)) => "range over pictures".to_owned(),
+        Some((kind @ ("ratio" | "known" | "interval" | "range"), other)) => {
+            match (kind, reference(other)?) {
+                ("interval", _) => "95 % interval".to_owned(),
+                ("range", _) => "range over pictures".to_owned(),
+                (_, Over::Baseline) => "time / RBM baseline".to_owned(),
+                _ => format!("time / {}", other.replace('-', " ")),
+            }
+        }
         Some(("worst", column)) => format!("worst {}", head(column)?),
         Some(("other", column)) => format!("mesh {}", head(column)?),
         Some(("mean" | "average", column)) => head(column)?.to_owned(),
-        Some(("no", _)) => "mesh at least as accurate".to_owned(),
-        Some(("total", _)) => "wrong pixels".to_owned(),
+        Some(("no", "worse")) => "mesh at least as accurate".to_owned(),
+        Some(("total", "wrong")) => "wrong pixels".to_owned(),
         None if name == "pictures" => name.to_owned(),
         None if name == "pair" => "method / mesh".to_owned(),
         _ if over == Over::Mesh && name == "method" => "method / mesh".to_owned(),
@@ -250,10 +237,8 @@ struct OnFront<'a> {
 /// their stage, the most frequent of each stage first.
 fn fronts(context: &Context, rows: &[&Row]) -> Text {
     let stages = [DrawStage::Fragment, DrawStage::Compute];
-    let all: Vec<OnFront> = stages
-        .iter()
-        .flat_map(|s| on_fronts(context, rows, *s))
-        .collect();
+    let of = |stage| on_fronts(context, rows, stage);
+    let all: Vec<OnFront> = stages.into_iter().flat_map(of).collect();
     Text::of(
         &all,
         &[
@@ -279,11 +264,8 @@ fn on_fronts<'a>(context: &Context, rows: &[&'a Row], stage: DrawStage) -> Vec<O
             (r.time().map_or(f64::NAN, |t| t.value), error)
         };
         let points: Vec<(f64, f64)> = group.iter().map(place).collect();
-        found.extend(
-            front(&points, WORTH)
-                .into_iter()
-                .map(|i| (group[i], points[i].1)),
-        );
+        let best = front(&points, WORTH).into_iter();
+        found.extend(best.map(|i| (group[i], points[i].1)));
     }
     let ways = grouped(found, |(row, _)| variant(&row.settings)).into_iter();
     let mut all: Vec<OnFront> = ways

@@ -229,9 +229,10 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
 /// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
+    let beveled = view.technique().is_beveled();
     MethodSettings {
         method: Method::Search(CIRCLE),
-        max_steps: Some(20 + 5 * u32::from(view.technique().is_beveled())),
+        max_steps: Some(if beveled { 25 } else { 20 }),
         map_source: Some(MapSource::Binary),
         map_format: MapFormat::Rgba8,
         map_rows: None,
@@ -345,10 +346,9 @@ mod tests {
         let labels = Labels::new(&ways);
         assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
         assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
+        let both = [Method::Search(CIRCLE), Method::DEFAULT];
         let all = Measure {
-            methods: [Method::Search(CIRCLE), Method::DEFAULT]
-                .map(Pick::Method)
-                .to_vec(),
+            methods: both.map(Pick::Method).to_vec(),
             ..Measure::default()
         };
         let baseline = Measure {
@@ -358,9 +358,7 @@ mod tests {
         let plan = plan(1, &[all, baseline]);
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         assert_eq!(labels.way(&plan.cases[0].settings), "circle");
-        assert_eq!(
-            labels.way(&plan.cases.last().unwrap().settings),
-            RBM_BASELINE
-        );
+        let last = plan.cases.last().unwrap().settings;
+        assert_eq!(labels.way(&last), RBM_BASELINE);
     }
 }

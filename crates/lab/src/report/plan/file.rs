@@ -63,14 +63,11 @@ fn one_ray() -> u32 {
 /// The values of a quick look, in place of the plan's own.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)] // as in [`PlanFile`]
 pub struct Quick {
-    /// See [`PlanFile::time`].
     pub time: Option<TimeBudget>,
-    /// See [`PlanFile::views`].
     pub views: Option<Vec<Views>>,
-    /// See [`PlanFile::measure`].
     pub measure: Option<Vec<Measure>>,
-    /// See [`PlanFile::flights`].
     pub flights: Option<Vec<Flight>>,
 }
 
@@ -259,8 +256,8 @@ impl PlanFile {
     /// Reads the plan in a file.
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
-            let message =
-                format!("cannot be read ({e}); give a plan, `revmap bench --list` shows some");
+            let remedy = "give a plan, `revmap bench --list` shows some";
+            let message = format!("cannot be read ({e}); {remedy}");
             Error::new(ErrorKind::File, message).in_file(file)
         })?;
         Self::parse(&text).map_err(|e| e.in_file(file))
@@ -305,11 +302,8 @@ impl PlanFile {
                 *own = other;
             }
         }
-        let mut quick = self
-            .quick
-            .take()
-            .filter(|_| given.quick)
-            .unwrap_or_default();
+        let quick = self.quick.take().filter(|_| given.quick);
+        let mut quick = quick.unwrap_or_default();
         if given.lists.combines() {
             quick.measure = self.combinations.take();
         }
@@ -358,10 +352,8 @@ fn known(key: &str, name: &str, all: &[&str], what: &str) -> Result<()> {
     if all.contains(&name) {
         return Ok(());
     }
-    let message = format!(
-        "{name:?} is not among {what}; give one of {}",
-        all.join(", ")
-    );
+    let all = all.join(", ");
+    let message = format!("{name:?} is not among {what}; give one of {all}");
     Err(Error::new(ErrorKind::Content, message).at_key(key))
 }
 

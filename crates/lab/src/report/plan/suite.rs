@@ -81,15 +81,16 @@ impl TryFrom<Names> for Extent {
                 "one" => Ok(Self::One),
                 "three" => Ok(Self::Three),
                 "all" => Ok(Self::All),
-                _ => Err(format!(
-                    "{word:?} is not known; give one, three, all or a list of names"
-                )),
+                _ => {
+                    let allowed = "give one, three, all or a list of names";
+                    Err(format!("{word:?} is not known; {allowed}"))
+                }
             },
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
-                Some(name) => Err(format!(
-                    "{name:?} is no solid; give one of {}",
-                    all.join(", ")
-                )),
+                Some(name) => {
+                    let all = all.join(", ");
+                    Err(format!("{name:?} is no solid; give one of {all}"))
+                }
                 None => Ok(Self::Named(list)),
             },
         }
@@ -112,14 +113,10 @@ pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
         }
         let profile = match source {
             Source::File(bytes) => Arc::new(Profile::from_bytes(bytes, ProfileAxis::Center)?),
-            Source::Scene(text) => match revmap::scene::file::parse(text, "", &[])?
-                .objects
-                .into_iter()
-                .next()
-            {
-                Some(object) => object.profile,
-                None => continue,
-            },
+            Source::Scene(text) => {
+                let mut scene = revmap::scene::file::parse(text, "", &[])?;
+                scene.objects.swap_remove(0).profile
+            }
         };
         let mut object = Object::new(name, profile);
         object.color = color;

@@ -1,6 +1,5 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::report::chart::Mark;
 use crate::report::columns::tests::with_context;
 use crate::report::row::tests::timed;
 use revmap::settings::Solver;
@@ -59,17 +58,15 @@ fn charts_of_growth_mark_what_is_not_resolved() {
     let growth = exhibits.iter().find(|e| e.name == "growth-pixels").unwrap();
     let drawn = |rows: &[Row]| {
         with_context(rows, |context| {
-            let (all, extra) = (context.rows, Extra::default());
-            let figures = growth.chart[0].figures(context, all, &extra);
+            let all = context.rows;
+            let figures = growth.chart[0].figures(context, all, &[]);
             let table = growth.table[0].shown(context, all).unwrap();
             (figures.unwrap().remove(0), table.records[0].clone())
         })
     };
     let told = |figure: &Figure| {
-        let marks = figure.marks.iter();
-        let told = |m: &Mark| matches!(m, Mark::Word { text, .. } if text == "not resolved");
-        let dots = marks.clone().filter(|m| matches!(m, Mark::Shape { .. }));
-        (marks.clone().any(told), dots.count())
+        let told = figure.words().iter().any(|w| w.0 == "not resolved");
+        (told, figure.shapes().len())
     };
     let (figure, record) = drawn(&rows);
     // Three markers, one in the legend, and the one that explains the stroke.
