@@ -18,5 +18,7 @@ void main()
 #if OUTPUT != OUTPUT_DEPTH
     store(shade(varying_look(), varying_rays(), pixel, hit));
 #endif
-    gl_FragDepth = hull_depth(ray_origin_base.w + hit.t);
+    // The triangle is never behind the surface that it wraps, except by rounding.
+    float sense = ray_dir_00.w;
+    gl_FragDepth = sense * max(sense * depth_of(ray_origin_base.w + hit.t), sense * gl_FragCoord.z);
 }

@@ -14,7 +14,7 @@ vec4 box_corner(Instance i, uint vertex)
     vec3 scale = scale_of(i);
     vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
     vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale;
-    float depth = middle_depth(i);
+    float depth = i.scale_depth.z;
     float reach = dot(abs(forward), half_size);
     // The ray test sets the exact border of the box. The rasterized box is slightly larger, so it never clips first.
     half_size += 0.05 * frame.dir_00.w * max(depth, reach) / scale + 1e-5;
@@ -33,7 +33,7 @@ vec4 strip_corner(Instance i, uint vertex)
     uint strip = vertex >> 2;
     uint corner = vertex & 3u;
     uint side = strip & 3u;
-    vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]); // lowest and highest z, largest radius
+    vec4 row = uintBitsToFloat(patch_tables[solid.hull.y + (strip >> 2)]); // lowest and highest z, largest radius
     // Component 0 is along the side's normal, component 1 is the horizontal one across it.
     bool along_x = side < 2u;
     float sense = (side & 1u) == 0u ? 1.0 : -1.0;

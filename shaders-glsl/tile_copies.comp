@@ -11,19 +11,17 @@ void main()
     uint first, count;
     uvec2 pixel = this_pixel(first, count);
     if (all(lessThan(pixel, frame.size.xy))) {
-        Nearest nearest;
-        nearest.depth = drawn_depth(pixel);
-        nearest.steps = 0u;
-        nearest.exhausted = false;
-        bool found = nearest_copy(first, count, pixel, nearest);
-        count_steps(pixel, nearest);
+        float depth = drawn_depth(pixel);
+        uint index;
+        Hit hit;
+        bool found = nearest_copy(first, count, pixel, depth, index, hit);
+        count_steps(pixel, hit);
         if (found) {
-            keep_depth(pixel, nearest);
-            Instance i = instances[nearest.instance];
+            Instance i = instances[index];
             if (ONE_SOLID == 0u) {
                 take_solid(i.solid.x);
             }
-            store(pixel, shade(look_of(i), pixel_rays(i), pixel, nearest.hit));
+            store(pixel, depth, shade(look_of(i), pixel_rays(i), pixel, hit));
         }
     }
 }

@@ -5,7 +5,7 @@
 #include "stage/tree_varyings.glsl"
 #include "stage/quad.glsl"
 #if SEARCH == SEARCH_QUADRIC
-#include "stage/beam_span.glsl"
+#include "stage/beam.glsl"
 #endif
 
 void main()
@@ -19,7 +19,7 @@ void main()
 #if SEARCH == SEARCH_QUADRIC
     if (OUTSIDE != 0u) {
         PixelRays rays = pixel_rays(i);
-        span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i), 0.0));
+        span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i)));
     }
 #endif
     hand_over_tree(span);

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Traces a fragment of a box, of a strip of its sides or of a tile.
 #include "stage/tree_varyings.glsl"
-#include "stage/fragment.glsl"
 #include "core/replicas.glsl"
 #include "stage/outputs.glsl"
 

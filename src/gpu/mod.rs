@@ -5,15 +5,12 @@
 //! and reads the frame back.
 #![allow(unsafe_code)]
 
+mod content;
 mod device;
-mod entry;
 mod frame;
 mod memory;
-mod object_id;
-mod objects;
 mod offscreen;
 mod prewarm;
-mod refresh;
 mod renderer;
 pub(crate) mod resources;
 #[cfg(feature = "other-shaders")]
@@ -22,17 +19,17 @@ pub use vk::compiler;
 pub(crate) mod vk;
 
 pub use crate::plan::{DepthOrder, DrawPath, View, Viewport};
+pub use content::costs::{INSTANCE_BYTES, ObjectCost};
+pub use content::object_id::ObjectId;
 pub use device::instance::VALIDATION_VARIABLE;
 pub use device::report::{DEVICE_VARIABLE, DeviceReport, devices};
 pub use device::requirements::Requirements;
 pub use device::{Device, HostDevice};
-pub use frame::costs::{INSTANCE_BYTES, ObjectCost};
 pub use frame::output::{Output, PassFormats, PassKind};
 pub use frame::prepare::PreparedFrame;
 pub use frame::target::ComputeTarget;
 pub use memory::Buffer;
 pub use memory::budget::MemoryUse;
-pub use object_id::ObjectId;
 pub use offscreen::{Guest, Offscreen, Times};
 pub use prewarm::Prewarm;
 pub use renderer::Renderer;

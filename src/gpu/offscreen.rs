@@ -3,12 +3,12 @@
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::Frame;
+use crate::gpu::content::costs::ObjectCost;
+use crate::gpu::content::object_id::ObjectId;
 use crate::gpu::device::{Device, Shared};
-use crate::gpu::frame::costs::ObjectCost;
 use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::frame::read_back;
 use crate::gpu::frame::target::Target;
-use crate::gpu::object_id::ObjectId;
 use crate::gpu::renderer::Renderer;
 use crate::gpu::vk::clock::Clock;
 use crate::gpu::vk::commands::Commands;

@@ -1,12 +1,13 @@
 //! Pipelines compiled before they are needed.
 
 use crate::error::Result;
+use crate::gpu::content::Content;
+use crate::gpu::content::entry::Entry;
+use crate::gpu::content::planned::PlannedObject;
+use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::device::Shared;
-use crate::gpu::entry::Entry;
 use crate::gpu::frame::output::Output;
-use crate::gpu::frame::planned::PlannedObject;
 use crate::gpu::frame::prepare::PreparedFrame;
-use crate::gpu::refresh::FALLBACK;
 use crate::gpu::renderer::Renderer;
 use crate::plan::{PlanObject, Pushed, variants};
 use crate::settings::Solver;
@@ -56,15 +57,16 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
-        let view = self.planned.as_ref().map(|p| p.view);
-        self.refresh(view.as_ref())?;
+        let view = self.content.planned.as_ref().map(|p| p.view);
+        self.content.refresh(view.as_ref())?;
         Ok(Prewarm {
             wanted: self
+                .content
                 .reachable()
                 .into_iter()
                 .map(|(v, k, _)| (v, k))
                 .collect(),
-            output: self.output.clone(),
+            output: self.content.output.clone(),
             owner: self.owner,
             device: self.device.clone(),
         })
@@ -91,13 +93,13 @@ impl Renderer {
         let (slot, _) = self.frame(frame)?;
         let pipelines = self.device.pipelines()?;
         let raw = &self.device.raw;
-        let compute = self.is_compute();
+        let compute = self.content.is_compute();
         if !compute {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for (variant, kind, textures) in self.reachable() {
-            let pipeline = pipelines.get(variant, kind, &self.output, self.owner)?;
+        for (variant, kind, textures) in self.content.reachable() {
+            let pipeline = pipelines.get(variant, kind, &self.content.output, self.owner)?;
             let point = if compute {
                 vk::PipelineBindPoint::COMPUTE
             } else {
@@ -118,7 +120,9 @@ impl Renderer {
         }
         Ok(())
     }
+}
 
+impl Content {
     /// Pipelines, each with a set of textures that may be bound with it.
     fn reachable(&self) -> Vec<(Variant, Kind, vk::DescriptorSet)> {
         let with = self.conditions();

@@ -1,24 +1,17 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! `objects.rs` adds, removes and changes objects; `refresh.rs` derives resources from their new
-//! values. `planned.rs` plans a view's frame, `prepare.rs` prepares it for a slot and `record.rs`
-//! records it.
+//! `content` holds objects and lights, derives resources from their values and plans a view's frame.
+//! `frame/prepare.rs` prepares a plan for a slot, and `frame/record.rs` records it.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::content::Content;
 use crate::gpu::device::{Device, Shared};
 use crate::gpu::frame::output::Output;
-use crate::gpu::frame::planned::Planned;
 use crate::gpu::frame::slot::FrameSlot;
 use crate::gpu::frame::target::ComputeTarget;
-use crate::gpu::memory::uploads::Uploads;
-use crate::gpu::object_id::next_renderer;
-use crate::gpu::objects::Objects;
-use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::resources::textures::{ShadowMaps, Textures};
 use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
-use crate::shader::ShadowCasters;
 use std::sync::Arc;
 
 /// Objects on a device, drawn into whatever the host draws into.
@@ -37,32 +30,12 @@ use std::sync::Arc;
 /// Neither call submits, waits, or compiles a pipeline that was prewarmed. Memory is allocated
 /// while buffers still grow. A renderer must live until the frames that it recorded are done.
 pub struct Renderer {
+    pub(super) content: Content,
     pub(super) slots: Vec<FrameSlot>,
-    pub(super) objects: Objects,
-    pub(super) textures: Textures,
-    pub(super) shadow_maps: Arc<ShadowMaps>,
-    pub(super) uploads: Uploads,
-    pub(super) geometry: Arc<Geometry>,
-    pub(super) lighting: Lighting,
-    /// Entries whose values differ from their prepared state.
-    pub(super) changed: Vec<u32>,
-    /// True if the fallback draws every entry, because one has no surface and shadows meet all by
-    /// one search.
-    pub(super) all_fall_back: bool,
-    pub(super) casters: ShadowCasters,
-    /// Counts changes.
-    pub(super) version: u64,
-    pub(super) planned: Option<Arc<Planned>>,
     /// The memory that shaders write to, in compute or for all planes, and how often it was set.
     pub(super) target: Option<(ComputeTarget, u64)>,
-    pub(super) rebuilds: u64,
-    pub(super) notes: Vec<String>,
-    pub(super) settings: SearchSettings,
-    pub(super) output: Output,
     /// The owner of its pipelines, if they are not shared.
     pub(super) owner: u64,
-    /// The identity that ids of objects and prepared frames name.
-    pub(super) identity: u32,
     pub(super) device: Arc<Shared>,
 }
 
@@ -91,30 +64,13 @@ impl Renderer {
         output.check(&device.shared, settings.solver)?;
         settings.check()?;
         let device = device.shared.clone();
-        let identity = next_renderer();
-        let mut uploads = Uploads::of(identity);
         Ok(Self {
             slots: (0..slots)
                 .map(|_| FrameSlot::new(&device))
                 .collect::<Result<_>>()?,
-            objects: Objects::of(identity),
-            textures: Textures::new(&device, &mut uploads, settings.map_format)?,
-            shadow_maps: Arc::default(),
-            uploads,
-            geometry: Geometry::of(&device)?,
-            lighting: Lighting::default(),
-            changed: Vec::new(),
-            all_fall_back: false,
-            casters: ShadowCasters::default(),
-            version: 1,
-            planned: None,
             target: None,
-            rebuilds: 0,
-            notes: Vec::new(),
-            settings: *settings,
             owner: device.pipelines()?.owner(&output),
-            identity,
-            output,
+            content: Content::new(&device, output, settings)?,
             device,
         })
     }
@@ -122,25 +78,25 @@ impl Renderer {
     /// The number of objects.
     #[must_use]
     pub fn object_count(&self) -> usize {
-        self.objects.len()
+        self.content.objects.len()
     }
 
     /// Notes on each thing that was done in another way than the settings say, and why; each once.
     #[must_use]
     pub fn notes(&self) -> &[String] {
-        &self.notes
+        &self.content.notes
     }
 
     /// The lights that were set last.
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
-        &self.lighting
+        &self.content.lighting
     }
 
     /// The draw path of each object in the last planned frame, in order.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
-        let planned = self.planned.as_ref();
+        let planned = self.content.planned.as_ref();
         planned.map_or_else(Vec::new, |p| p.plan.paths.clone())
     }
 
@@ -150,7 +106,7 @@ impl Renderer {
     /// Searches on the map never make any.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
-        self.rebuilds
+        self.content.rebuilds
     }
 
     /// Bytes of maps on the device: first shape maps with tables of lengths, then colour and
@@ -159,7 +115,7 @@ impl Renderer {
     pub fn map_bytes(&self) -> [u64; 2] {
         let mut seen = Vec::new();
         let mut shapes = 0;
-        for prepared in (self.objects.ordered()).filter_map(|(_, e)| e.prepared.as_ref()) {
+        for prepared in (self.content.objects.ordered()).filter_map(|(_, e)| e.prepared.as_ref()) {
             let images = [
                 prepared.map.as_ref().map(|m| &m.texture),
                 prepared.arc.as_ref().map(|a| &a.texture),
@@ -171,7 +127,7 @@ impl Renderer {
                 }
             }
         }
-        [shapes, self.textures.bytes()]
+        [shapes, self.content.textures.bytes()]
     }
 
     /// Sets the memory that compute writes to, from the next prepared frame on.
@@ -188,10 +144,11 @@ impl Renderer {
     ///   every view's viewport, which begins at 0;
     /// * they live until another target is set and the frames that were recorded before are done.
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) -> Result<()> {
-        self.output.check_target(Some(&target))?;
+        self.content.output.check_target(Some(&target))?;
         let count = self.target.as_ref().map_or(0, |t| t.1) + 1;
+        self.content.target_has_depths = target.depths;
         self.target = Some((target, count));
-        self.version += 1;
+        self.content.version += 1;
         Ok(())
     }
 }

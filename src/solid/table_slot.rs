@@ -14,8 +14,6 @@ pub(crate) enum Part {
     Tables,
     /// Frusta that the vertex shaders of hulls expand.
     Frusta,
-    /// Patches that lists are made from.
-    Patches,
 }
 
 /// A slot in the arena; freed when dropped.

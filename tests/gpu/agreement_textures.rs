@@ -113,7 +113,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             } else {
                 formats[(n + n / 3) % 3]
             },
-            // Cells and lists of patches change where rays start; culled tiles count no steps.
+            // Cells change where rays start; culled tiles count no steps.
             proxy_min_pixels: u32::MAX,
             occlusion_culling: false,
             ..Settings::exact()

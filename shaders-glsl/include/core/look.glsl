@@ -32,11 +32,6 @@ Light turned_to(vec4 rotation, Light light)
     return light;
 }
 
-Light light_seen(vec4 rotation, uint n)
-{
-    return turned_to(rotation, frame_block.lights[n]);
-}
-
 Look look_of(Instance i)
 {
     Look look;

@@ -23,7 +23,7 @@ PixelRays pixel_rays(Instance i)
 {
     PixelRays rays;
     rays.origin = i.origin.xyz;
-    rays.base = max(middle_depth(i), 0.0);
+    rays.base = max(i.scale_depth.z, 0.0);
     rays.dir_00 = direction_to_object(i, frame.dir_00.xyz);
     rays.dir_x = direction_to_object(i, frame.dir_x.xyz);
     rays.dir_y = direction_to_object(i, frame.dir_y.xyz);

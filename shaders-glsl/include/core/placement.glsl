@@ -20,17 +20,11 @@ vec3 scale_of(Instance i)
     return vec3(i.position_sx.w, i.scale_depth.xy);
 }
 
-// Returns the depth of the box's middle.
-float middle_depth(Instance i)
-{
-    return i.scale_depth.z;
-}
-
 // Returns the clip coordinates of a point in object space.
 vec4 clip_of(Instance i, vec3 p)
 {
     vec3 way = rotate(i.rotation, scale_of(i) * (p - vec3(0.0, 0.0, 0.5)));
-    float depth = middle_depth(i) + dot(frame.forward.xyz, way);
+    float depth = i.scale_depth.z + dot(frame.forward.xyz, way);
     vec2 xy = vec2(i.scale_depth.w, i.origin.w) + vec2(dot(frame.clip_x.xyz, way), dot(frame.clip_y.xyz, way));
     bool parallel = frame.clip_x.w != 0.0;
     // This is depth_of of pixel_ray.glsl, times w.

@@ -24,16 +24,11 @@ vec3 in_cell(vec3 place, vec3 cell)
 // Returns true if the replica of a cell is solid at `p`, relative to its axis.
 bool is_solid(vec3 p, inout uint steps)
 {
-#if SEARCH == SEARCH_QUADRIC
+#if READS_TABLES
     Meridian m;
     m.o = p;
     m.c = dot(p.xy, p.xy);
-    return starts_within(m);
-#elif READS_TABLES
-    Meridian m;
-    m.o = p;
-    m.c = dot(p.xy, p.xy);
-    return starts_in_table(m);
+    return SOLID_AT(m);
 #else
     ++steps;
     return field(vec2(length(p.xy), p.z)) <= 0.0;

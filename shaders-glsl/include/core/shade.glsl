@@ -114,7 +114,8 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     }
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
-            color += lit_by(look, light_seen(look.rotation, n), lit, facing * turned, view, s.albedo, point, pixel);
+            Light light = turned_to(look.rotation, frame_block.lights[n]);
+            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, pixel);
         }
     }
     s.color = vec4(color, 1.0);

@@ -25,15 +25,6 @@ struct Disc {
     vec2 first;  // cosine and sine of the spiral's first angle
 };
 
-// Returns the spiral's first angle, radians. It differs strongly and evenly between neighbouring pixels: multiples of
-// the two numbers of Roberts (2018). It also depends on the view, so that averaged pictures have different angles.
-float spiral_begin(uvec2 pixel)
-{
-    uvec2 view = floatBitsToUint(frame.dir_00.xy);
-    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + (view.x ^ view.y) * 2654435769u;
-    return 1.4629180e-9 * float(turn); // 2 pi / 2^32
-}
-
 // Returns the disc of a light; Duff et al. 2017 derive the two vectors orthogonal to the direction.
 Disc disc_of(vec3 towards, float cap, uvec2 pixel)
 {
@@ -45,7 +36,11 @@ Disc disc_of(vec3 towards, float cap, uvec2 pixel)
     disc.u = vec3(1.0 + side * towards.x * towards.x * a, side * b, -side * towards.x);
     disc.v = vec3(b, side + towards.y * towards.y * a, -towards.y);
     disc.cap = SHADOW == SHADOW_SOFT ? cap : 0.0;
-    float begin = spiral_begin(pixel);
+    // The spiral's first angle, radians. It differs strongly and evenly between neighbouring pixels: multiples of the
+    // two numbers of Roberts (2018). It also depends on the view, so that averaged pictures have different angles.
+    uvec2 view = floatBitsToUint(frame.dir_00.xy);
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + (view.x ^ view.y) * 2654435769u;
+    float begin = 1.4629180e-9 * float(turn); // 2 pi / 2^32
     disc.first = vec2(cos(begin), sin(begin));
     return disc;
 }

@@ -18,6 +18,13 @@
 #define FROM_OUTSIDE (OUTSIDE != 0u)
 #endif
 
+// Returns true if a point is in the solid; reads only m.o and m.c.
+#if SEARCH == SEARCH_QUADRIC
+#define SOLID_AT starts_within
+#elif READS_TABLES
+#define SOLID_AT starts_in_table
+#endif
+
 // Returns true if the ray begins in the solid. `inside`: the ray comes from within and always does. `f`: F at the
 // start, for searches on the map.
 bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
@@ -27,9 +34,9 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
     // Floor and ceiling are patches. A ray can enter the solid through a side only where the solid extends past it.
     float side_face = solid.bounds.x - max(abs(solid.axis.x), abs(solid.axis.y));
     bool open_side = m.face_in < FACE_Z && solid.bounds.y >= side_face;
-    return inside || (m.from_eye || open_side) && starts_within(m);
+    return inside || (m.from_eye || open_side) && SOLID_AT(m);
 #elif READS_TABLES
-    return inside || starts_in_table(m);
+    return inside || SOLID_AT(m);
 #else
     f = field(point_rz(m, 0.0));
     ++steps;

@@ -2,8 +2,6 @@
 #ifndef COPIES_GLSL
 #define COPIES_GLSL
 #include "stage/compute.glsl"
-#include "stage/stores.glsl"
-#include "core/replicas.glsl"
 
 // Loads the members of a solid that a search reads.
 void take_shape(uint number)
@@ -17,33 +15,38 @@ void take_shape(uint number)
 }
 
 // Finds the nearest hit. The first of equal depths wins, as under the depth test. The loop ends when the next copy
-// begins behind the hit, or behind the initial depth in `nearest`.
-bool nearest_copy(uint first, uint count, uvec2 pixel, inout Nearest nearest)
+// begins behind the hit, or behind the initial `depth`. `index`: instance that was hit. `nearest.steps` and
+// `nearest.exhausted` are those of all searches, with or without a hit.
+bool nearest_copy(uint first, uint count, uvec2 pixel, inout float depth, out uint index, out Hit nearest)
 {
     bool found = false;
+    uint steps = 0u;
+    bool exhausted = false;
     for (uint n = 0u; n < count; ++n) {
         float begins = uintBitsToFloat(tile_words[first + 2u * n + 1u]);
-        if (depth_of(max(begins, 1e-30)) >= nearest.depth) {
+        if (depth_of(max(begins, 1e-30)) >= depth) {
             break;
         }
-        uint index = tile_words[first + 2u * n];
-        Instance i = instances[index];
+        uint number = tile_words[first + 2u * n];
+        Instance i = instances[number];
         if (ONE_SOLID == 0u) {
             take_shape(i.solid.x);
         }
         PixelRays rays = pixel_rays(i);
         Hit hit;
         bool met = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, EVERYWHERE, hit);
-        nearest.steps += hit.steps;
-        nearest.exhausted = nearest.exhausted || hit.exhausted;
-        float depth = depth_of(rays.base + hit.t);
-        if (met && depth < nearest.depth) {
+        steps += hit.steps;
+        exhausted = exhausted || hit.exhausted;
+        float met_at = depth_of(rays.base + hit.t);
+        if (met && met_at < depth) {
             found = true;
-            nearest.depth = depth;
-            nearest.hit = hit;
-            nearest.instance = index;
+            depth = met_at;
+            nearest = hit;
+            index = number;
         }
     }
+    nearest.steps = steps;
+    nearest.exhausted = exhausted;
     return found;
 }
 

@@ -1,7 +1,6 @@
 // Outputs of a fragment for a hit: depth only, its colour, or every plane.
 #ifndef OUTPUTS_GLSL
 #define OUTPUTS_GLSL
-#include "core/hit.glsl"
 #if OUTPUT != OUTPUT_DEPTH
 #include "core/shade.glsl"
 layout(location = 0) out vec4 color;

@@ -22,7 +22,7 @@ Instance begin(uint number)
 vec3 fraction_of_pixel(Instance i)
 {
     vec3 scale = scale_of(i);
-    float farthest = max(middle_depth(i), 0.0) + length(scale * vec3(solid.bounds.xx, 0.6));
+    float farthest = max(i.scale_depth.z, 0.0) + length(scale * vec3(solid.bounds.xx, 0.6));
     bool parallel = frame.clip_x.w != 0.0;
     return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
 }

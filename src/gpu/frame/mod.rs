@@ -1,8 +1,6 @@
 //! A frame: planned for a view, prepared in a slot, recorded into a target, read back.
 
-pub(crate) mod costs;
 pub(crate) mod output;
-pub(crate) mod planned;
 pub(crate) mod prepare;
 pub(crate) mod read_back;
 pub(crate) mod record;

@@ -2,14 +2,13 @@
 //! cost follows what has changed.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::planned::Planned;
+use crate::gpu::content::planned::Planned;
 use crate::gpu::frame::slot::{Bound, BoundStep};
 use crate::gpu::renderer::Renderer;
 use crate::gpu::resources::block::{frame_block, instance_block};
 use crate::gpu::resources::blocks::{SOLID_STRIDE, SolidBlock};
 use crate::plan::View;
 use crate::scene::Shadow;
-use crate::shader::Kind;
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
@@ -42,7 +41,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`].
     pub fn plan(&mut self, view: &View) -> Result<()> {
-        self.planned(view).map(|_| ())
+        self.content.planned(view).map(|_| ())
     }
 
     /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
@@ -69,8 +68,8 @@ impl Renderer {
         view: &View,
     ) -> Result<PreparedFrame> {
         self.check(slot, view)?;
-        let planned = self.planned(view)?;
-        self.slots[slot].staging = self.uploads.record(&self.device, cmd);
+        let planned = self.content.planned(view)?;
+        self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
         let anew = {
             let bound = self.slots[slot].bound.as_ref();
             bound.is_none_or(|bound| !Arc::ptr_eq(&bound.planned, &planned))
@@ -85,10 +84,10 @@ impl Renderer {
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
-        to.write_frame(&frame_block(view, &self.lighting))?;
+        to.write_frame(&frame_block(view, &self.content.lighting))?;
         to.serial += 1;
         Ok(PreparedFrame {
-            renderer: self.identity,
+            renderer: self.content.objects.renderer,
             slot,
             serial: to.serial,
             reads_depths: planned.plan.compares_depths,
@@ -100,15 +99,17 @@ impl Renderer {
         if slot >= self.slots.len() {
             return usage(format!("slot {slot}; there are {}", self.slots.len()));
         }
-        if view.order != self.output.depth_order() {
+        if view.order != self.content.output.depth_order() {
             return usage("the view's depth order is not the output's; give both the same".into());
         }
-        if view.parallel != self.is_parallel() {
+        if view.parallel != self.content.is_parallel() {
             return usage(
                 "parallel views go with an output of parallel depths, and no others".into(),
             );
         }
-        self.output.check_target(self.target.as_ref().map(|t| &t.0))
+        self.content
+            .output
+            .check_target(self.target.as_ref().map(|t| &t.0))
     }
 
     /// Places the tables of a plan, and finds the bindings of its steps.
@@ -116,25 +117,28 @@ impl Renderer {
         let plan = &planned.plan;
         let parts = planned.objects.iter().zip(&plan.parts);
         let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
-        let placed = self.geometry.lock()?.place(read)?;
+        let placed = self.content.geometry.lock()?.place(read)?;
         let pipelines = self.device.pipelines()?;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let mut steps = Vec::with_capacity(plan.steps.len());
         for step in &plan.steps {
             let object = &planned.objects[step.object as usize];
-            let entry = self.objects.at(object.number).ok_or_else(gone)?;
+            let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
             let prepared = entry.prepared.as_ref().ok_or_else(gone)?;
             let tables = object
                 .surface
                 .as_ref()
                 .filter(|_| step.variant.own_tables != 0);
-            let part = match step.kind {
-                Kind::TileLists | Kind::TilePatches => Part::Patches,
-                _ => Part::Tables,
-            };
-            let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
+            let begin = tables
+                .and_then(|s| s.slot(Part::Tables))
+                .map_or(0, Slot::begin);
             steps.push(BoundStep {
-                pipeline: pipelines.get(step.variant, step.kind, &self.output, self.owner)?,
+                pipeline: pipelines.get(
+                    step.variant,
+                    step.kind,
+                    &self.content.output,
+                    self.owner,
+                )?,
                 textures: prepared.textures.clone(),
                 offsets: [16 * begin, object.number * SOLID_STRIDE],
             });
@@ -148,9 +152,12 @@ impl Renderer {
 
     /// Writes blocks of a slot that are older than the renderer, or of another view.
     fn write(&mut self, slot: usize, view: &View, planned: &Planned) -> Result<()> {
-        let casts = self.lighting.shadow != Shadow::Off;
+        let casts = self.content.lighting.shadow != Shadow::Off;
         let to = &mut self.slots[slot];
-        to.fit(self.objects.places(), self.objects.instances())?;
+        to.fit(
+            self.content.objects.places(),
+            self.content.objects.instances(),
+        )?;
         to.write_plan(&planned.plan)?;
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
@@ -158,10 +165,12 @@ impl Renderer {
         let mut throwing: Vec<SolidBlock> = Vec::new();
         for (object, copies) in planned.objects.iter().zip(&planned.plan.copies) {
             let number = object.number;
-            let Some(entry) = self.objects.at(number) else {
+            let Some(entry) = self.content.objects.at(number) else {
                 continue;
             };
-            let Some(block) = entry.block(number, object.surface.as_deref(), &self.settings) else {
+            let Some(block) =
+                entry.block(number, object.surface.as_deref(), &self.content.settings)
+            else {
                 continue;
             };
             let placements = entry.drawn().placements();

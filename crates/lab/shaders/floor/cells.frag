@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The floor of cells: each fragment is a hit where its own triangle is. The normal is that of its cell's first
 // patch.
-#include "stage/fragment.glsl"
+#include "stage/varyings.glsl"
 #include "search/quadric.glsl"
 #include "stage/outputs.glsl"
 

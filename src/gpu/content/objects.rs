@@ -1,8 +1,9 @@
 //! The objects of a renderer: added, removed and changed.
 
+use super::Content;
+use super::entry::Entry;
+use super::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::entry::Entry;
-use crate::gpu::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
 use crate::gpu::renderer::Renderer;
 use crate::scene::{Copies, Lighting, Object, Offset, Placement};
 use range_alloc::RangeAllocator;
@@ -11,7 +12,7 @@ use std::ops::Range;
 /// Entries by number, their order, and ranges of instances.
 pub(crate) struct Objects {
     /// The renderer that ids name.
-    renderer: u32,
+    pub renderer: u32,
     places: Vec<Place>,
     free: Vec<u32>,
     /// Numbers and generations in the order in which objects were added, including dead ones.
@@ -152,9 +153,9 @@ impl Renderer {
     /// more than 2^31 instances or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
-        self.version += 1;
-        let id = self.objects.add(object, self.version)?;
-        self.changed.push(id.number);
+        self.content.version += 1;
+        let id = self.content.objects.add(object, self.content.version)?;
+        self.content.changed.push(id.number);
         Ok(id)
     }
 
@@ -163,9 +164,9 @@ impl Renderer {
     /// # Errors
     /// [`ErrorKind::Usage`] for an object that does not exist.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
-        self.entry(id)?;
-        self.objects.remove(id);
-        self.version += 1;
+        self.content.entry(id)?;
+        self.content.objects.remove(id);
+        self.content.version += 1;
         Ok(())
     }
 
@@ -174,7 +175,7 @@ impl Renderer {
     /// # Errors
     /// [`ErrorKind::Usage`] for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
-        Ok(self.entry(id)?.latest())
+        Ok(self.content.entry(id)?.latest())
     }
 
     /// Sets all values of an object. Equal values cost nothing.
@@ -184,16 +185,16 @@ impl Renderer {
     /// object that does not exist.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
-        let latest = self.entry(id)?.latest();
+        let latest = self.content.entry(id)?.latest();
         if latest.same_look(&object) {
             if latest.instances != object.instances {
                 self.set_instances(id, object.instances)?;
             }
             return self.set_placement(id, object.placement);
         }
-        self.resize(id, object.placements().len())?;
-        self.change(id)?.wanted = Some(object);
-        self.changed.push(id.number);
+        self.content.resize(id, object.placements().len())?;
+        self.content.change(id)?.wanted = Some(object);
+        self.content.changed.push(id.number);
         Ok(())
     }
 
@@ -203,13 +204,13 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
-        if self.entry(id)?.latest().offset == offset {
+        if self.content.entry(id)?.latest().offset == offset {
             return Ok(());
         }
-        let entry = self.change(id)?;
+        let entry = self.content.change(id)?;
         let (wanted, object) = (&mut entry.wanted, &entry.object);
         wanted.get_or_insert_with(|| object.clone()).offset = offset;
-        self.changed.push(id.number);
+        self.content.changed.push(id.number);
         Ok(())
     }
 
@@ -219,10 +220,10 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
-        if self.entry(id)?.latest().placement == placement {
+        if self.content.entry(id)?.latest().placement == placement {
             return Ok(());
         }
-        let entry = self.change(id)?;
+        let entry = self.content.change(id)?;
         entry.object.placement = placement;
         if let Some(wanted) = &mut entry.wanted {
             wanted.placement = placement;
@@ -240,8 +241,8 @@ impl Renderer {
     pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
-        self.resize(id, instances.len().max(1))?;
-        let entry = self.change(id)?;
+        self.content.resize(id, instances.len().max(1))?;
+        let entry = self.content.change(id)?;
         if let Some(wanted) = &mut entry.wanted {
             wanted.instances.clone_from(&instances);
         }
@@ -261,19 +262,22 @@ impl Renderer {
         lighting.check()?;
         crate::gpu::resources::block::check_lights(lighting)?;
         let codes = |l: &Lighting| (l.lights.len(), l.shadow);
-        if codes(lighting) != codes(&self.lighting) {
-            self.changed.extend(self.objects.numbers());
-            self.version += 1;
+        if codes(lighting) != codes(&self.content.lighting) {
+            self.content.changed.extend(self.content.objects.numbers());
+            self.content.version += 1;
         }
-        self.lighting = lighting.clone();
+        self.content.lighting = lighting.clone();
         Ok(())
     }
+}
 
+impl Content {
     /// Returns the entry of an object, or an error if the object does not exist.
     fn entry(&self, id: ObjectId) -> Result<&Entry> {
         let place = self.objects.places.get(id.number as usize);
-        let place =
-            place.filter(|place| place.generation == id.generation && id.renderer == self.identity);
+        let place = place.filter(|place| {
+            place.generation == id.generation && id.renderer == self.objects.renderer
+        });
         place.and_then(|place| place.entry.as_ref()).ok_or_else(|| {
             let message = "the object was removed, or is another renderer's";
             Error::new(ErrorKind::Usage, message)

@@ -1,7 +1,7 @@
 //! The draw path of each object, and the memory that it takes on the device.
 
-use crate::gpu::entry::Entry;
-use crate::gpu::frame::planned::PlannedObject;
+use super::entry::Entry;
+use super::planned::PlannedObject;
 use crate::gpu::renderer::Renderer;
 use crate::gpu::resources::blocks::InstanceBlock;
 use crate::plan::{DrawPath, View};
@@ -37,12 +37,12 @@ impl Renderer {
     /// The costs of all objects in the last planned frame, in order.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
-        let Some(planned) = &self.planned else {
+        let Some(planned) = &self.content.planned else {
             return Vec::new();
         };
         let objects = planned.objects.iter().zip(&planned.plan.paths);
         let cost = |(object, path): (&PlannedObject, &DrawPath)| {
-            let entry = self.objects.at(object.number)?;
+            let entry = self.content.objects.at(object.number)?;
             Some(entry.cost(object, *path, &planned.view))
         };
         objects.filter_map(cost).collect()
@@ -53,7 +53,11 @@ impl Renderer {
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let slots: u64 = self.slots.iter().map(|slot| slot.bytes()).sum();
-        let shared = self.geometry.lock().map_or(0, |geometry| geometry.bytes());
+        let shared = self
+            .content
+            .geometry
+            .lock()
+            .map_or(0, |geometry| geometry.bytes());
         self.map_bytes().iter().sum::<u64>() + shared + slots
     }
 }
@@ -64,7 +68,7 @@ impl Entry {
         let follows = prepared.is_some_and(|p| p.solver.follows_tolerance());
         let fitted = object.surface.as_ref().filter(|_| follows);
         let error = fitted.map(|_| self.error_pixels(object.level, view));
-        let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
+        let tables = [Part::Tables, Part::Frusta].map(|part| {
             let placed = object.surface.as_ref().filter(|s| s.slot(part).is_some());
             placed.map_or(0, |s| 16 * s.vectors(part).len() as u64)
         });

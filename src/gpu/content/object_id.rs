@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// is set, and no other object after the removal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ObjectId {
-    pub(super) renderer: u32,
-    pub(super) generation: u32,
-    pub(super) number: u32,
+    pub(in crate::gpu) renderer: u32,
+    pub(in crate::gpu) generation: u32,
+    pub(in crate::gpu) number: u32,
 }
 
 // 64 bits hold 16 million objects at once, a million objects in turn per entry, and a million
@@ -18,9 +18,9 @@ const GENERATION_BITS: u32 = 20;
 const RENDERER_BITS: u32 = 20;
 
 /// Upper limit on entries of a renderer.
-pub(super) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
+pub(in crate::gpu) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
 /// Upper limit on objects that use one entry in turn. The entry then stays empty.
-pub(super) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
+pub(in crate::gpu) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
 
 impl ObjectId {
     /// The id as one number, never 0, for interfaces that carry plain numbers.
@@ -43,7 +43,7 @@ impl ObjectId {
 }
 
 /// The identity of a new renderer, which is not 0.
-pub(super) fn next_renderer() -> u32 {
+pub(in crate::gpu) fn next_renderer() -> u32 {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1
 }

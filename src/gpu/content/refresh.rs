@@ -1,9 +1,9 @@
 //! Conversion of an object's values to device resources. All steps that can fail come first; then
 //! all values are applied at once.
 
+use super::Content;
+use super::entry::{Entry, Prepared};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::entry::{Entry, Prepared};
-use crate::gpu::renderer::Renderer;
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::map_key::MapKey;
 use crate::gpu::resources::shape_texture::ShapeTexture;
@@ -19,7 +19,7 @@ use crate::solid::offset_surface::OffsetSurface;
 use std::sync::Arc;
 
 /// The search for objects without a surface of their own; it reads only the map.
-pub(super) const FALLBACK: Solver = Solver::Live;
+pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
 /// A changed object, resolved before the device is touched.
 struct Resolved {
@@ -39,11 +39,11 @@ impl Resolved {
     }
 }
 
-impl Renderer {
+impl Content {
     /// Applies the values that were added and set since the last call. After an error, objects
     /// added since that call are left out until they are set again. Everything else stays as it
     /// was. `view` is the view of the next frame, if it is known.
-    pub(super) fn refresh(&mut self, view: Option<&View>) -> Result<()> {
+    pub fn refresh(&mut self, view: Option<&View>) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
         }

@@ -1,12 +1,12 @@
 //! A frame's plan and the surfaces that it draws.
 
+use super::Content;
+use super::entry::{Entry, Prepared};
 use crate::error::Result;
-use crate::gpu::entry::{Entry, Prepared};
-use crate::gpu::renderer::Renderer;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
 use crate::scene::{Growth, Shadow};
-use crate::settings::{Planes, Solver, Tolerance};
+use crate::settings::{Solver, Tolerance};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
 use crate::solid::table_slot::Part;
@@ -30,9 +30,9 @@ pub(crate) struct PlannedObject {
     pub surface: Option<Arc<OffsetSurface>>,
 }
 
-impl Renderer {
+impl Content {
     /// Returns the plan of a view. Makes a new plan if the last one is of another view or version.
-    pub(in crate::gpu) fn planned(&mut self, view: &View) -> Result<Arc<Planned>> {
+    pub fn planned(&mut self, view: &View) -> Result<Arc<Planned>> {
         self.refresh(Some(view))?;
         let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
         if let Some(planned) = self.planned.as_ref().filter(same) {
@@ -58,9 +58,8 @@ impl Renderer {
     }
 
     /// The inputs of a plan other than view and objects.
-    pub(in crate::gpu) fn conditions(&self) -> Conditions {
+    pub fn conditions(&self) -> Conditions {
         let limits = &self.device.limits;
-        let target = self.target.as_ref();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
@@ -69,17 +68,16 @@ impl Renderer {
             clips: self.device.clips,
             software: self.device.report.kind == "cpu",
             subgroup_size: self.device.subgroup_size,
-            most_storage: limits.max_storage_buffer_range,
             own_vectors: self.device.constants.own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             casts: self.lighting.shadow != Shadow::Off,
-            host_depths: self.is_compute() && target.is_none_or(|(target, _)| target.depths),
+            host_depths: self.is_compute() && self.target_has_depths,
         }
     }
 
     /// Returns true if objects may be drawn at other levels than the exact one.
-    pub(in crate::gpu) fn has_levels(&self) -> bool {
+    pub fn has_levels(&self) -> bool {
         self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
     }
 
@@ -147,13 +145,12 @@ impl Renderer {
     }
 
     /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
-    pub(in crate::gpu) fn make_surfaces(&mut self, surfaces: &[Arc<OffsetSurface>]) {
+    pub fn make_surfaces(&mut self, surfaces: &[Arc<OffsetSurface>]) {
         let mut new: Vec<_> = surfaces.iter().filter(|s| !s.is_made()).collect();
         new.sort_unstable_by_key(|s| Arc::as_ptr(s));
         new.dedup_by_key(|s| Arc::as_ptr(s));
         let part = match (self.settings.solver, self.is_compute()) {
             (Solver::Exact, false) => Part::Frusta,
-            (Solver::Exact, true) => Part::Patches,
             _ => Part::Tables,
         };
         new.par_iter().for_each(|surface| {
@@ -162,37 +159,27 @@ impl Renderer {
         });
         self.rebuilds += new.len() as u64;
     }
-
-    /// Returns true if tiles are traced in compute.
-    pub(in crate::gpu) fn is_compute(&self) -> bool {
-        matches!(self.output, crate::gpu::frame::output::Output::Compute(_))
-    }
-
-    /// Returns true if the view has parallel rays.
-    pub(in crate::gpu) fn is_parallel(&self) -> bool {
-        self.output.planes() == Planes::Depth { parallel: true }
-    }
 }
 
 impl Entry {
     /// The growth of the box with the offset.
-    pub(in crate::gpu) fn growth(&self) -> Growth {
+    pub fn growth(&self) -> Growth {
         self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
     }
 
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
-    pub(in crate::gpu) fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
+    pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
         pixels_per_unit(self.drawn(), self.growth().height(), view, all)
     }
 
     /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
-    pub(in crate::gpu) fn error_pixels(&self, level: u8, view: &View) -> f64 {
+    pub fn error_pixels(&self, level: u8, view: &View) -> f64 {
         levels::bound(level) * self.pixels_per_unit(view, false)
     }
 
     /// The object in the form that a plan reads; `None` before it is prepared.
-    pub(in crate::gpu) fn plan_object<'a>(
+    pub fn plan_object<'a>(
         &'a self,
         planned: &'a PlannedObject,
         settings: &crate::settings::SearchSettings,

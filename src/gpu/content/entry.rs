@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// One object.
-pub(super) struct Entry {
+pub(in crate::gpu) struct Entry {
     pub object: Object,
     /// Values that were set since the last preparation.
     pub wanted: Option<Object>,
@@ -30,7 +30,7 @@ pub(super) struct Entry {
 }
 
 /// Resources that follow from an object's values, whatever the view.
-pub(super) struct Prepared {
+pub(in crate::gpu) struct Prepared {
     /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
     /// Surfaces by level, for levels that views needed. Empty for a search on the map.
@@ -40,7 +40,7 @@ pub(super) struct Prepared {
     pub fails: bool,
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
-    /// True if cells and lists of patches may replace the tree.
+    /// True if cells may replace the tree.
     pub takes_patches: bool,
     pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
@@ -109,9 +109,8 @@ impl Entry {
         }
         if let Some(frusta) = begin(Part::Frusta) {
             block.hull[0] = frusta;
-            block.hull[3] = frusta + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS;
+            block.hull[1] = frusta + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS;
         }
-        block.hull[2] = begin(Part::Patches).unwrap_or(0);
         Some(block)
     }
 }

@@ -1,0 +1,90 @@
+//! The content of a renderer: objects and lights, the resources that are derived from them, and the
+//! plan of the last view. It records no commands.
+//!
+//! `objects.rs` adds, removes and changes objects. `refresh.rs` derives resources from new values.
+//! `planned.rs` plans a view's frame.
+
+pub(super) mod costs;
+pub(super) mod entry;
+pub(super) mod object_id;
+pub(super) mod objects;
+pub(super) mod planned;
+pub(super) mod refresh;
+
+use crate::error::Result;
+use crate::gpu::device::Shared;
+use crate::gpu::frame::output::Output;
+use crate::gpu::memory::uploads::Uploads;
+use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::resources::textures::{ShadowMaps, Textures};
+use crate::scene::Lighting;
+use crate::settings::{Planes, SearchSettings};
+use crate::shader::ShadowCasters;
+use object_id::next_renderer;
+use objects::Objects;
+use planned::Planned;
+use std::sync::Arc;
+
+/// Objects, lights, and all that is derived from them.
+pub(super) struct Content {
+    pub objects: Objects,
+    pub textures: Textures,
+    shadow_maps: Arc<ShadowMaps>,
+    pub uploads: Uploads,
+    pub geometry: Arc<Geometry>,
+    pub lighting: Lighting,
+    /// Entries whose values differ from their prepared state.
+    changed: Vec<u32>,
+    /// True if the fallback draws every entry, because one has no surface and shadows meet all by
+    /// one search.
+    all_fall_back: bool,
+    pub casters: ShadowCasters,
+    /// Counts changes.
+    pub version: u64,
+    /// The plan of the last view.
+    pub planned: Option<Arc<Planned>>,
+    /// True if compute compares depths with those of the target.
+    pub target_has_depths: bool,
+    pub rebuilds: u64,
+    pub notes: Vec<String>,
+    pub settings: SearchSettings,
+    pub output: Output,
+    device: Arc<Shared>,
+}
+
+impl Content {
+    /// No objects, for a renderer with this output.
+    pub fn new(device: &Arc<Shared>, output: Output, settings: &SearchSettings) -> Result<Self> {
+        let identity = next_renderer();
+        let mut uploads = Uploads::of(identity);
+        Ok(Self {
+            objects: Objects::of(identity),
+            textures: Textures::new(device, &mut uploads, settings.map_format)?,
+            shadow_maps: Arc::default(),
+            uploads,
+            geometry: Geometry::of(device)?,
+            lighting: Lighting::default(),
+            changed: Vec::new(),
+            all_fall_back: false,
+            casters: ShadowCasters::default(),
+            version: 1,
+            planned: None,
+            target_has_depths: true,
+            rebuilds: 0,
+            notes: Vec::new(),
+            settings: *settings,
+            output,
+            device: device.clone(),
+        })
+    }
+
+    /// True if tiles are traced in compute.
+    pub fn is_compute(&self) -> bool {
+        matches!(self.output, Output::Compute(_))
+    }
+
+    /// True if the view has parallel rays.
+    pub fn is_parallel(&self) -> bool {
+        self.output.planes() == Planes::Depth { parallel: true }
+    }
+}
