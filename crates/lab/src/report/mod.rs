@@ -2,7 +2,7 @@
 //!
 //! Every time stands beside the error of the picture that was drawn in it: a search that is fast
 //! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
-//! are taken, [`stats`] for what their intervals mean.
+//! are taken, `stats` for what their intervals mean.
 //!
 //! | module | what it holds |
 //! |---|---|

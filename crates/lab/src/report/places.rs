@@ -116,7 +116,7 @@ pub(super) fn places<'a>(context: &Context, rows: &[&'a Row], per: Per) -> Vec<P
     }
 }
 
-/// What rows show, in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`.
+/// The content of rows in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`.
 /// Where little is hit, what a frame costs anyhow weighs much in its time.
 fn title(name: &str, rows: &[&Row]) -> String {
     let pictures = grouped(rows, |r| r.picture());

@@ -1,5 +1,5 @@
 //! The table of all outputs: comma-separated values in files, aligned columns on standard output,
-//! rows of a page ([`Page::table`](super::page::Page::table)).
+//! rows of a page (`Page::table`).
 
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;

@@ -27,7 +27,7 @@ pub enum Framing {
     /// its width in a picture of 4:3.
     Whole,
     /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
-    /// [`OVERFILL`](super::framing::OVERFILL); a wider one may show their sides.
+    /// `OVERFILL` in `framing.rs`; a wider one may show their sides.
     Close,
 }
 

@@ -1,7 +1,7 @@
 //! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
 //! papers, and as PNG for places that show neither.
 //!
-//! Colours are a published palette for every kind of colour vision ([`style`]). Each series has a
+//! Colours are a published palette for every kind of colour vision (`style`). Each series has a
 //! marker of its own as well, so that a print in grey still reads.
 
 pub(crate) mod axis;

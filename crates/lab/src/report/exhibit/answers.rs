@@ -32,7 +32,7 @@ impl Question {
     }
 }
 
-/// What a reader wants first: the sentences at the top of a report.
+/// The sentences at the top of a report: a reader wants them first.
 pub(in crate::report) fn findings(context: &Context) -> Vec<String> {
     let mut all = Question::Stages.answers(context, context.rows);
     let mesh = "the coarsest mesh that is at least as accurate";
