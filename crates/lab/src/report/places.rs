@@ -116,8 +116,9 @@ pub(super) fn places<'a>(context: &Context, rows: &[&'a Row], per: Per) -> Vec<P
     }
 }
 
-/// The content of rows in words: `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`.
-/// Where little is hit, what a frame costs anyhow weighs much in its time.
+/// The content of rows in words:
+/// `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`. Little is hit in some, and
+/// what a frame costs anyhow weighs much in their times.
 fn title(name: &str, rows: &[&Row]) -> String {
     let pictures = grouped(rows, |r| r.picture());
     let shares = || pictures.iter().map(|(_, rows)| rows[0].covered());
