@@ -11,11 +11,12 @@ mod walk;
 
 use divan::{Bencher, black_box};
 use glam::{DVec2, DVec3};
-use revmap::profile::{Outline, Profile, ProfileAxis};
+use revmap::profile::Outline;
 use revmap::scene::Offset;
 use revmap::surface::{
     ContourSource, FitOptions, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
 };
+use revmap_files::ProfileAxis;
 use walk::trace_patches;
 
 fn main() {
@@ -31,7 +32,7 @@ fn outline(name: &str) -> Outline {
         "glass" => shapes::glass(),
         _ => {
             let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-            Profile::load(file, ProfileAxis::Center).unwrap()
+            revmap_files::profile(file, ProfileAxis::Center).unwrap()
         }
     };
     profile.outline
@@ -130,8 +131,8 @@ fn hull(bencher: Bencher, name: &str) {
 /// The outline of a picture of 512 rows, anti-aliased.
 #[divan::bench]
 fn picture(bencher: Bencher) {
-    let raster = outline("king").rasterize(128, 512);
-    bencher.bench(|| Profile::traced(black_box(&raster).clone()));
+    let raster = revmap_files::raster::rasterize(&outline("king"), 128, 512);
+    bencher.bench(|| revmap_files::trace(black_box(&raster).clone()));
 }
 
 /// One ray.

@@ -12,10 +12,10 @@ mod method;
 
 use image::{GrayImage, Luma, RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::{Frame, write_png};
+use revmap::frame::Frame;
 use revmap::gpu::{self, Device};
-use revmap::scene::file;
 use revmap::settings::{Planes, Settings};
+use revmap_files::{ProfileAxis, SceneFile, write_png};
 use std::path::{Path, PathBuf};
 
 /// Rays across a pixel.
@@ -83,7 +83,7 @@ fn draw(device: &Device, scene: &Path, target: &Path) -> Result<[u64; 2]> {
     let mut picture = Frame::new(across * sets.len() as u32, height, [0.0; 4])?;
     let mut bytes = [0; 2];
     for (place, sets) in sets.iter().enumerate() {
-        let scene = file::load(scene, sets)?;
+        let scene = SceneFile::open(scene)?.scene(sets)?;
         let settings = Settings {
             width: across * RAYS,
             height: height * RAYS,
@@ -119,20 +119,19 @@ fn shrink(large: &Frame, small: &mut Frame, left: u32) {
 /// writes them.
 fn maps(root: &Path, target: &Path) -> Result<()> {
     const SIDE: u32 = 184;
-    use revmap::maps::{BakeOptions, DisplacementMap, MapFormat, MapSource, ShapeMap};
-    let profile = revmap::profile::Profile::load(
-        root.join("assets/gallery/jewel.svg"),
-        revmap::profile::ProfileAxis::Left,
-    )?;
+    use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap, SlopeFilter};
+    let drawing = root.join("assets/gallery/jewel.svg");
+    let profile = revmap_files::profile(drawing, ProfileAxis::Left)?;
     let options = BakeOptions {
-        source: MapSource::Exact,
+        source: MapSource::EXACT,
         rows: SIDE,
         reach: profile.radius,
     };
     let shape = ShapeMap::bake(&profile, &options)?.encode(MapFormat::Rgba8);
     let shape =
         RgbaImage::from_raw(shape.columns, shape.rows, shape.bytes).expect("four bytes a texel");
-    let slopes = DisplacementMap::from_image(root.join("assets/heights/brick.png"))?;
+    let brick = root.join("assets/heights/brick.png");
+    let slopes = revmap_files::displacement_map(&brick, SlopeFilter::default())?;
     let level = &slopes.levels[1];
     let largest = level
         .texels
@@ -145,7 +144,7 @@ fn maps(root: &Path, target: &Path) -> Result<()> {
         image::Rgba([code(du), code(dv), 255, 255])
     });
     let slopes = imageops::resize(&slopes, SIDE, SIDE, imageops::FilterType::Triangle);
-    let height = image::open(root.join("assets/heights/brick.png"))
+    let height = image::open(brick)
         .map_err(|e| fault(e.to_string()))?
         .resize_exact(SIDE, SIDE, imageops::FilterType::Triangle)
         .into_rgba8();

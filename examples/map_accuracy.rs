@@ -1,8 +1,8 @@
 //! Prints how far shape maps of a disc are off, by source and resolution: `cargo run --release
 //! --example map_accuracy`
 
-use revmap::maps::accuracy::{Disc, MapErrors};
 use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap};
+use revmap_lab::map_accuracy::{Disc, MapErrors};
 
 fn main() -> Result<(), revmap::Error> {
     println!(
@@ -10,12 +10,16 @@ fn main() -> Result<(), revmap::Error> {
     );
     println!("|---|---|---|---|---|");
     for rows in [128, 512, 2048] {
-        for source in [MapSource::Binary, MapSource::Coverage, MapSource::Exact] {
-            row(rows, source.name(), &Disc::default().errors(source, rows)?);
+        for source in [
+            revmap_files::BINARY,
+            revmap_files::COVERAGE,
+            MapSource::EXACT,
+        ] {
+            row(rows, source.name, &Disc::default().errors(source, rows)?);
         }
         // What half floats leave of the exact distances.
         let disc = Disc::default();
-        let options = BakeOptions::new(MapSource::Exact, rows);
+        let options = BakeOptions::new(MapSource::EXACT, rows);
         let mut map = ShapeMap::bake(&disc.polygon(1 << 16)?, &options)?;
         map.distance = map.encode(MapFormat::R16).distances();
         row(rows, "exact, r16", &disc.measure(&map));

@@ -6,7 +6,7 @@
 //! contour as grey.
 
 use revmap::maps::{ArcLength, BakeOptions, MapSource, Projection, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis};
+use revmap_files::{BINARY, COVERAGE, ProfileAxis, mark_projection};
 use std::path::{Path, PathBuf};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -14,8 +14,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let out = files.next().ok_or("give a folder and profiles")?;
     std::fs::create_dir_all(&out)?;
     for file in files {
-        let profile = Profile::load(&file, ProfileAxis::Center)?;
-        for source in [MapSource::Binary, MapSource::Coverage, MapSource::Exact] {
+        let profile = revmap_files::profile(&file, ProfileAxis::Center)?;
+        for source in [BINARY, COVERAGE, MapSource::EXACT] {
             let clock = std::time::Instant::now();
             let map = match ShapeMap::bake(&profile, &BakeOptions::new(source, 512)) {
                 Ok(map) => map,
@@ -34,10 +34,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 map.bounds
             );
             draw(&map, &to)?;
-            if source == MapSource::Exact {
-                map.save(
-                    Projection::Cylindrical.mark_file(out.join(&*name).with_extension("png")),
-                )?;
+            if source == MapSource::EXACT {
+                let file = out.join(&*name).with_extension("png");
+                let file = mark_projection(file, Projection::Cylindrical);
+                revmap_files::write_shape_map(&map, file)?;
                 let table = ArcLength::new(&profile)?.table(map.columns, map.rows);
                 let picture = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(
                     table.columns,

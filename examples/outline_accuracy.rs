@@ -2,7 +2,9 @@
 //! `cargo run --release --example outline_accuracy [ROWS ...]`
 
 use glam::DVec2;
-use revmap::profile::{Outline, Profile, ProfileAxis};
+use revmap::profile::{Outline, Profile};
+use revmap_files::ProfileAxis;
+use revmap_files::raster::pictured;
 
 fn main() -> Result<(), revmap::Error> {
     let rows: Vec<u32> = std::env::args().skip(1).flat_map(|a| a.parse()).collect();
@@ -18,10 +20,9 @@ fn main() -> Result<(), revmap::Error> {
     for (name, truth) in profiles()? {
         for &rows in &rows {
             let columns = (truth.radius * f64::from(rows)).ceil() as u32;
-            let seen = truth.outline.rasterize(columns, rows);
             let mut line = format!("| {name} | {rows} |");
             for levels in [256, 2] {
-                let traced = Profile::traced(seen.clone().with_levels(levels))?;
+                let traced = pictured(&truth, columns, rows, levels)?;
                 let errors = errors(&truth.outline, &traced.outline, 0.25 / f64::from(rows));
                 for unit in [f64::from(rows), 512.0] {
                     let [mean, p99, max] = errors.map(|e| e * unit);
@@ -39,7 +40,7 @@ fn profiles() -> Result<Vec<(&'static str, Profile)>, revmap::Error> {
     let mut all = Vec::new();
     for name in ["bishop", "king", "pawn", "rook"] {
         let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        all.push((name, Profile::load(file, ProfileAxis::Center)?));
+        all.push((name, revmap_files::profile(file, ProfileAxis::Center)?));
     }
     let round =
         |k: u32, n: u32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(n));

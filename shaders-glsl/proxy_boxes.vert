@@ -33,7 +33,7 @@ vec4 strip_corner(Instance i, uint vertex)
     uint strip = vertex >> 2;
     uint corner = vertex & 3u;
     uint side = strip & 3u;
-    vec4 row = uintBitsToFloat(patch_tables[solid.hull.y + (strip >> 2)]); // lowest and highest z, largest radius
+    vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]); // lowest and highest z, largest radius
     // Component 0 is along the side's normal, component 1 is the horizontal one across it.
     bool along_x = side < 2u;
     float sense = (side & 1u) == 0u ? 1.0 : -1.0;

@@ -19,7 +19,7 @@ void main()
 #if SEARCH == SEARCH_QUADRIC
     if (OUTSIDE != 0u) {
         PixelRays rays = pixel_rays(i);
-        span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i)));
+        span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i), 0.0));
     }
 #endif
     hand_over_tree(span);

@@ -47,14 +47,14 @@
 //!   hundredths of a texel of a map of 512 rows.
 //! * The box cuts a solid that extends past it, and the cut is closed. Any camera position is
 //!   allowed.
-//! * A failure is an [`Error`] that names its kind, file, key and remedy. The library does not
-//!   panic, and leaves no file half written.
+//! * A failure is an [`Error`] that names its kind, key and remedy. The library does not panic. It
+//!   reads and writes no file.
 //!
 //! # A picture
 //!
 //! ```no_run
 //! use glam::DVec3;
-//! use revmap::{gpu, frame, profile::Profile, scene::{Camera, Object, Scene}, settings::Settings};
+//! use revmap::{gpu, profile::Profile, scene::{Camera, Object, Scene}, settings::Settings};
 //! use std::sync::Arc;
 //!
 //! let spindle = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5)?;
@@ -63,7 +63,7 @@
 //!
 //! let device = gpu::Device::open(None)?;
 //! let drawn = gpu::draw(&device, &scene, &Settings::default())?;
-//! frame::write_png(&drawn.frame, "spindle.png")?;
+//! revmap_files::write_png(&drawn.frame, "spindle.png")?;
 //! # Ok::<(), revmap::Error>(())
 //! ```
 //!
@@ -112,9 +112,9 @@
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|
-//! | [`profile`] | image, drawing or polygon: a region of the half-plane |
-//! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of height maps; colours; lengths along the profile |
-//! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values; TOML files with the feature `scene-file` |
+//! | [`profile`] | a polygon or an outline: a region of the half-plane |
+//! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of heights; colours; lengths along the profile |
+//! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`search`] | searches that other crates bring, for comparison |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
@@ -122,28 +122,26 @@
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
-//! | [`frame`] | the planes of a picture, PNG and EXR |
+//! | [`frame`] | the planes of a picture |
 //!
 //! # Features
 //!
-//! | feature | default | brings |
-//! |---|---|---|
-//! | `drawing` | yes | profiles from SVG drawings |
-//! | `jpeg` | yes | profiles and textures from JPEG; PNG needs no feature |
-//! | `scene-file` | | scenes from TOML files |
-//! | `exr` | | frames and maps as EXR files |
-//! | `shaderc` | | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
-//! | `other-shaders` | | for work on the shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
+//! | feature | brings |
+//! |---|---|
+//! | `shaderc` | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
+//! | `other-shaders` | for work on the shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
 //!
-//! Ground truth is the crate `revmap-reference`; comparison, benchmarks and reports are in
-//! `revmap-lab`; the program is `revmap-cli`.
+//! # Other crates
+//!
+//! `revmap-files` reads profiles from SVG drawings and pictures, and scenes from TOML; it writes
+//! frames as PNG and EXR. Ground truth is `revmap-reference`; comparison, benchmarks and reports
+//! are in `revmap-lab`; the program is `revmap-cli`.
 
 pub mod antialias;
 pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod maps;
-mod pictures;
 mod plan;
 pub mod profile;
 pub mod scene;
@@ -152,9 +150,6 @@ pub mod settings;
 mod shader;
 mod solid;
 pub mod surface;
-
-#[cfg(all(test, not(any(feature = "drawing", feature = "exr", feature = "jpeg"))))]
-mod lean_tests;
 
 /// The document's example is tested with those of the library.
 #[cfg(doctest)]

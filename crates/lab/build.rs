@@ -47,6 +47,7 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     let entries = [
         "cells.frag",
         "tree.frag",
+        "tile_patches.comp",
         "tile_tree.comp",
         "tile_copies.comp",
     ];

@@ -12,9 +12,10 @@ use host::{Fallible, Host, Mesh, Options, Stage};
 use revmap::gpu::{
     self, DepthOrder, HostDevice, Output, PassFormats, PassKind, Requirements, View, Viewport,
 };
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
 use revmap::settings::{Planes, SearchSettings};
+use revmap_files::ProfileAxis;
 use std::sync::Arc;
 
 const COUNT: u32 = 120;
@@ -89,7 +90,7 @@ fn main() -> Fallible<()> {
         ("king", 0.9, [0.7, 0.7, 0.65]),
     ] {
         let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        let profile = Arc::new(Profile::load(path, ProfileAxis::Center)?);
+        let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
         let mut object = Object::new(name, profile);
         object.color = color;
         object.placement.position.y = y;

@@ -8,10 +8,11 @@ use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::{self, Device};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
-use revmap::profile::{Outline, Profile, ProfileAxis};
+use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, CameraFrame, Object, Offset, Scene};
 use revmap::settings::{Planes, Settings};
 use revmap::surface::{ContourSource, FitOptions, QuadricPatch, fit_patches};
+use revmap_files::ProfileAxis;
 use std::path::Path;
 
 /// Pixels of one object unit in the half-planes.
@@ -45,9 +46,10 @@ const DIRECTION: DVec3 = DVec3::new(-1.0, 0.0, -0.50);
 
 /// Draws the picture into `target`.
 pub fn draw(device: &Device, root: &Path, target: &Path) -> Result<()> {
-    let profile = Profile::load(root.join("assets/profiles/pawn.svg"), ProfileAxis::Center)?;
+    let profile =
+        revmap_files::profile(root.join("assets/profiles/pawn.svg"), ProfileAxis::Center)?;
     let options = BakeOptions {
-        source: MapSource::Exact,
+        source: MapSource::EXACT,
         rows: 512,
         reach: REACH,
     };

@@ -1,13 +1,4 @@
-//! A drawn picture, pixel by pixel: the planes of a frame, written as PNG and EXR.
-
-pub mod atomic_file;
-#[cfg(feature = "exr")]
-mod openexr;
-mod png;
-
-#[cfg(feature = "exr")]
-pub use openexr::{read_exr, write_exr};
-pub use png::{Picture, linear_from_srgb, srgb_from_linear, write_png};
+//! A drawn picture, pixel by pixel: the planes of a frame.
 
 use crate::error::{Error, ErrorKind, Result};
 use bytemuck::{Zeroable, allocation::try_zeroed_vec};
@@ -232,6 +223,26 @@ pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
                 "a picture of {width}x{height} is too large; at most {MAX_PIXELS} pixels (16384x8192) can be drawn"
             ),
         )),
+    }
+}
+
+/// The sRGB code value in `[0, 1]` of a linear one (IEC 61966-2-1).
+#[must_use]
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// The linear value of an sRGB code value in `[0, 1]`.
+#[must_use]
+pub fn linear_from_srgb(code: f64) -> f64 {
+    if code <= 0.040_45 {
+        code / 12.92
+    } else {
+        ((code + 0.055) / 1.055).powf(2.4)
     }
 }
 

@@ -281,17 +281,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn a_raster_has_the_same_lengths() {
-        let cone = Profile::polygon(&[[0.0, 0.1], [0.4, 0.1], [0.0, 0.9]], 0.5).unwrap();
-        let picture = Profile::traced(cone.outline.rasterize(128, 256)).unwrap();
-        let by_pixels = ArcLength::new(&picture).unwrap();
-        let exact = ArcLength::new(&cone).unwrap();
-        for k in 1..20 {
-            let t = f64::from(k) / 20.0;
-            let (r, z) = (0.4 * (1.0 - t), 0.1 + 0.8 * t);
-            assert!((by_pixels.eta(r, z) - exact.eta(r, z)).abs() < 0.004);
-        }
-    }
 }

@@ -1,11 +1,9 @@
 //! Colour maps: 8-bit sRGB texels with mip levels averaged in linear light.
 
-use super::displacement::{Level, read_map};
-use super::halving;
-use crate::error::{Error, ErrorKind, Result};
+use super::Level;
+use super::displacement::{check_count, levels};
+use crate::error::Result;
 use crate::frame::linear_from_srgb;
-use crate::pictures::decode;
-use std::path::Path;
 
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
 ///
@@ -18,34 +16,14 @@ pub struct ColorMap {
 }
 
 impl ColorMap {
-    /// Reads a PNG or JPEG.
-    ///
-    /// # Errors
-    /// [`ErrorKind::File`]: missing, damaged, no picture, larger than 16384 on a side.
-    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let read = || {
-            let picture = decode(&read_map(path, "colour map")?, "PNG or JPEG")?;
-            Self::from_texels(picture.width, picture.height, picture.rgba8())
-        };
-        read().map_err(|e: Error| e.in_file(path))
-    }
-
     /// Builds a map from sRGB texels with straight (not premultiplied) alpha, row by row from the
     /// top.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
+    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content): no texels, or not `width * height`
+    /// of them.
     pub fn from_texels(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self> {
-        if texels.is_empty() || texels.len() != width as usize * height as usize {
-            return Err(Error::new(
-                ErrorKind::Content,
-                format!(
-                    "{} colours for {width} x {height} texels; give as many as there are texels",
-                    texels.len()
-                ),
-            ));
-        }
+        check_count("colours", texels.len(), width, height)?;
         let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
         let light = texels
             .iter()
@@ -55,14 +33,7 @@ impl ColorMap {
                 [channel(r), channel(g), channel(b), alpha]
             })
             .collect();
-        let mut levels: Vec<_> = halving::chain(width as usize, height as usize, light)
-            .into_iter()
-            .map(|(w, h, texels)| Level {
-                width: w as u32,
-                height: h as u32,
-                texels: texels.iter().map(from_light).collect(),
-            })
-            .collect();
+        let mut levels = levels(width, height, light, from_light);
         // The full size is stored unchanged, including the colours of transparent texels.
         levels[0].texels = texels;
         Ok(Self { levels })
@@ -145,8 +116,5 @@ mod tests {
                 .to_string()
                 .contains("3 colours")
         );
-        let folder = tempfile::tempdir().unwrap();
-        let text = ColorMap::load(folder.path()).unwrap_err().to_string();
-        assert!(text.contains("folder"), "{text}");
     }
 }

@@ -1,15 +1,10 @@
 //! Displacement maps: the slopes of a height map, computed once and scaled when the picture is
 //! drawn (Blinn 1978).
 
-use super::files::{encode_png, extension};
 use super::half::to_half;
 use super::halving;
-use super::header::Header;
 use crate::error::{Error, ErrorKind, Result};
-use crate::frame::atomic_file::write_bytes;
-use crate::pictures::decode;
 use rayon::prelude::*;
-use std::path::Path;
 
 /// A level of a mip chain, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,38 +40,7 @@ pub struct DisplacementMap {
     pub levels: Vec<Level<[f32; 2]>>,
 }
 
-/// A 16-bit code of the file's channels that means slope 0.
-const ZERO: f32 = 32_768.0;
-
 impl DisplacementMap {
-    /// Computes the slopes of an image file (PNG, JPEG); its luminance, as stored, is the height. A
-    /// file that [`DisplacementMap::save`] wrote is loaded with its slopes.
-    ///
-    /// # Errors
-    /// [`ErrorKind::File`]: missing, damaged, no picture, larger than 16384 on a side.
-    pub fn from_image(path: impl AsRef<Path>) -> Result<Self> {
-        Self::from_image_with(path, SlopeFilter::default())
-    }
-
-    /// Computes the slopes of an image file with a given filter.
-    ///
-    /// # Errors
-    /// The errors of [`DisplacementMap::from_image`].
-    pub fn from_image_with(path: impl AsRef<Path>, filter: SlopeFilter) -> Result<Self> {
-        let path = path.as_ref();
-        let read = || {
-            let bytes = read_map(path, "height map")?;
-            if let Some(header) =
-                Header::of_png(&bytes).filter(|h| h.kind() == Some("displacement"))
-            {
-                return Self::from_file(&bytes, &header);
-            }
-            let picture = decode(&bytes, "PNG or JPEG")?;
-            Self::from_heights(picture.width, picture.height, &picture.luminance(), filter)
-        };
-        read().map_err(|e: Error| e.in_file(path))
-    }
-
     /// Computes the slopes of heights in `[0, 1]`, row by row from the top.
     ///
     /// # Errors
@@ -89,17 +53,10 @@ impl DisplacementMap {
         filter: SlopeFilter,
     ) -> Result<Self> {
         let (w, h) = (width as usize, height as usize);
-        let fault = |message: String| Error::new(ErrorKind::Content, message);
-        if heights.is_empty() || heights.len() != w * h {
-            return Err(fault(format!(
-                "{} heights for {width} x {height} texels; give as many as there are texels",
-                heights.len()
-            )));
-        }
+        check_count("heights", heights.len(), width, height)?;
         if let Some(k) = heights.iter().position(|v| !v.is_finite()) {
-            return Err(fault(format!(
-                "height {k} is not finite; give numbers from 0 to 1"
-            )));
+            let message = format!("height {k} is not finite; give numbers from 0 to 1");
+            return Err(Error::new(ErrorKind::Content, message));
         }
         let across = match filter {
             SlopeFilter::Central => [0.0, 1.0, 0.0],
@@ -119,7 +76,7 @@ impl DisplacementMap {
                 *slope = [0.5 * du * width as f32, 0.5 * dv * height as f32];
             }
         });
-        Ok(Self::from_slopes(w, h, slopes))
+        Self::from_slopes(width, height, slopes)
     }
 
     /// Texels across and down of the full size.
@@ -153,92 +110,44 @@ impl DisplacementMap {
         ]
     }
 
-    /// Writes the full size as a 16-bit RGB PNG, for viewing and for loading again. R and G hold
-    /// the slope: 32768 is 0, and 1 and 65535 are the largest. B is 65535. A text chunk holds the
-    /// largest slope. Reloaded slopes are within 1/65534 of the largest.
+    /// A map of known slopes, row by row from the top.
     ///
     /// # Errors
-    /// [`ErrorKind::File`]: another extension than `.png`, or it cannot be written.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
-        let write = || {
-            if extension(path).as_deref() != Some("png") {
-                return Err(fault("a displacement map is written as .png; name it so"));
-            }
-            let Some(level) = self.levels.first() else {
-                return Err(fault(
-                    "the displacement map has no level; build it from an image",
-                ));
-            };
-            let largest = level
-                .texels
-                .iter()
-                .flatten()
-                .fold(0.0f32, |m, v| m.max(v.abs()));
-            let scale = if largest > 0.0 { largest } else { 1.0 };
-            let code = |v: f32| (v / scale * (ZERO - 1.0) + ZERO).round() as u16;
-            let data: Vec<u8> = level
-                .texels
-                .iter()
-                .flat_map(|&[u, v]| [code(u), code(v), u16::MAX])
-                .flat_map(u16::to_be_bytes)
-                .collect();
-            let header = format!("kind=displacement scale={scale}");
-            let size = [level.width, level.height];
-            let bytes = encode_png(
-                size,
-                png::ColorType::Rgb,
-                png::BitDepth::Sixteen,
-                &header,
-                &data,
-            )?;
-            write_bytes(path, &bytes)
-        };
-        write().map_err(|e: Error| e.in_file(path))
-    }
-
-    fn from_file(bytes: &[u8], header: &Header) -> Result<Self> {
-        let scale = header.number("scale")? as f32;
-        let picture = decode(bytes, "PNG")?;
-        let slope = |code: u16| (f32::from(code) - ZERO) / (ZERO - 1.0) * scale;
-        let texels = picture.rgb16();
-        let slopes = texels.iter().map(|p| [slope(p[0]), slope(p[1])]).collect();
-        Ok(Self::from_slopes(
-            picture.width as usize,
-            picture.height as usize,
-            slopes,
-        ))
-    }
-
-    fn from_slopes(width: usize, height: usize, slopes: Vec<[f32; 2]>) -> Self {
-        let levels = halving::chain(width, height, slopes)
-            .into_iter()
-            .map(|(w, h, texels)| Level {
-                width: w as u32,
-                height: h as u32,
-                texels,
-            })
-            .collect();
-        Self { levels }
+    /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
+    pub fn from_slopes(width: u32, height: u32, slopes: Vec<[f32; 2]>) -> Result<Self> {
+        check_count("slopes", slopes.len(), width, height)?;
+        Ok(Self {
+            levels: levels(width, height, slopes, |texel| *texel),
+        })
     }
 }
 
-fn fault(message: impl Into<String>) -> Error {
-    Error::new(ErrorKind::File, message)
+/// Refuses a list that does not hold one value for each texel.
+pub(super) fn check_count(what: &str, count: usize, width: u32, height: u32) -> Result<()> {
+    if count > 0 && count == width as usize * height as usize {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorKind::Content,
+        format!("{count} {what} for {width} x {height} texels; give as many as there are texels"),
+    ))
 }
 
-/// A texture's file, or an error that names it.
-pub(super) fn read_map(path: &Path, what: &str) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        return Err(fault(format!(
-            "is a folder; give the {what} as a PNG or JPEG file"
-        )));
-    }
-    std::fs::read(path).map_err(|e| {
-        fault(format!(
-            "the {what} cannot be read ({e}); give a PNG or JPEG file"
-        ))
-    })
+/// The mip chain of a picture, each texel turned into its stored form by `stored`.
+pub(super) fn levels<const N: usize, T>(
+    width: u32,
+    height: u32,
+    texels: Vec<[f32; N]>,
+    stored: impl Fn(&[f32; N]) -> T,
+) -> Vec<Level<T>> {
+    halving::chain(width as usize, height as usize, texels)
+        .into_iter()
+        .map(|(w, h, texels)| Level {
+            width: w as u32,
+            height: h as u32,
+            texels: texels.iter().map(&stored).collect(),
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -301,41 +210,11 @@ mod tests {
     }
 
     #[test]
-    fn saved_and_loaded() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("waves.png");
-        let map = waves(33, 20, SlopeFilter::Scharr);
-        map.save(&file).unwrap();
-        let back = DisplacementMap::from_image(&file).unwrap();
-        assert_eq!(back.size(), [33, 20]);
-        let largest = map.levels[0]
-            .texels
-            .iter()
-            .flatten()
-            .fold(0.0f32, |m, v| m.max(v.abs()));
-        for (a, b) in map.levels[0]
-            .texels
-            .iter()
-            .flatten()
-            .zip(back.levels[0].texels.iter().flatten())
-        {
-            assert!((a - b).abs() <= largest / 65_000.0);
-        }
-        assert!(map.save(folder.path().join("waves.jpg")).is_err());
-        assert_eq!(
-            std::fs::read_dir(folder.path()).unwrap().count(),
-            1,
-            "nothing half-written"
-        );
-    }
-
-    #[test]
     fn faults_are_named() {
         let text = |e: Result<DisplacementMap>| e.unwrap_err().to_string();
         let new = |w, h, v: &[f32]| DisplacementMap::from_heights(w, h, v, SlopeFilter::Central);
         assert!(text(new(2, 2, &[0.0; 3])).contains("3 heights"));
         assert!(text(new(0, 0, &[])).contains("0 heights"));
         assert!(text(new(2, 1, &[0.0, f32::NAN])).contains("height 1"));
-        assert!(text(DisplacementMap::from_image("nowhere.png")).starts_with("nowhere.png: "));
     }
 }

@@ -1,57 +1,30 @@
 //! Maps made from a profile: signed distances on a grid, and their storage formats.
 
-pub mod accuracy;
 mod arc;
-mod binary;
 mod color;
 mod displacement;
 mod exact;
-mod files;
 mod half;
 mod halving;
-pub(crate) mod header;
 mod nearest;
+mod projection;
 mod rounding;
 mod shape_map;
+mod source;
 mod store;
-pub mod transform;
 
 pub use arc::{ArcLength, ArcTable};
 pub use color::ColorMap;
 pub use displacement::{DisplacementMap, Level, SlopeFilter};
-pub use files::Projection;
+pub use projection::Projection;
+pub use rounding::round_down;
+pub use source::{MapSource, Measured};
 pub use store::EncodedMap;
 
 use crate::settings::name_of;
 
-/// The method that measures distances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum MapSource {
-    /// The papers' method: exact Euclidean distance to the nearest solid pixel's centre of a binary
-    /// image.
-    Binary,
-    /// Distance to the outline of an anti-aliased picture of the map's own size: the outline is
-    /// rasterised to 8 bits of coverage and traced again.
-    Coverage,
-    /// Exact distance to the outline's segments.
-    #[default]
-    Exact,
-}
-
-impl MapSource {
-    /// The names in options and files.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("binary", Self::Binary),
-        ("coverage", Self::Coverage),
-        ("exact", Self::Exact),
-    ];
-
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        name_of(&Self::NAMES, &self)
-    }
-}
+/// Largest number of texels on a side of a map.
+pub const MAX_SIDE: u32 = 16_384;
 
 /// The storage format of distances on the GPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,11 +1,9 @@
 //! Bakes a shape map, and samples it as the shaders do.
 
-use super::{BakeOptions, Bounds, MapSource, ShapeMap, binary, exact};
+use super::{BakeOptions, Bounds, MAX_SIDE, MapSource, ShapeMap};
 use crate::error::{Error, ErrorKind, Result};
-use crate::pictures::MAX_SIDE;
-use crate::profile::{Outline, Profile};
+use crate::profile::Profile;
 use glam::DVec2;
-use std::borrow::Cow;
 
 impl BakeOptions {
     /// Options for `rows` rows over the profile's own box.
@@ -24,12 +22,6 @@ impl ShapeMap {
     ///
     /// The map covers `0 <= z <= 1` and `0 <= r <= max(R, reach)`, rounded up to whole texels. The
     /// axis is not a boundary.
-    ///
-    /// * [`MapSource::Binary`]: to the nearest solid texel's centre (papers). A texel is solid if
-    ///   more than half of it is covered: by the picture's pixels if the profile has them,
-    ///   otherwise by the outline.
-    /// * [`MapSource::Coverage`]: to the outline traced from an 8-bit picture of the map's size.
-    /// * [`MapSource::Exact`]: to the outline's segments.
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: rows outside 2 ..= 16384, a reach that is not finite or leads to
@@ -60,29 +52,13 @@ impl ShapeMap {
             .at_key("map_rows"));
         }
         let columns = wanted as u32;
-        let (width, height) = (columns as usize, rows as usize);
-        let outline = &profile.outline;
-        let to = |outline: &Outline| (exact::distances(outline, width, height), outline.bounds());
-        let (distance, bounds) = match source {
-            MapSource::Exact => to(outline),
-            MapSource::Coverage => to(&outline.rasterize(columns, rows).with_levels(256).outline()),
-            MapSource::Binary => {
-                let raster = match &profile.raster {
-                    Some(r) if (r.columns, r.rows) == (columns, rows) => Cow::Borrowed(r),
-                    Some(r) => Cow::Owned(r.resample(columns, rows)),
-                    None => Cow::Owned(outline.rasterize(columns, rows)),
-                };
-                (binary::distances(&raster), raster.bounds())
-            }
-        };
-        let form: Vec<bool> = distance.iter().map(|&d| d <= 0.0).collect();
-        let solid = form.contains(&true);
-        let (Some(bounds), true) = (bounds, solid || source != MapSource::Binary) else {
+        let (distance, Some(bounds)) = (source.measure)(profile, columns, rows) else {
             return Err(fault(format!(
                 "at {rows} rows the shape covers no texel; take more rows or a thicker shape"
             ))
             .at_key("map_rows"));
         };
+        let form = distance.iter().map(|&d| d <= 0.0).collect();
         Ok(Self {
             columns,
             rows,
@@ -169,6 +145,3 @@ impl Bounds {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -13,10 +13,12 @@ pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, LIST_LENGTHS_OF, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
-use crate::shader::generated::{BOX_INDICES, HULL_SIDES, STRIP_INDICES};
+use crate::shader::generated::{
+    BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
+};
 use crate::shader::{Kind, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -39,6 +41,9 @@ pub(crate) struct FramePlan {
     pub draws: Vec<IndexedDraw>,
     /// Records and lists of tiles.
     pub words: Vec<u32>,
+    /// Words that the device fills with lists. The first of them are zeroed before that.
+    pub list_words: u32,
+    pub list_heads: u32,
     /// One path per object.
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
@@ -56,12 +61,14 @@ pub(crate) struct Parts {
     pub tables: bool,
     /// Frusta of cells, and rows of the box's sides.
     pub frusta: bool,
+    /// Patches that lists are made from.
+    pub patches: bool,
 }
 
 /// One draw or dispatch, or several draws that one command records.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Steps of a phase wait for the steps of the phase before. The first phase is 0.
+    /// Steps of a phase wait for the steps of the phase before.
     pub phase: u32,
     pub variant: Variant,
     pub kind: Kind,
@@ -80,6 +87,8 @@ pub(crate) enum Call {
     Quads(Range<u32>),
     /// Work groups.
     Dispatch(u32, Pushed),
+    /// Work groups; the head at this word of the lists holds their number.
+    Indirect(u32, Pushed),
 }
 
 /// `Pushed` of `compute.glsl`.
@@ -88,6 +97,14 @@ pub(crate) enum Call {
 pub(crate) struct Pushed {
     /// Number of the first record.
     pub first: u32,
+    /// Number of records.
+    pub count: u32,
+    /// Word of the heads of their lists.
+    pub heads: u32,
+    /// Word at which the tiles of their lists begin.
+    pub tiles: u32,
+    /// Number of the list that is read.
+    pub list: u32,
     /// Number of the only solid.
     pub solid: u32,
     /// Number of the only instance.
@@ -295,12 +312,22 @@ impl FramePlan {
         } else {
             Drawer::Fragments
         };
-        let dealt = visible.deal(drawer, &layer_of, layers.len());
-        for (&n, copies) in numbers.iter().zip(copies) {
+        let mut dealt = visible.deal(drawer, &layer_of, layers.len());
+        let sum = |of: fn(u32) -> u32| -> u64 {
+            let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
+            dealt.layers.iter().map(counted).sum()
+        };
+        let lists = sum(list_words) <= with.room() && with.pays_to_list(sum(|tiles| tiles));
+        if !lists {
+            dealt.layers.iter_mut().for_each(LayerTiles::unlist);
+        }
+        for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {
                 self.paths[n] = DrawPath::Nothing;
             }
-            self.parts[n].tables = !copies.is_empty();
+            let shows = !copies.is_empty();
+            self.parts[n].tables = shows;
+            self.parts[n].patches = shows && lists && visible.takes_lists(batch);
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
@@ -319,8 +346,8 @@ impl FramePlan {
         self.words = dealt.words;
     }
 
-    /// Adds the dispatches of tiles. Tiles of one copy share no pixels, so all layers draw them in
-    /// the first phase. Each layer with tiles of several copies has a phase of its own.
+    /// Adds the dispatches of tiles. Lists of patches come first, then tiles of one copy, which
+    /// share no pixels. Tiles of several copies follow, layer by layer.
     fn dispatch(
         &mut self,
         layers: &[Layer],
@@ -330,38 +357,78 @@ impl FramePlan {
     ) {
         let several = tiles.iter().any(|t| !t.several.is_empty());
         self.compares_depths = several || with.host_depths;
-        let depths = u32::from(self.compares_depths);
-        let mut phase = 0;
+        let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
+        self.list_heads = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
+        let mut phase = 2;
+        let mut later = Vec::new();
+        let mut head = 0;
+        self.list_words = self.list_heads;
         for (layer, tiles) in layers.iter().zip(tiles) {
-            let object = layer.objects[0];
-            let first = &objects[object as usize];
-            let variant = Variant {
-                depth_test: depths,
-                depth_keep: depths,
+            let base = Variant {
+                depth_test: u32::from(self.compares_depths),
+                depth_keep: u32::from(self.compares_depths),
                 ..layer.variant
             };
-            let mut add = |phase, kind, records: &Range<u32>| {
-                for start in records.clone().step_by(MOST_GROUPS as usize) {
-                    let groups = MOST_GROUPS.min(records.end - start);
-                    let pushed = Pushed {
-                        first: start,
-                        solid: first.number,
-                        instance: first.first_instance,
-                    };
-                    self.steps.push(Step {
-                        phase,
-                        variant: variant.of_kind(kind),
-                        kind,
-                        object,
-                        call: Call::Dispatch(groups, pushed),
-                    });
-                }
+            let step = |phase, kind, variant: Variant, call| Step {
+                phase,
+                variant: variant.of_kind(kind),
+                kind,
+                object: layer.objects[0],
+                call,
             };
-            add(0, Kind::TileTree, &tiles.single);
-            add(phase, Kind::TileCopies, &tiles.several);
+            let first = &objects[layer.objects[0] as usize];
+            let (solid, instance) = (first.number, first.first_instance);
+            let direct = |records: &Range<u32>| Pushed {
+                first: records.start,
+                count: records.end - records.start,
+                solid,
+                instance,
+                ..Pushed::default()
+            };
+            for records in chunks(&tiles.listed) {
+                let count = records.end - records.start;
+                let (first, tiles) = (records.start, self.list_words);
+                let pushed = |list| Pushed {
+                    first,
+                    count,
+                    heads: head,
+                    tiles,
+                    list,
+                    solid,
+                    instance,
+                };
+                let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
+                let call = Call::Dispatch(groups, pushed(0));
+                self.steps.push(step(0, Kind::TileLists, base, call));
+                // The last list holds tiles that walk the tree.
+                let lengths = LIST_LENGTHS_OF.into_iter().chain([1]);
+                for (list, list_length) in (0..).zip(lengths) {
+                    let call = Call::Indirect(head + 4 * list, pushed(list));
+                    let kind = match list < LIST_LENGTHS {
+                        true => Kind::TilePatches,
+                        false => Kind::TileTree,
+                    };
+                    let variant = Variant {
+                        list_length,
+                        ..base
+                    };
+                    later.push(step(1, kind, variant, call));
+                }
+                head += 4 * TILE_LISTS;
+                self.list_words += 4 * TILE_LISTS * count;
+            }
+            for records in chunks(&tiles.single) {
+                let call = Call::Dispatch(records.len() as u32, direct(&records));
+                later.push(step(1, Kind::TileTree, base, call));
+            }
+            for records in chunks(&tiles.several) {
+                let call = Call::Dispatch(records.len() as u32, direct(&records));
+                later.push(step(phase, Kind::TileCopies, base, call));
+            }
             phase += u32::from(!tiles.several.is_empty());
         }
-        self.steps.sort_by_key(|step| step.phase);
+        later.sort_by_key(|step| step.phase);
+        self.steps.extend(later);
     }
 }
 
@@ -383,5 +450,20 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
             .map(|outer| (outer, 0.0))
             .or(of_outline),
         surface,
+        half_side: of.object.profile.radius,
+        lists: with.takes_lists(of),
     }
+}
+
+/// Words of the lists of this many tiles: see `compute.glsl`.
+fn list_words(tiles: u32) -> u32 {
+    4 * TILE_LISTS * (tiles.div_ceil(MOST_GROUPS) + tiles)
+}
+
+/// Runs of records, each short enough for one dispatch.
+fn chunks(records: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
+    let Range { start, end } = *records;
+    (start..end)
+        .step_by(MOST_GROUPS as usize)
+        .map(move |first| first..end.min(first + MOST_GROUPS))
 }

@@ -5,6 +5,9 @@ use super::tiles::{Cylinder, Placements};
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::Search;
+use crate::shader::generated::{
+    GROUP_PIXELS, LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST,
+};
 use crate::shader::{Kind, Variant};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OutlineCache;
@@ -54,7 +57,7 @@ pub(crate) struct PlanObject<'a> {
     pub textures: usize,
     /// The surface that its search walks.
     pub surface: Option<&'a Arc<OffsetSurface>>,
-    /// True if cells may replace the tree.
+    /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
     pub shape: Cylinder,
     /// The outline, and the largest distance of the surface from it in object units.
@@ -74,6 +77,8 @@ pub(crate) struct Conditions {
     pub software: bool,
     /// Invocations of a subgroup, which run together.
     pub subgroup_size: u32,
+    /// Most bytes in a storage buffer.
+    pub most_storage: u32,
     /// Most vectors of one solid's tables that a uniform buffer holds.
     pub own_vectors: usize,
     /// Same value as
@@ -92,8 +97,9 @@ pub(crate) struct Conditions {
 /// and tiles skip those.
 const MOST_PROXIES: usize = 64;
 
-/// Subgroup size below which a driver counts as one that takes branches. SwiftShader has 4
-/// invocations, llvmpipe 8.
+/// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
+/// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
+/// of the tree's instructions. Lists on llvmpipe, which has 8, take 0.70 to 0.94.
 const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
@@ -103,19 +109,22 @@ const LEAST_SUBGROUP: u32 = 8;
 /// at 340, extrapolated from solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
 
+/// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists
+/// take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer, 0.73 to 0.99 for 45,000 and
+/// more.
+const LISTED_PIXELS: u64 = 300;
+
+/// Lengths of lists of patches; tiles with longer lists walk the tree.
+pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
+    [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
+
 impl Conditions {
     /// The possible paths of an object, in the order in which they are tried. The last one is
     /// always valid.
     fn candidates(&self, of: &PlanObject) -> impl Iterator<Item = Path> + use<> {
         let copies = of.object.placements().len();
-        // Pixels of cells are shaded before their depth is tested. With shadows they take 1.6 to 2.0
-        // of the time of tiles.
-        let cells = !self.compute
-            && self.passes_cells
-            && of.takes_patches
-            && !self.casts
-            && of.object.repeat == [1; 3]
-            && copies <= MOST_PROXIES;
+        let wraps = self.shows_patches(of) && !self.compute;
+        let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
         // The box is as good as tiles for one copy whose outline is not used.
         let outlined = self.uses_outline(of);
         let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
@@ -176,6 +185,35 @@ impl Conditions {
         self.least_pixels.saturating_mul(factor)
     }
 
+    /// True if patches may be listed for tiles of an object.
+    pub fn takes_lists(&self, of: &PlanObject) -> bool {
+        self.may_list(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
+    }
+
+    /// True if patches may be listed for tiles of an object under some offset.
+    fn may_list(&self, of: &PlanObject) -> bool {
+        self.shows_patches(of) && self.compute && self.subgroup_size >= LEAST_SUBGROUP
+    }
+
+    /// True if pixels may be solved from a few patches. With shadows the search is a small part of
+    /// a pixel. Pixels of cells, which are shaded before their depth is tested, take 1.6 to 2.0 of
+    /// the time of tiles then, and lists 1.0 to 1.2 of that of the tree.
+    fn shows_patches(&self, of: &PlanObject) -> bool {
+        of.takes_patches && !self.casts && of.object.repeat == [1; 3]
+    }
+
+    /// True if the time that lists save for so many tiles is more than the time of the dispatches
+    /// that make and read them. Without tiles there are no lists.
+    pub fn pays_to_list(&self, tiles: u64) -> bool {
+        let pixels = tiles * u64::from(GROUP_PIXELS * GROUP_PIXELS);
+        tiles == 0 || pixels >= LISTED_PIXELS * u64::from(self.least_pixels)
+    }
+
+    /// Most words that lists of tiles may take.
+    pub fn room(&self) -> u64 {
+        u64::from(self.most_storage) / 16
+    }
+
     /// True if a uniform buffer holds an object's tables.
     pub fn holds_tables(&self, of: &PlanObject) -> bool {
         of.surface
@@ -195,10 +233,17 @@ impl Conditions {
                 }
                 Path::Box => kinds.push((Kind::Boxes, &[0, 1])),
                 Path::Tiles if !self.compute => kinds.push((Kind::Quads, &[0, 1])),
-                Path::Tiles => kinds.extend([
-                    (Kind::TileTree, [0, 1].as_slice()),
-                    (Kind::TileCopies, &[0, 1]),
-                ]),
+                Path::Tiles => {
+                    let may_cut = proxy::may_be_cut(of.object);
+                    let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
+                    if self.may_list(of) {
+                        kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
+                    }
+                    kinds.extend([
+                        (Kind::TileTree, [0, 1].as_slice()),
+                        (Kind::TileCopies, &[0, 1]),
+                    ]);
+                }
             }
         }
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
@@ -211,36 +256,53 @@ impl Conditions {
             (false, false) => &[1],
             (false, true) => &[0, 1],
         };
-        let depths: &[u32] = if self.host_depths { &[1] } else { &[0, 1] };
+        let depths: &[bool] = if self.host_depths {
+            &[true]
+        } else {
+            &[false, true]
+        };
+        let lengths: Vec<u32> = if self.may_list(of) {
+            std::iter::once(0).chain(LIST_LENGTHS_OF).collect()
+        } else {
+            vec![0]
+        };
+        let mut data = Vec::new();
+        for &lights in counts {
+            for &own_tables in own {
+                for &depths in depths {
+                    for &list_length in &lengths {
+                        data.push((lights, own_tables, u32::from(depths), list_length));
+                    }
+                }
+            }
+        }
+        let forms = variant.forms();
         let mut all = Vec::new();
-        for form in variant.forms() {
-            for &(kind, outside) in &kinds {
-                for (&outside, &lights) in product(outside, counts) {
-                    for (&own_tables, &depths) in product(own, depths) {
-                        let variant = Variant {
-                            outside,
-                            lights,
-                            own_tables,
-                            depth_test: depths,
-                            depth_keep: depths,
-                            ..form
-                        };
-                        let key = (variant.of_kind(kind), kind);
-                        if !all.contains(&key) {
-                            all.push(key);
-                        }
+        for (kind, outside) in kinds {
+            for (form, &outside) in forms
+                .iter()
+                .flat_map(|f| outside.iter().map(move |o| (f, o)))
+            {
+                for &(lights, own_tables, depths, list_length) in &data {
+                    let variant = Variant {
+                        outside,
+                        lights,
+                        own_tables,
+                        list_length,
+                        depth_test: depths,
+                        depth_keep: depths,
+                        ..*form
+                    };
+                    let key = (variant.of_kind(kind), kind);
+                    let empty = kind == Kind::TilePatches && list_length == 0;
+                    if !empty && !all.contains(&key) {
+                        all.push(key);
                     }
                 }
             }
         }
         all
     }
-}
-
-/// All pairs of two lists.
-fn product<'a, A, B>(of: &'a [A], with: &'a [B]) -> impl Iterator<Item = (&'a A, &'a B)> {
-    of.iter()
-        .flat_map(move |a| with.iter().map(move |b| (a, b)))
 }
 
 impl PlanObject<'_> {

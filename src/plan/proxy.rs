@@ -76,9 +76,16 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
 const LOPSIDED: f64 = 32.0;
 
 /// True if a copy's box, twice `radius` wide, is too flat or too slender for its hull.
-fn is_lopsided(radius: f64, copy: &Placement) -> bool {
+pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()
+}
+
+/// True if a cluster may hold a copy for which [`is_lopsided`] is true.
+pub(crate) fn may_be_lopsided(radius: f64, cluster: &Cluster) -> bool {
+    let sides = DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
+    let most = (cluster.most_scale * sides).max_element();
+    most > LOPSIDED * (cluster.least_scale * sides).min_element()
 }
 
 /// Largest width of shells that a box's sides cut, over half the box's side. Interpolated depths

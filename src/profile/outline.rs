@@ -28,8 +28,9 @@ impl Segment {
     }
 }
 
-/// Area within closed points, negative clockwise.
-pub(super) fn area(points: &[DVec2]) -> f64 {
+/// Area within a closed loop of points, negative if it runs clockwise.
+#[must_use]
+pub fn loop_area(points: &[DVec2]) -> f64 {
     let next = points.iter().cycle().skip(1);
     0.5 * points
         .iter()
@@ -55,7 +56,7 @@ impl Outline {
     /// Enclosed area of the half-plane, without holes.
     #[must_use]
     pub fn area(&self) -> f64 {
-        self.loops.iter().map(|points| area(points)).sum()
+        self.loops.iter().map(|points| loop_area(points)).sum()
     }
 
     /// The rectangle that the solid occupies; `None` for an empty outline.

@@ -1,7 +1,6 @@
 //! Profiles from a list of `[r, z]` points.
 
-use super::Profile;
-use super::region::{Rule, enclosed};
+use super::{FillRule, Outline, Profile};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 
@@ -9,18 +8,7 @@ use glam::DVec2;
 /// 0, and a sliver along the axis would count as surface.
 const AXIS_SLACK: f64 = 1e-9;
 
-/// Largest coordinate: far beyond any box, and small enough to keep nine digits.
-pub(super) const EXTENT: f64 = 1e4;
-
-/// A profile from a closed polygon of `(r, z)` points in object units. The last point joins the
-/// first; both directions of travel are accepted.
-///
-/// If the polygon crosses or covers itself, the solid is everything that it winds round (non-zero
-/// rule). The polygon may extend past the box `0 <= z <= 1`, `r <= radius`; drawing cuts it there.
-///
-/// # Errors
-/// [`ErrorKind::Content`]: fewer than 3 points, a coordinate that is not finite or beyond 10,000, a
-/// point with `r < 0`, no area, or a radius that is not positive and finite.
+/// See [`Profile::polygon`].
 pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
     let fault = |message: String| Err(Error::new(ErrorKind::Content, message).at_key("polygon"));
     if !(radius.is_finite() && radius > 0.0) {
@@ -48,14 +36,14 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
                 "point {i} [{r}, {z}] crosses the axis; keep r >= 0 and give one half of the silhouette"
             ));
         }
-        if r > EXTENT || z.abs() > EXTENT {
+        if r > Profile::EXTENT || z.abs() > Profile::EXTENT {
             return fault(format!(
                 "point {i} [{r}, {z}] is too far out; one object unit is the height of the box"
             ));
         }
         clean.push(DVec2::new(if r < AXIS_SLACK { 0.0 } else { r }, z));
     }
-    let outline = enclosed(&[clean], Rule::NonZero);
+    let outline = Outline::enclosed(&[clean], FillRule::NonZero);
     if outline.area() < 1e-12 {
         return fault("the polygon has no area; give corners that enclose some".into());
     }
@@ -65,7 +53,6 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Outline;
     use super::*;
 
     fn outline(points: &[[f64; 2]]) -> Outline {

@@ -21,7 +21,8 @@ pub(crate) struct Cluster {
     /// A box that contains their positions.
     pub low: DVec3,
     pub high: DVec3,
-    /// Largest factors of scale.
+    /// Smallest and largest factors of scale.
+    pub least_scale: DVec3,
     pub most_scale: DVec3,
 }
 
@@ -46,12 +47,13 @@ impl Clusters {
         let all = (placements.par_chunks(SIZE).enumerate())
             .map(|(n, copies)| {
                 let (low, high) = ends(copies.iter().map(|p| p.position));
-                let (_, most_scale) = ends(copies.iter().map(|p| p.scale));
+                let (least_scale, most_scale) = ends(copies.iter().map(|p| p.scale));
                 let first = (n * SIZE) as u32;
                 Cluster {
                     range: first..first + copies.len() as u32,
                     low,
                     high,
+                    least_scale,
                     most_scale,
                 }
             })
@@ -183,7 +185,7 @@ mod tests {
                     assert_eq!(*placement, placements[copy as usize]);
                     let (position, scale) = (placement.position, placement.scale);
                     assert_eq!(position.clamp(cluster.low, cluster.high), position);
-                    assert_eq!(scale.min(cluster.most_scale), scale);
+                    assert_eq!(scale.clamp(cluster.least_scale, cluster.most_scale), scale);
                 }
             }
             found.sort_unstable();

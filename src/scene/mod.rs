@@ -1,5 +1,5 @@
 //! The content of a picture: camera, lights, objects. Scenes are plain values, checked once by
-//! [`Scene::check`]; `file::load` reads them from files (feature `scene-file`).
+//! [`Scene::check`]. The crate `revmap-files` reads them from files.
 //!
 //! A scene needs no file. An engine fills the same values:
 //!
@@ -28,19 +28,8 @@ mod camera;
 mod check;
 mod clusters;
 mod copies;
-#[cfg(feature = "scene-file")]
-pub mod file;
 mod growth;
-#[cfg(feature = "scene-file")]
-mod instances;
-#[cfg(feature = "scene-file")]
-mod keys;
 mod object;
-#[cfg(feature = "scene-file")]
-mod overrides;
-#[cfg(feature = "scene-file")]
-mod values;
-mod warnings;
 
 pub use camera::CameraFrame;
 pub(crate) use clusters::Cluster;

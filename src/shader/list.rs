@@ -17,6 +17,10 @@ pub enum Entry {
     Cells,
     /// Fragments of boxes, strips and quads, which walk the tree.
     Tree,
+    /// Lists of the patches that rays of tiles may meet.
+    TileLists,
+    /// Pixels of tiles whose patches are listed.
+    TilePatches,
     /// Pixels of tiles of one copy, which walk the tree.
     TileTree,
     /// Pixels of tiles of several copies.
@@ -33,6 +37,8 @@ impl Entry {
             Self::QuadVertex => "tile_quads.vert",
             Self::Cells => "cells.frag",
             Self::Tree => "tree.frag",
+            Self::TileLists => "tile_lists.comp",
+            Self::TilePatches => "tile_patches.comp",
             Self::TileTree => "tile_tree.comp",
             Self::TileCopies => "tile_copies.comp",
         }
@@ -50,7 +56,7 @@ impl Entry {
 /// The code that finds where rays meet a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Search {
-    /// No search: vertices.
+    /// No search: vertices, lists of patches.
     None,
     /// A search of another crate, which has its own modules. Only the vertices for a search with a
     /// table and a bound on steps are in this list.
@@ -193,8 +199,10 @@ impl Module {
         if self.search != Search::None {
             add(&mut name, &self.search);
         }
-        add(&mut name, &self.features);
-        add(&mut name, &self.output);
+        if self.entry != Entry::TileLists {
+            add(&mut name, &self.features);
+            add(&mut name, &self.output);
+        }
         name
     }
 }
@@ -219,7 +227,7 @@ fn has(search: Search, features: Features, output: Output) -> bool {
 #[must_use]
 pub fn modules() -> Vec<Module> {
     use Output as O;
-    let mut all = Vec::new();
+    let mut all = vec![Module::plain(Entry::TileLists)];
     for output in [O::Color, O::Depth] {
         let mut vertex = |entry, search| {
             all.push(Module {
@@ -252,15 +260,18 @@ pub fn modules() -> Vec<Module> {
                     output,
                 });
             };
+            // Shadows and replicas walk the tree.
+            let on_patches = (features, output) != (Features::Full, O::Color);
             for search in SEARCHES.into_iter().filter(|s| has(*s, features, output)) {
                 add(Entry::Tree, search);
                 if shaded {
                     add(Entry::TileTree, search);
                     add(Entry::TileCopies, search);
                 }
+                if shaded && on_patches && search == Search::Quadric {
+                    add(Entry::TilePatches, search);
+                }
             }
-            // Shadows and replicas walk the tree.
-            let on_patches = (features, output) != (Features::Full, O::Color);
             let shown = (shaded && on_patches) || features == Features::Plain;
             if has(Search::Quadric, features, output) && shown {
                 add(Entry::Cells, Search::Quadric);

@@ -17,7 +17,7 @@ use std::mem::{offset_of, size_of};
 use std::sync::Arc;
 
 /// The number of modules.
-const MODULES: usize = 65;
+const MODULES: usize = 70;
 
 /// Opcodes and decorations of the SPIR-V specification that these tests read.
 mod op {
@@ -284,6 +284,8 @@ fn reachable_variants_have_modules() {
         Kind::Cells,
         Kind::Boxes,
         Kind::Quads,
+        Kind::TileLists,
+        Kind::TilePatches,
         Kind::TileTree,
         Kind::TileCopies,
     ];

@@ -23,6 +23,10 @@ pub enum Kind {
     Boxes,
     /// Tiles of one copy each, rasterised; fragments walk the tree.
     Quads,
+    /// Compute: lists of the patches that rays of tiles may meet.
+    TileLists,
+    /// Compute: tiles whose patches are listed.
+    TilePatches,
     /// Compute: tiles of one copy, which walk the tree.
     TileTree,
     /// Compute: tiles of several copies.
@@ -79,8 +83,11 @@ pub struct Variant {
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
     /// one loop.
     pub lights: u32,
-    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells always have the eye
-    /// outside, so for them it is 1 if the box cuts nothing.
+    /// Patches that each pixel of a listed tile tests; 1 for tiles that walk the tree. 0: tiles
+    /// come from no list.
+    pub list_length: u32,
+    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
+    /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
     /// 1 if all solids have one table, and a uniform buffer holds it.
     pub own_tables: u32,
@@ -93,8 +100,8 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// A plain variant without a search.
-    const PLAIN: Self = Self {
+    /// The variant that makes lists of patches.
+    pub const LISTS: Self = Self {
         search: Search::None,
         features: Features::Plain,
         output: Output::Color,
@@ -107,6 +114,7 @@ impl Variant {
         depth_test: 1,
         depth_keep: 1,
         lights: 3,
+        list_length: 0,
         outside: 0,
         own_tables: 0,
         one_solid: 0,
@@ -178,6 +186,7 @@ impl Variant {
             } else {
                 lighting.lights.len().clamp(1, 3) as u32
             },
+            list_length: 0,
             outside: 0,
             own_tables: 0,
             one_solid: 0,
@@ -224,20 +233,38 @@ impl Variant {
     }
 
     /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have
-    /// fixed values, so that equal pipelines have equal keys.
+    /// the values of [`Variant::LISTS`], so that equal pipelines have equal keys.
     #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
         let walks = kind.walks();
+        let on_patches = matches!(kind, Kind::Cells | Kind::TilePatches);
         let of = |reads: bool, value: u32| if reads { value } else { 0 };
-        let compute = matches!(kind, Kind::TileTree | Kind::TileCopies);
+        let of_copy = matches!(kind, Kind::TilePatches | Kind::TileTree);
+        let compute = of_copy || kind == Kind::TileCopies;
+        let lists = Self {
+            outside: self.outside,
+            own_tables: self.own_tables,
+            one_solid: self.one_solid,
+            one_instance: self.one_instance & self.one_solid,
+            ..Self::LISTS
+        };
+        if kind == Kind::TileLists {
+            return lists;
+        }
+        let tables = (walks && self.reads_tables()) || kind == Kind::TilePatches;
         let tested = self.search == Search::Quadric && self.cells == 0;
         let one_solid = of(self.shadow == g::SHADOW_OFF, self.one_solid);
         Self {
-            outside: of(kind == Kind::Cells || (walks && tested), self.outside),
-            own_tables: of(walks && self.reads_tables(), self.own_tables),
+            outside: of(on_patches || (walks && tested), self.outside),
+            own_tables: of(tables, self.own_tables),
             // Lavapipe 22 crashes in shadows if it treats the solid as constants.
             one_solid,
-            one_instance: of(kind == Kind::TileTree, self.one_instance & one_solid),
+            one_instance: of(of_copy, self.one_instance & one_solid),
+            list_length: match kind {
+                Kind::TilePatches => self.list_length,
+                Kind::TileTree => self.list_length.min(1),
+                _ => 0,
+            },
             depth_test: if compute { self.depth_test } else { 1 },
             depth_keep: if compute { self.depth_keep } else { 1 },
             ..self
@@ -263,7 +290,7 @@ impl Variant {
             external: self.external,
             beveled: self.beveled,
             search: self.search,
-            ..Self::PLAIN
+            ..Self::LISTS
         }
     }
 
@@ -275,7 +302,9 @@ impl Variant {
             Kind::Cells if self.outside == 0 => Entry::ClippedCellVertex,
             Kind::Cells => Entry::CellVertex,
             Kind::Quads => Entry::QuadVertex,
-            Kind::TileTree | Kind::TileCopies => return None,
+            Kind::TileLists | Kind::TilePatches | Kind::TileTree | Kind::TileCopies => {
+                return None;
+            }
         };
         let module = self.module(kind);
         let search = self.external.map_or(module.search, External::vertices);
@@ -286,8 +315,10 @@ impl Variant {
     #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
         let entry = match kind {
+            Kind::TileLists => return Module::plain(Entry::TileLists),
             Kind::Boxes | Kind::Quads => Entry::Tree,
             Kind::Cells => Entry::Cells,
+            Kind::TilePatches => Entry::TilePatches,
             Kind::TileTree => Entry::TileTree,
             Kind::TileCopies => Entry::TileCopies,
         };
@@ -301,7 +332,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 15] {
+    pub fn constants(&self) -> [(u32, u32); 16] {
         let (form, known_steps) = self.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, self.cells),
@@ -313,6 +344,7 @@ impl Variant {
             (g::DEPTH_TEST_ID, self.depth_test),
             (g::DEPTH_KEEP_ID, self.depth_keep),
             (g::LIGHTS_ID, self.lights),
+            (g::LIST_LENGTH_ID, self.list_length),
             (g::KNOWN_STEPS_ID, known_steps),
             (g::OUTSIDE_ID, self.outside),
             (g::OWN_TABLES_ID, self.own_tables),

@@ -7,7 +7,7 @@ use crate::search::{Reads, Search, SearchTable};
 use crate::solid::outline_cache::OutlineCache;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::table_slot::{Part, Slot};
-use crate::solid::tables::GpuTables;
+use crate::solid::tables::{self, GpuTables};
 use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
 use std::sync::{Arc, OnceLock};
 
@@ -16,10 +16,11 @@ pub(crate) struct OffsetSurface {
     recipe: Recipe,
     made: OnceLock<Result<Made>>,
     tables: OnceLock<GpuTables>,
+    listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
     inner: OnceLock<InnerCylinders>,
     outer: OnceLock<OuterCylinders>,
-    slots: [OnceLock<Slot>; 2],
+    slots: [OnceLock<Slot>; 3],
 }
 
 /// The source of a surface.
@@ -43,10 +44,11 @@ impl OffsetSurface {
             recipe,
             made: OnceLock::new(),
             tables: OnceLock::new(),
+            listed: OnceLock::new(),
             hull: OnceLock::new(),
             inner: OnceLock::new(),
             outer: OnceLock::new(),
-            slots: [const { OnceLock::new() }; 2],
+            slots: [const { OnceLock::new() }; 3],
         }
     }
 
@@ -75,6 +77,14 @@ impl OffsetSurface {
             Ok(Made::Patches(patches, _)) => GpuTables::patches(patches),
             Ok(Made::Table(table)) => GpuTables::of_search(table),
             Err(_) => GpuTables::patches(&[]),
+        })
+    }
+
+    /// Patches that lists are made from; empty if there are none, or too many.
+    pub fn listed(&self) -> &[[u32; 4]] {
+        self.listed.get_or_init(|| match self.made() {
+            Ok(Made::Patches(patches, _)) => tables::listed(patches),
+            _ => Vec::new(),
         })
     }
 
@@ -140,6 +150,7 @@ impl OffsetSurface {
         match part {
             Part::Tables => &self.tables().vectors,
             Part::Frusta => &self.hull().vectors,
+            Part::Patches => self.listed(),
         }
     }
 

@@ -14,6 +14,8 @@ pub(crate) enum Part {
     Tables,
     /// Frusta that the vertex shaders of hulls expand.
     Frusta,
+    /// Patches that lists are made from.
+    Patches,
 }
 
 /// A slot in the arena; freed when dropped.

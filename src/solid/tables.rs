@@ -1,7 +1,7 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
 use crate::search::SearchTable;
-use crate::shader::generated::{MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS};
+use crate::shader::generated::{LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS};
 use crate::surface::{GpuPatch, QuadricPatch, Tables};
 use ash::vk;
 
@@ -62,6 +62,40 @@ impl GpuTables {
 /// Most vectors of one solid's tables that a device's uniform buffers hold.
 pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
     (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
+}
+
+/// Patches for lists, in the layout of `patch_runs.glsl`; empty if there are none, or too many.
+pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
+    if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
+        return Vec::new();
+    }
+    let unit = patches.iter().fold(1e-6, |m: f64, p| m.max(p.r[1])) / 65535.0;
+    // Ranges are rounded outwards. A beam is wider than this rounding.
+    let levels = |p: &QuadricPatch| {
+        let [low, high] = p.z.map(|z| (z * 32767.0).clamp(0.0, 32767.0));
+        let sense = (p.quadric[0] + 1.0) as u32;
+        low.floor() as u32 | (high.ceil() as u32) << 15 | sense << 30
+    };
+    let radii = |p: &QuadricPatch| {
+        let [low, high] = p.r.map(|r| (r / unit).clamp(0.0, 65535.0));
+        low.floor() as u32 | (high.ceil() as u32) << 16
+    };
+    let record = |(k, p): (usize, &QuadricPatch)| {
+        let GpuPatch { quadric, guard, .. } = GpuPatch::new(p, k);
+        let asked = [
+            levels(p),
+            radii(p),
+            quadric[2].to_bits(),
+            quadric[3].to_bits(),
+        ];
+        [quadric.map(f32::to_bits), guard.map(f32::to_bits), asked]
+    };
+    // A guard that no point passes.
+    let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
+    std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
+        .chain(patches.iter().enumerate().flat_map(record))
+        .chain(none)
+        .collect()
 }
 
 /// Least and largest `r^2` of each node in two 16-bit halves of a word, rounded outwards, and their

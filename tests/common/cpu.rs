@@ -1,7 +1,6 @@
 //! Common code of tests that need no device.
 
 mod random;
-#[cfg(feature = "drawing")]
 #[allow(dead_code)]
 pub mod rays;
 pub mod samples;

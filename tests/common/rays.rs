@@ -2,7 +2,8 @@
 
 pub use super::random::Random;
 use super::shapes;
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::Profile;
+use revmap_files::ProfileAxis;
 
 /// Profiles by name: those of [`shapes`], and the drawings of chess pieces. The environment
 /// variable `ONLY` selects one of them.
@@ -15,7 +16,7 @@ pub fn profiles() -> Vec<(String, Profile)> {
         let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
         all.push((
             name.into(),
-            Profile::load(file, ProfileAxis::Center).unwrap(),
+            revmap_files::profile(file, ProfileAxis::Center).unwrap(),
         ));
     }
     if let Ok(only) = std::env::var("ONLY") {

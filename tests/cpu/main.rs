@@ -6,19 +6,5 @@ mod common;
 
 mod antialias;
 mod contours;
-#[cfg(all(
-    feature = "drawing",
-    feature = "exr",
-    feature = "jpeg",
-    feature = "scene-file"
-))]
-mod damaged_files;
-#[cfg(feature = "drawing")]
 mod hull_rays;
-mod map_accuracy;
-#[cfg(feature = "drawing")]
-mod profiles;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
-mod scenes;
-#[cfg(feature = "drawing")]
 mod surface;

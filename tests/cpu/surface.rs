@@ -3,10 +3,11 @@
 use crate::common::rays::{Random, count, profiles};
 use crate::common::walk::trace_patches;
 use glam::{DVec2, DVec3};
-use revmap::maps::{BakeOptions, MapSource, ShapeMap};
+use revmap::maps::{BakeOptions, ShapeMap};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Clip, Object, Offset, Scene};
 use revmap::surface::{ContourSource, FitOptions, ROWS, Tables, fit_patches};
+use revmap_files::raster::pictured;
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
 
@@ -173,7 +174,7 @@ fn patches_meet_the_reference() {
 /// The RBM baseline on the picture: distances to the nearest solid pixel's centre, in 8 bits, 20
 /// steps, a hit below half a texel.
 fn papers(profile: &Profile, picture: &Profile, count: usize) -> Tally {
-    let map = ShapeMap::bake(picture, &BakeOptions::new(MapSource::Binary, 512)).unwrap();
+    let map = ShapeMap::bake(picture, &BakeOptions::new(revmap_files::BINARY, 512)).unwrap();
     let texel = 1.0 / 512.0;
     let largest = map.distance.iter().fold(0.0f32, |m, &d| m.max(d));
     let value = |i: i64, j: i64| {
@@ -229,11 +230,7 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
     let mut failures = Vec::new();
     for (name, profile) in profiles() {
         let columns = (profile.radius * 512.0).round() as u32;
-        let grey = profile.outline.rasterize(columns, 512);
-        let picture = |levels| Profile {
-            radius: profile.radius,
-            ..Profile::traced(grey.clone().with_levels(levels)).unwrap()
-        };
+        let picture = |levels| pictured(&profile, columns, 512, levels).unwrap();
         let (binary, bytes) = (picture(2), picture(256));
         let theirs = papers(&profile, &binary, count);
         let limits = (

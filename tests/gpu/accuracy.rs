@@ -13,7 +13,7 @@ fn precise() -> Settings {
         solver: CIRCLE,
         max_steps: Some(256),
         map_rows: Some(1024),
-        map_source: Some(MapSource::Exact),
+        map_source: Some(MapSource::EXACT),
         map_format: MapFormat::R32,
         ..Settings::exact()
     }

@@ -93,7 +93,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             map_format: formats[n % 3],
             solver,
             max_steps: Some(48),
-            // Cells change where rays start; culled tiles count no steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             proxy_min_pixels: u32::MAX,
             occlusion_culling: false,
             ..Settings::exact()

@@ -2,7 +2,7 @@
 
 use crate::common::{assert_sound, draw, eye, placement, scene_of, shapes};
 use glam::DVec3;
-use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection, SlopeFilter};
 use revmap::scene::{BumpForm, Object, Offset, Scene, Shadow, Texturing};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_searches::CIRCLE;
@@ -22,8 +22,11 @@ struct Maps {
 
 fn maps() -> Maps {
     Maps {
-        earth: Arc::new(ColorMap::load(asset("colors/natural-earth.png")).unwrap()),
-        bricks: Arc::new(DisplacementMap::from_image(asset("heights/brick.png")).unwrap()),
+        earth: Arc::new(revmap_files::color_map(asset("colors/natural-earth.png")).unwrap()),
+        bricks: Arc::new(
+            revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default())
+                .unwrap(),
+        ),
     }
 }
 
@@ -48,7 +51,7 @@ fn scenes() -> Vec<(String, Scene)> {
     let maps = maps();
     let mut all = Vec::new();
     let forms = [BumpForm::SurfaceGradient, BumpForm::Papers];
-    for (n, projection) in Projection::ALL.into_iter().enumerate() {
+    for (n, (_, projection)) in Projection::NAMES.into_iter().enumerate() {
         let mut scene = scene_of(shapes::vase(), eye(20.0 + 15.0 * n as f64, 1.7));
         let object = &mut scene.objects[0];
         object.texturing = covered(&maps, projection, forms[n % 2]);
@@ -113,7 +116,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
             } else {
                 formats[(n + n / 3) % 3]
             },
-            // Cells change where rays start; culled tiles count no steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             proxy_min_pixels: u32::MAX,
             occlusion_culling: false,
             ..Settings::exact()

@@ -2,26 +2,24 @@
 //! baseline on the same pixels gives the scale.
 
 use crate::common::{draw, errors, eye, reference, scene_of};
-use revmap::maps::{MapFormat, MapSource};
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::maps::MapFormat;
+use revmap::profile::Profile;
 use revmap::settings::Settings;
+use revmap_files::ProfileAxis;
+use revmap_files::raster::pictured;
 use revmap_searches::CIRCLE;
 
 const ROWS: u32 = 512;
 
 fn drawing(name: &str) -> Profile {
     let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-    Profile::load(file, ProfileAxis::Center).unwrap()
+    revmap_files::profile(file, ProfileAxis::Center).unwrap()
 }
 
 /// The drawing's pixels: a pixel is solid if more than half of it is covered.
 fn binary(profile: &Profile) -> Profile {
     let columns = (profile.radius * f64::from(ROWS)).round() as u32;
-    let raster = profile.outline.rasterize(columns, ROWS).with_levels(2);
-    Profile {
-        radius: profile.radius,
-        ..Profile::traced(raster).unwrap()
-    }
+    pictured(profile, columns, ROWS, 2).unwrap()
 }
 
 /// The best reconstruction of the drawing from those pixels. It is exact except for level and
@@ -65,7 +63,7 @@ fn pictures_are_better_than_by_the_rbm_baseline() {
     let papers = Settings {
         solver: CIRCLE,
         max_steps: Some(20),
-        map_source: Some(MapSource::Binary),
+        map_source: Some(revmap_files::BINARY),
         map_format: MapFormat::Rgba8,
         ..ours
     };

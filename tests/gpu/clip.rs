@@ -108,7 +108,7 @@ fn searches_agree_with_the_reference() {
 #[test]
 fn textures_stay_where_they_are() {
     use revmap::maps::Projection;
-    for projection in Projection::ALL {
+    for (_, projection) in Projection::NAMES {
         let mut scene = with(shapes::vase(), [0.1, 0.05, 0.5]);
         scene.objects[0].texturing.projection = projection;
         let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Exact));
@@ -169,7 +169,7 @@ fn boxes_grow_by_what_offsets_need() {
         rows: 11,
         coverage: vec![1.0; 55],
     };
-    object.profile = Profile::traced(raster).unwrap().into();
+    object.profile = revmap_files::trace(raster).unwrap().into();
     let grown = growth(&object);
     assert!((grown.high * 11.0).fract() < 1e-9, "{grown:?}");
     assert!(grown.side >= 0.031);

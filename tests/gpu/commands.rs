@@ -139,6 +139,11 @@ fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
         height: 120,
         stage,
         planes: Planes::Color,
+        // Compute lists patches in pictures as small as these, too.
+        proxy_min_pixels: match stage {
+            DrawStage::Fragment => Settings::exact().proxy_min_pixels,
+            DrawStage::Compute => 0,
+        },
         tolerance: Tolerance::EXACT,
         ..Settings::default()
     };

@@ -1,6 +1,6 @@
 //! Crowds: copies proven hidden are left out, and no pixel changes.
 
-use crate::common::ways::STAGES;
+use crate::common::ways::{STAGES, apart};
 use crate::common::{device, shapes};
 use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
@@ -61,9 +61,22 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
         width: 233,
         height: 131,
         stage,
+        // Compute lists patches in pictures as small as these, too.
+        proxy_min_pixels: match stage {
+            DrawStage::Fragment => Settings::exact().proxy_min_pixels,
+            DrawStage::Compute => 0,
+        },
         planes: Planes::All,
         occlusion_culling,
         ..Settings::exact()
+    }
+}
+
+/// The same settings without lists of patches.
+fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
+    Settings {
+        solver: Solver::Quadric,
+        ..settings(stage, occlusion_culling)
     }
 }
 
@@ -84,6 +97,21 @@ fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
         bits(a)[..count] != bits(b)[..count]
     });
     assert_eq!(differs.count(), 0, "{what}");
+}
+
+/// Lists of patches give the hits of the tree up to rounding. Compute uses them for copies that are
+/// large in a square.
+#[track_caller]
+fn assert_near(a: &Frame, b: &Frame, what: &str) {
+    let (hits, edge, far) = apart(a, b);
+    let colors = a.color.iter().zip(&b.color);
+    let shaded = colors.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 0.01));
+    let shaded = shaded.count();
+
+    assert!(
+        edge + far + shaded <= 1,
+        "{what}: of {hits} pixels {edge} hit by one alone, {far} seen elsewhere, {shaded} of other colours"
+    );
 }
 
 /// Views from within, from above, from straight above and from afar, where most copies are smaller
@@ -119,7 +147,7 @@ fn culled_copies_are_not_missed() {
         (scene.camera.eye, scene.camera.target) = (eye, target);
         let frames: Vec<Frame> = STAGES
             .into_iter()
-            .flat_map(|stage| [true, false].map(|cull| draw(&scene, &settings(stage, cull))))
+            .flat_map(|stage| [true, false].map(|cull| draw(&scene, &by_tree(stage, cull))))
             .collect();
         let hit = frames[0].distance.iter().filter(|d| d.is_finite()).count();
         assert!(hit > 50, "{name}: {hit} pixels");
@@ -128,6 +156,10 @@ fn culled_copies_are_not_missed() {
             .zip(["fragment, all", "compute", "compute, all"])
         {
             assert_same_bits(&frames[0], frame, &format!("{name}: {what}"));
+        }
+        for cull in [true, false] {
+            let listed = draw(&scene, &settings(DrawStage::Compute, cull));
+            assert_near(&frames[0], &listed, &format!("{name}: lists, {cull}"));
         }
         // The nearest hits in compute end the search of later copies, and copies proven hidden are
         // not even listed. Fragments of single-copy squares have no data of other squares.
@@ -154,10 +186,7 @@ fn a_crowd_is_as_many_single_objects() {
         })
         .collect();
     for stage in STAGES {
-        let settings = Settings {
-            solver: Solver::Quadric,
-            ..settings(stage, true)
-        };
+        let settings = by_tree(stage, true);
         let one = draw(&scene, &settings);
         let mut offscreen = Offscreen::new(device(), &single, &settings).unwrap();
         offscreen.draw().unwrap();
@@ -173,9 +202,11 @@ fn hidden_copies_throw_shadows_and_come_back() {
     for stage in STAGES {
         let mut scene = army(70);
         scene.shadow = Shadow::Hard;
-        let culled = draw(&scene, &settings(stage, true));
-        let all = draw(&scene, &settings(stage, false));
+        let culled = draw(&scene, &by_tree(stage, true));
+        let all = draw(&scene, &by_tree(stage, false));
         assert_same_bits(&culled, &all, &format!("{stage:?}, shadows"));
+        let listed = draw(&scene, &settings(stage, true));
+        assert_near(&culled, &listed, &format!("{stage:?}, shadows"));
         scene.shadow = Shadow::Off;
         let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
         for (name, eye, target) in VIEWS {

@@ -37,7 +37,7 @@ fn rays_out_of_steps_are_counted_alike_in_both_stages() {
                 solver,
                 max_steps: Some(max_steps),
                 planes,
-                // Cells change where rays start; culled tiles count no steps.
+                // Cells and lists of patches change where rays start; culled tiles count no steps.
                 proxy_min_pixels: u32::MAX,
                 occlusion_culling: false,
                 ..Settings::exact()

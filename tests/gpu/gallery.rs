@@ -3,7 +3,7 @@
 
 use crate::common::device;
 use revmap::gpu::Offscreen;
-use revmap::scene::{Scene, file};
+use revmap::scene::Scene;
 use revmap::settings::{Planes, Settings, Solver};
 use std::path::{Path, PathBuf};
 
@@ -56,7 +56,7 @@ fn maps_are_as_small_as_the_papers_claim() {
         ..Settings::exact()
     };
     for (name, file) in scenes() {
-        let scene: Scene = file::load(&file, &[]).unwrap_or_else(|e| panic!("{e}"));
+        let scene: Scene = revmap_files::scene(&file).unwrap_or_else(|e| panic!("{e}"));
         let renderer = Offscreen::new(device(), &scene, &settings).unwrap();
         let [shapes, covers] = renderer.map_bytes();
         println!("{name}: {shapes} and {covers} bytes");

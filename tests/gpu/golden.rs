@@ -2,7 +2,6 @@
 //! golden` stores new ones: inspect them before the commit. A missing picture fails.
 
 use crate::common::draw;
-use revmap::scene::file;
 use revmap::settings::Settings;
 use std::path::PathBuf;
 
@@ -22,17 +21,17 @@ fn real_profiles_look_as_they_did() {
     };
     let mut failures = Vec::new();
     for name in ["pawn", "bishop", "king", "rook", "bottle"] {
-        let scene = file::load(root.join(format!("assets/scenes/{name}.toml")), &[]).unwrap();
+        let scene = revmap_files::scene(root.join(format!("assets/scenes/{name}.toml"))).unwrap();
         let frame = draw(&scene, &settings);
         let golden = root.join(format!("tests/golden/{name}.png"));
         if bless {
             std::fs::create_dir_all(golden.parent().unwrap()).unwrap();
-            revmap::frame::write_png(&frame, &golden).unwrap();
+            revmap_files::write_png(&frame, &golden).unwrap();
             continue;
         }
         let folder = tempfile::tempdir().unwrap();
         let drawn = folder.path().join("drawn.png");
-        revmap::frame::write_png(&frame, &drawn).unwrap();
+        revmap_files::write_png(&frame, &drawn).unwrap();
         let open = |path: &PathBuf| {
             image::open(path)
                 .unwrap_or_else(|e| panic!("{}: {e}", path.display()))

@@ -3,7 +3,7 @@
 //! box's sides, both in the cases that they draw and in those that they leave to the box.
 
 use crate::common::ways::{STAGES, WALKED, WRAPPED, Ways, apart, draw_by};
-use crate::common::{draw, errors, eye, placement, scene_of, shapes};
+use crate::common::{device, draw, errors, eye, placement, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu::DrawPath;
 use revmap::maps::MapFormat;
@@ -212,6 +212,37 @@ fn eyes_anywhere() {
             search.assert_same(&format!("{name} from {place}"), &scene, ways);
         }
     }
+}
+
+/// Distances from near to far, in compute: the rays of a tile may hit few patches, many, or more
+/// than the longest list holds, which needs the tree walk. Pixels count tested patches as steps: a
+/// list's length, or the patches visited in the tree.
+#[test]
+fn lists_of_every_length() {
+    let lengths = [8.0, 16.0, 32.0, 48.0];
+    let mut counted = [0usize; 5];
+    for distance in [1.6, 2.4, 5.0, 8.0] {
+        let scene = scene_of(shapes::discs(), eye(25.0, distance));
+        EXACT.assert_same(&format!("discs from {distance}"), &scene, WRAPPED);
+        let settings = settings(Solver::Exact, DrawStage::Compute);
+        let frame = draw_by("discs", &scene, &settings, WRAPPED);
+        for (steps, _) in frame
+            .steps
+            .iter()
+            .zip(&frame.distance)
+            .filter(|(_, t)| t.is_finite())
+        {
+            let length = lengths.iter().position(|l| l == steps);
+            counted[length.unwrap_or(4)] += 1;
+        }
+    }
+    // Devices that run few invocations together walk the tree everywhere.
+    let walked_alone = counted[..4].iter().sum::<usize>() < counted[4];
+    let narrow = device().report().name.contains("SwiftShader");
+    assert!(
+        narrow && walked_alone || counted.iter().all(|&n| n > 0),
+        "{counted:?}"
+    );
 }
 
 /// Cases left to the box and the search: a solid cut by its box; turned and flattened solids;

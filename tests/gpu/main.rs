@@ -8,7 +8,6 @@ mod accuracy;
 mod agreement;
 mod agreement_textures;
 mod antialias;
-#[cfg(feature = "drawing")]
 mod bitmaps;
 mod bumps;
 #[allow(unsafe_code)]
@@ -23,9 +22,7 @@ mod embedding_outputs;
 mod exhausted;
 mod extremes;
 mod fallback;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod gallery;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod golden;
 mod hulls;
 mod limits;
@@ -37,7 +34,6 @@ mod proxy_hulls;
 mod refusals;
 mod replicas;
 mod shadows;
-#[cfg(all(feature = "drawing", feature = "scene-file"))]
 mod smallest;
 mod texturing;
 mod tolerance;

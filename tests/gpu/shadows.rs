@@ -109,7 +109,7 @@ fn shadows_are_the_references() {
                 "{name}, {}: {off} of {dark}",
                 solver.name()
             );
-            // Cells change where rays start; culled tiles count no steps.
+            // Cells and lists of patches change where rays start; culled tiles count no steps.
             let fragment = Settings {
                 proxy_min_pixels: u32::MAX,
                 occlusion_culling: false,

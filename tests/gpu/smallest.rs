@@ -15,7 +15,7 @@ const EMBEDDING: &str = include_str!("../../docs/embedding.md");
 fn the_smallest_scene_is_three_lines() {
     let text = include_str!("../../assets/scenes/smallest.toml");
     assert!(text.lines().count() <= 3 && README.contains(text.trim()));
-    let scene = revmap::scene::file::load("assets/scenes/smallest.toml", &[]).unwrap();
+    let scene = revmap_files::scene("assets/scenes/smallest.toml").unwrap();
     let frame = draw(&scene, &Settings::default());
     let hits = (0..frame.pixels()).filter(|&k| frame.hits(k)).count();
     assert!(hits > frame.pixels() / 20, "{hits} pixels");

@@ -5,7 +5,6 @@ use crate::common::{device, draw, eye, placement, scene_of, shapes};
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
-use revmap::maps::MapSource;
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
@@ -83,7 +82,7 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
     let thin = Profile::polygon(&[[0.3, 0.5], [0.301, 0.5], [0.3, 0.501]], 0.5).unwrap();
     for stage in STAGES {
         let settings = Settings {
-            map_source: Some(MapSource::Binary),
+            map_source: Some(revmap_files::BINARY),
             solver: Solver::Live,
             ..settings(stage)
         };
@@ -298,7 +297,6 @@ fn no_cut_compiles_a_pipeline() {
 }
 
 /// Tables near the limit of a uniform buffer have pipelines for sizes below and above it.
-#[cfg(feature = "scene-file")]
 #[test]
 fn pipelines_of_large_tables_are_compiled() {
     let device = Device::open_validated(None).unwrap();
@@ -309,7 +307,7 @@ fn pipelines_of_large_tables_are_compiled() {
     points.push([0.0, 1.0]);
     let screw = std::sync::Arc::new(Profile::polygon(&points, 0.5).unwrap());
     let goblet = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
-    let goblet = revmap::scene::file::load(goblet, &[]).unwrap();
+    let goblet = revmap_files::scene(goblet).unwrap();
     let mut large = goblet.clone();
     large.objects = vec![Object::new("screw", screw)];
     for (scene, least, stage) in STAGES

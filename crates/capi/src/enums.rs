@@ -4,9 +4,9 @@
 use crate::fault::{Fault, Outcome};
 use revmap::gpu::DepthOrder;
 use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
-use revmap::profile::ProfileAxis;
 use revmap::scene::{BumpForm, Clip, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
+use revmap_files::ProfileAxis;
 use revmap_searches::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
 /// The part of a picture or a drawing that is the half-plane to be turned.
@@ -213,8 +213,8 @@ numbers! {
         Quadric => Solver::Quadric, Exact => Solver::Exact,
     }
     map_source: RevmapMapSource => Option<MapSource> {
-        Default => None, Binary => Some(MapSource::Binary), Coverage => Some(MapSource::Coverage),
-        Exact => Some(MapSource::Exact),
+        Default => None, Binary => Some(revmap_files::BINARY), Coverage => Some(revmap_files::COVERAGE),
+        Exact => Some(MapSource::EXACT),
     }
     map_format: RevmapMapFormat => MapFormat {
         R32 => MapFormat::R32, R16 => MapFormat::R16, Rgba8 => MapFormat::Rgba8,

@@ -7,10 +7,11 @@ use crate::handle::{Handle, alone, handle};
 use crate::object::RevmapObjectInfo;
 use crate::pointers::{described, fill, put, read, text};
 use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
-use revmap::frame::{Frame, Picture};
+use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
 use revmap::scene::Scene;
 use revmap::settings::Settings;
+use revmap_files::Picture;
 use std::ffi::{c_char, c_void};
 use std::sync::{Arc, Mutex};
 
@@ -330,7 +331,7 @@ pub unsafe extern "C" fn revmap_offscreen_write_png(
         // SAFETY: the caller's text.
         let path = unsafe { text(path, "path") }?;
         with(offscreen, |d| {
-            Ok(revmap::frame::write_png(d.frame()?, path)?)
+            Ok(revmap_files::write_png(d.frame()?, path)?)
         })
     })
 }

@@ -55,7 +55,7 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     enter(|| unsafe {
         put(profile, "profile", || {
             let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            let made = Profile::from_bytes(bytes, enums::axis(axis)?)?;
+            let made = revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?;
             Ok(Handle::create(Arc::new(made)))
         })
     })
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     // SAFETY: the caller's pointers.
     enter(|| unsafe {
         put(profile, "profile", || {
-            let made = Profile::load(text(path, "path")?, enums::axis(axis)?)?;
+            let made = revmap_files::profile(text(path, "path")?, enums::axis(axis)?)?;
             Ok(Handle::create(Arc::new(made)))
         })
     })

@@ -29,7 +29,7 @@ pub unsafe extern "C" fn revmap_color_map_from_file(
     // SAFETY: the caller's pointers.
     enter(|| unsafe {
         put(color_map, "color map", || {
-            let made = ColorMap::load(text(path, "path")?)?;
+            let made = revmap_files::color_map(text(path, "path")?)?;
             Ok(Handle::create(Arc::new(made)))
         })
     })
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn revmap_height_map_from_file(
     enter(|| unsafe {
         put(height_map, "height map", || {
             let filter = enums::slope_filter(filter)?;
-            let made = DisplacementMap::from_image_with(text(path, "path")?, filter)?;
+            let made = revmap_files::displacement_map(text(path, "path")?, filter)?;
             Ok(Handle::create(Arc::new(made)))
         })
     })

@@ -8,11 +8,10 @@ use super::samples::Samples;
 use clap::Args;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
-use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
+use revmap_files::SceneFile;
 use revmap_lab::method::Edges;
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use std::path::PathBuf;
@@ -167,7 +166,7 @@ impl Animate {
                         draw(&mut renderer, scene)?;
                         renderer.read()
                     })?;
-                    frame::write_png(&frame, picture)?;
+                    revmap_files::write_png(&frame, picture)?;
                 }
                 None => draw(&mut renderer, &scene)?,
             }
@@ -302,7 +301,7 @@ fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
             row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
         );
     }
-    frame::atomic_file::write_bytes(path, text.as_bytes())
+    revmap_files::write_bytes(path, text.as_bytes())
 }
 
 fn usage(option: &str, message: &str) -> Error {

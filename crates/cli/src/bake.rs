@@ -5,20 +5,11 @@ use super::output;
 use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::maps::{BakeOptions, DisplacementMap, MapSource, Projection, ShapeMap};
-use revmap::profile::{Profile, ProfileAxis, ProfileOptions, Smooth};
+use revmap::maps::{BakeOptions, MapSource, Projection, ShapeMap, SlopeFilter};
 use revmap::scene::Object;
+use revmap_files::{ProfileAxis, ProfileOptions, Smooth, mark_projection, projection_of};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-const AXES: [(&str, ProfileAxis); 2] =
-    [("left", ProfileAxis::Left), ("center", ProfileAxis::Center)];
-const PROJECTIONS: [(&str, Projection); 4] = [
-    ("planar", Projection::Planar),
-    ("cylindrical", Projection::Cylindrical),
-    ("spherical", Projection::Spherical),
-    ("arc", Projection::Arc),
-];
 
 /// Writes a profile's shape map, and a height map's displacement map, as images
 #[derive(Args)]
@@ -36,10 +27,10 @@ pub struct Bake {
     #[arg(long, value_name = "N", default_value_t = Object::MAP_ROWS, value_parser = clap::value_parser!(u32).range(2..=16384))]
     map_rows: u32,
     /// Source of distances [default: exact]
-    #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&revmap_files::MAP_SOURCES))]
     map_source: Option<MapSource>,
     /// Position of the axis: the left edge of half a profile, or the middle of a silhouette
-    #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&AXES))]
+    #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&ProfileAxis::NAMES))]
     profile_axis: ProfileAxis,
     /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
     #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
@@ -52,7 +43,7 @@ pub struct Bake {
     #[arg(long, value_name = "PIXELS|auto", default_value = "0", value_parser = smooth)]
     profile_smooth: Smooth,
     /// Puts the projection of textures into the map's file name, as in vase.spherical.png
-    #[arg(long, value_name = "NAME", value_parser = named(&PROJECTIONS))]
+    #[arg(long, value_name = "NAME", value_parser = named(&Projection::NAMES))]
     projection: Option<Projection>,
     /// A picture of heights, whose displacement map is written beside the shape map, as
     /// vase.displacement.png
@@ -90,19 +81,19 @@ impl Bake {
             invert: self.profile_invert,
             smooth: self.profile_smooth,
         };
-        let profile = Profile::load(&self.profile, options)?;
+        let profile = revmap_files::profile(&self.profile, options)?;
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
         let slopes = self
             .height_map
             .as_ref()
-            .map(DisplacementMap::from_image)
+            .map(|file| revmap_files::displacement_map(file, SlopeFilter::default()))
             .transpose()?;
         let took = begin.elapsed().as_secs_f64() * 1e3;
         drop(progress);
 
-        map.save(&map_file)?;
+        revmap_files::write_shape_map(&map, &map_file)?;
         if !self.quiet {
             profile.warnings.iter().for_each(|w| output::warn(w));
         }
@@ -111,10 +102,10 @@ impl Bake {
             map_file.display(),
             map.columns,
             map.rows,
-            map.source.name()
+            map.source.name
         ));
         if let (Some(slopes), Some(file)) = (&slopes, &slopes_file) {
-            slopes.save(file)?;
+            revmap_files::write_displacement_map(slopes, file)?;
             let [width, height] = slopes.size();
             self.tell(&format!(
                 "{}: {width}x{height} texels, slopes",
@@ -142,7 +133,7 @@ fn smooth(text: &str) -> std::result::Result<Smooth, String> {
 
 /// `file` with the projection in its name; a name with another projection is refused.
 fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
-    match Projection::of_file(file) {
+    match projection_of(file) {
         Some(other) if other != projection => Err(Error::new(
             ErrorKind::Usage,
             format!(
@@ -152,14 +143,14 @@ fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
         )
         .at_key("--projection")
         .in_file(file)),
-        _ => Ok(projection.mark_file(file)),
+        _ => Ok(mark_projection(file, projection)),
     }
 }
 
 /// The file of the displacement map beside a shape map: `vase.displacement.png` for
 /// `vase.spherical.exr`.
 fn beside(map: &Path) -> PathBuf {
-    let unmarked = match Projection::of_file(map) {
+    let unmarked = match projection_of(map) {
         Some(_) => map.with_extension(""),
         None => map.to_path_buf(),
     };

@@ -297,7 +297,7 @@ impl Session {
             let size = first.map(|s| (s.width, s.height));
             let (width, height) = size.unwrap_or((800, 600));
             for view in &plan.views {
-                for warning in view.scene.warnings(width, height) {
+                for warning in revmap_files::warnings(&view.scene, width, height) {
                     output::warn(&format!("{}: {warning}", view.name));
                 }
             }

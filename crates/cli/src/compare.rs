@@ -3,7 +3,6 @@
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame;
 use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
 use serde_json::json;
 use std::path::PathBuf;
@@ -48,7 +47,10 @@ impl Compare {
             let inputs = [self.a.as_path(), &self.b];
             output::check(std::slice::from_ref(heat), "--heat", &["png"], &inputs)?;
         }
-        let (a, b) = (frame::read_exr(&self.a)?, frame::read_exr(&self.b)?);
+        let (a, b) = (
+            revmap_files::read_exr(&self.a)?,
+            revmap_files::read_exr(&self.b)?,
+        );
         let mut options = CompareOptions::default();
         options.texel = self.texel.unwrap_or(options.texel);
         let outcome = compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;

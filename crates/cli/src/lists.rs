@@ -4,8 +4,8 @@ use super::options::{MethodParser, STAGES, Tracing, named, size, tolerance};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::scene::file::{self, SceneFile};
 use revmap::settings::{Tolerance, name_of};
+use revmap_files::SceneFile;
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::plan::suite::Extent;
@@ -42,7 +42,7 @@ pub struct Lists {
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub map_rows: Vec<u32>,
     /// Sources of distances [default: exact]
-    #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&MapSource::NAMES))]
+    #[arg(long, value_name = "SOURCE,...", value_delimiter = ',', value_parser = named(&revmap_files::MAP_SOURCES))]
     pub map_source: Vec<MapSource>,
     /// How distances are stored on the device [default: r32]
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&MapFormat::NAMES))]
@@ -147,7 +147,7 @@ impl Lists {
     fn views(&self) -> Result<Vec<View>> {
         let mut views = Vec::new();
         for file in &self.scenes {
-            let scene = file::load(file, &self.set)?;
+            let scene = SceneFile::open(file)?.scene(&self.set)?;
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             let twin = |other: &PathBuf| other != file && other.file_stem() == file.file_stem();
             // The same name in two folders: the paths tell them apart.

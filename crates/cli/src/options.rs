@@ -63,7 +63,7 @@ pub struct Drawing {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16384))]
     pub map_rows: Option<u32>,
     /// Source of distances [default: exact]
-    #[arg(long, value_name = "SOURCE", value_parser = named(&MapSource::NAMES))]
+    #[arg(long, value_name = "SOURCE", value_parser = named(&revmap_files::MAP_SOURCES))]
     pub map_source: Option<MapSource>,
     /// Format of distances on the device
     #[arg(long, value_name = "FORMAT", default_value = "r32", value_parser = named(&MapFormat::NAMES))]
@@ -121,7 +121,7 @@ impl Drawing {
 
     /// Warnings about the scene, and about options that the method ignores.
     pub fn warnings(&self, scene: &Scene) -> Vec<String> {
-        let mut found = scene.warnings(self.size.0, self.size.1);
+        let mut found = revmap_files::warnings(scene, self.size.0, self.size.1);
         let given = [
             ("--max-steps", self.max_steps.is_some()),
             ("--map-rows", self.map_rows.is_some()),

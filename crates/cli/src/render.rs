@@ -7,11 +7,11 @@ use super::{levels, output};
 use clap::Args;
 use revmap::antialias;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::{self, Frame};
+use revmap::frame::Frame;
 use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
-use revmap::scene::file::SceneFile;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{Planes, Tolerance, name_of};
+use revmap_files::SceneFile;
 use revmap_lab::method::{Edges, Method, MethodSettings};
 use revmap_lab::renderer::{MethodDevice, MethodDrawn};
 use revmap_reference as reference;
@@ -162,7 +162,7 @@ impl Render {
             let painted = levels::painted(scene, &costs);
             let mut renderer = method_device.renderer(&painted, &settings)?;
             renderer.draw()?;
-            frame::write_png(&renderer.read()?, file)?;
+            revmap_files::write_png(&renderer.read()?, file)?;
         }
         device.check()?;
         Ok(MethodDrawn {
@@ -352,9 +352,9 @@ impl Render {
 
 fn write(frame: &Frame, file: &Path) -> Result<()> {
     if output::has_ending(file, "exr") {
-        frame::write_exr(frame, file)
+        revmap_files::write_exr(frame, file)
     } else {
-        frame::write_png(frame, file)
+        revmap_files::write_png(frame, file)
     }
 }
 

@@ -15,6 +15,7 @@
 pub mod compare;
 #[cfg(feature = "mesh")]
 pub mod floor;
+pub mod map_accuracy;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 pub mod method;

@@ -19,9 +19,10 @@ use common::passing::{Count, count};
 use common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
 use glam::DVec3;
 use revmap::gpu;
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::Profile;
 use revmap::scene::{Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_files::ProfileAxis;
 use revmap_searches::{CONE, RELAXED};
 use std::sync::Arc;
 
@@ -42,7 +43,7 @@ fn file(name: &str) -> Profile {
         "{}/../../assets/profiles/{name}",
         env!("CARGO_MANIFEST_DIR")
     );
-    Profile::load(file, ProfileAxis::Center).unwrap()
+    revmap_files::profile(file, ProfileAxis::Center).unwrap()
 }
 
 fn profiles() -> Vec<(&'static str, Profile)> {

@@ -218,9 +218,10 @@ pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMa
 
 /// Writes sRGB bytes as a PNG.
 pub fn write_png(path: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
-    let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-    let mut encoder = png::Encoder::new(file, options.width, options.height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.write_header()?.write_image_data(pixels)?;
-    Ok(())
+    let picture = revmap_files::Picture {
+        width: options.width,
+        height: options.height,
+        rgba: pixels.as_chunks().0.to_vec(),
+    };
+    Ok(picture.write_png(path)?)
 }

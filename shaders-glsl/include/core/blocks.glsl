@@ -55,7 +55,7 @@ struct Solid {
     uvec4 instances; // first, count, index of the shape map among those of shadows
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
-    uvec4 hull;      // first frustum; first vector of the rows of sides; two unused words
+    uvec4 hull;      // first frustum; unused; first vector of the listed patches; first vector of the rows of sides
 };
 
 // A solid padded to the largest alignment of uniform buffer offsets on any device.

@@ -13,7 +13,8 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
 
-// Tables of a draw or dispatch that reads only one. Software drivers gather from uniform buffers several times faster.
+// Tables of a draw or dispatch that reads only one; for listed patches, their table. Software drivers gather from
+// uniform buffers several times faster.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[OWN_VECTORS];
 };
@@ -43,6 +44,18 @@ vec4 patch_vector(uint at)
         return uintBitsToFloat(own_patch_tables[at]);
     }
     return uintBitsToFloat(patch_tables[solid.patches.x + at]);
+}
+
+// Returns a vector of the table of listed patches.
+uvec4 listed_table(uint at)
+{
+    return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[solid.hull.z + at];
+}
+
+// Returns one component of such a vector: software drivers load each component lane by lane.
+uint listed_word(uint at, uint k)
+{
+    return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[solid.hull.z + at][k];
 }
 
 // Returns the least and largest r^2 of a node.

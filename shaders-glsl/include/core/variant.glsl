@@ -3,7 +3,7 @@
 #ifndef VARIANT_GLSL
 #define VARIANT_GLSL
 
-#define SEARCH_NONE 0    // vertices
+#define SEARCH_NONE 0    // vertices, lists of patches
 #define SEARCH_EXTERNAL 1 // from another crate: search/external.glsl
 #define SEARCH_LIVE 2    // safe steps to within a texel and a final secant, on the map only
 #define SEARCH_QUADRIC 3 // exact patches of quadrics, rebuilt when parameters change
@@ -73,8 +73,8 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, so no depth is compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing is drawn later that reads depths
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
-// 1: the box does not cut the solid, and the eye is outside it. Cells always have the eye outside; for them only the
-// first condition counts.
+// 1: the box does not cut the solid, and the eye is outside it. Cells and listed patches always have the eye outside;
+// for them only the first condition counts.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids share one table, held in a uniform buffer
 layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
@@ -85,6 +85,7 @@ layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
 #endif
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 0: no list
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;
@@ -110,6 +111,13 @@ const uint HULL_SIDES = 12u; // corners of a hull's rings
 const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a hull's cell
 const uint SIDE_ROWS = 32u; // strips per box side that cuts a hull
 const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
+const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
+const uint LIST_LENGTHS = 4u; // number of different lengths of a tile's patch list
+const uint TILE_LISTS = 5u; // lists of tiles: one for each length, and one of tiles that use the tree
+const uint SHORT_LIST = 8u; // first of the list lengths
+const uint MIDDLE_LIST = 16u;
+const uint LONG_LIST = 32u;
+const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_BATCHES = 64u; // upper limit on batches of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // upper limit on different shape maps of a scene with shadows
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile

@@ -10,9 +10,12 @@ const uint SPAN_FIRST = 320u; // index of its first node
 struct Beam {
     vec3 o;
     vec3 v;
-    float least, nearest, a; // r^2 of the middle ray: least + a (t - nearest)^2
-    float per_z;
-    float width; // largest distance of a ray from the middle one at equal t, anywhere in the box
+    float least, nearest, a, b; // r^2 of the middle ray: least + a (t - nearest)^2
+    float per_z, speed;
+    float spread; // largest deviation of a direction from the middle one
+    float width;  // largest distance of a ray from the middle one at equal t, anywhere in the box
+    float base;
+    float unit; // unit of the radii of patches
 };
 
 // Returns the depth of the far side of the box.
@@ -24,21 +27,25 @@ float farthest_of(PixelRays rays, Instance i)
 }
 
 // Returns the beam of a square of pixels.
-Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest)
+Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit)
 {
     Beam beam;
     float half_side = 0.5 * float(side);
     vec2 middle = vec2(corner) + half_side - 0.5;
     beam.v = rays.dir_00 + middle.x * rays.dir_x + middle.y * rays.dir_y;
     beam.o = rays.origin + rays.base * (middle.x * rays.dir_x + middle.y * rays.dir_y);
-    float spread = half_side * max(length(rays.dir_x + rays.dir_y), length(rays.dir_x - rays.dir_y));
-    beam.width = spread * farthest + 1e-4;
+    beam.spread = half_side * max(length(rays.dir_x + rays.dir_y), length(rays.dir_x - rays.dir_y));
+    beam.width = beam.spread * farthest + 1e-4;
+    beam.speed = length(beam.v);
     beam.a = max(dot(beam.v.xy, beam.v.xy), 1e-12 * dot(beam.v, beam.v));
+    beam.b = dot(beam.o.xy, beam.v.xy);
     // This divides, as node_span() does: rounding of 1 / a loses pixels of a plate that is a thousand times as wide as
     // high.
-    beam.nearest = -dot(beam.o.xy, beam.v.xy) / beam.a;
+    beam.nearest = -beam.b / beam.a;
     beam.least = max(dot(beam.o.xy, beam.o.xy) - beam.a * beam.nearest * beam.nearest, 0.0);
     beam.per_z = 1.0 / (abs(beam.v.z) > 1e-20 ? beam.v.z : 1e-20);
+    beam.base = rays.base;
+    beam.unit = unit;
     return beam;
 }
 
@@ -66,6 +73,43 @@ vec2 beam_span(Beam beam)
         span = vec2(min(span.x, met.x), max(span.y, met.y));
     }
     return span;
+}
+
+// Returns true if a ray of the beam may enter the solid through patch `k`, and the range of t in `span`.
+bool may_meet(Beam beam, uint k, out vec2 span)
+{
+    uvec4 words = listed_table(3u + 3u * k);
+    vec2 z = vec2(words.x & 0x7fffu, words.x >> 15 & 0x7fffu) / 32767.0;
+    vec2 r = vec2(words.y & 0xffffu, words.y >> 16) * beam.unit;
+    float k1 = uintBitsToFloat(words.z);
+    float k2 = uintBitsToFloat(words.w);
+    float sense = float(int(words.x >> 30)) - 1.0;
+    float low = (z.x - beam.width - beam.o.z) * beam.per_z;
+    float high = (z.y + beam.width - beam.o.z) * beam.per_z;
+    float inner = max(r.x - beam.width, 0.0);
+    float outer = r.y + beam.width;
+    float reach = sqrt(max(outer * outer - beam.least, 0.0) / beam.a);
+    float clear = sqrt(max(inner * inner - beam.least, 0.0) / beam.a);
+    float slack = 4e-7 * (abs(beam.nearest) + reach);
+    float enter = max(min(low, high), -beam.base);
+    float leave = max(low, high);
+    // Ranges of t within the ring, before and after the point nearest to the axis.
+    vec2 before = vec2(max(enter, beam.nearest - reach - slack), min(leave, beam.nearest - clear + slack));
+    vec2 behind = vec2(max(enter, beam.nearest + clear - slack), min(leave, beam.nearest + reach + slack));
+
+    // Half of dG/dt along the middle ray is linear in t. The patch faces away where no ray's value is negative.
+    float slope = 0.5 * k1 + k2 * beam.o.z;
+    float al = sense * beam.a + k2 * beam.v.z * beam.v.z;
+    float be = sense * beam.b + slope * beam.v.z;
+    float steep = 0.5 * abs(k1) + abs(k2); // upper bound of |k1 / 2 + k2 z| for z in [0, 1]
+    float turn = max(1.0, abs(k2)) * beam.width;
+    float most = (abs(sense) * r.y + steep + turn) * beam.spread + turn * beam.speed;
+    bool faces_before = min(al * before.x, al * before.y) + be <= most;
+    bool faces_behind = min(al * behind.x, al * behind.y) + be <= most;
+    bool meets_before = before.x <= before.y && faces_before;
+    bool meets_behind = behind.x <= behind.y && faces_behind;
+    span = vec2(meets_before ? before.x : behind.x, meets_behind ? behind.y : before.y);
+    return outer * outer > beam.least && (meets_before || meets_behind);
 }
 
 #endif

@@ -1,62 +1,42 @@
-// Inputs of every dispatch, and its outputs for a pixel: depth, and colour in packed sRGB or every plane.
+// Inputs of every dispatch: push constants and lists of tiles.
 #ifndef COMPUTE_GLSL
 #define COMPUTE_GLSL
 #include "stage/tile_words.glsl"
-#include "stage/pixel_words.glsl"
-#include "core/shade.glsl"
-#include "core/replicas.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(push_constant) uniform Pushed {
     uint first;    // index of the first record
+    uint count;    // number of records
+    uint heads;    // first word of the list heads in list_words
+    uint tiles;    // first word of the lists' tiles in list_words
+    uint list;     // index of the list that this dispatch reads
     uint solid;    // index of the only solid
     uint instance; // index of the only instance
 } pushed;
 
-#if OUTPUT == OUTPUT_PLANES
-layout(set = 2, binding = 2, rgba32f) uniform writeonly image2D color;
-layout(set = 2, binding = 3, rgba32f) uniform writeonly image2D normal_distance;
-layout(set = 2, binding = 4, rgba32f) uniform writeonly image2D shading_normal_u;
-layout(set = 2, binding = 5, rgba32f) uniform writeonly image2D albedo_v;
+// Lists of tiles, written by tile_lists.comp for N records:
+// - TILE_LISTS heads of four words: an indirect dispatch with one work group per tile in the list, and one unused word;
+// - 4 N words per list. A tile has four words: its corner, the index of its instance, the two runs of patches that its
+//   rays may hit (first | number << 9 | first << 15 | number << 24), and one unused word. Tiles of the last list use
+//   the tree. They hold the range of t of possible hits, as two floats, in place of the runs and the unused word.
+#ifndef LIST_WORDS
+#define LIST_WORDS readonly
 #endif
+layout(set = 2, binding = 6, std430) LIST_WORDS buffer ListWords {
+    uint list_words[];
+};
 
-// Returns the depth limit: a hit must be nearer.
-float drawn_depth(uvec2 pixel)
+// Returns the first word of the head of list `k`.
+uint list_head(uint k)
 {
-    return DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
+    return pushed.heads + 4u * k;
 }
 
-// Adds the look-ups of a pixel, with or without a hit.
-void count_steps(uvec2 pixel, Hit hit)
+// Returns the first word of the tiles of list `k`.
+uint list_tiles(uint k)
 {
-#if OUTPUT == OUTPUT_PLANES
-    uint word = pixel_words[second_word(pixel)] + hit.steps;
-    pixel_words[second_word(pixel)] = word | (hit.exhausted ? EXHAUSTED_BIT : 0u);
-#endif
-}
-
-// Converts linear light to sRGB (IEC 61966-2-1), packed into 8 bits per channel.
-uint pack_srgb(vec4 linear)
-{
-    vec3 c = clamp(linear.rgb, 0.0, 1.0);
-    c = mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
-    return packUnorm4x8(vec4(c, clamp(linear.a, 0.0, 1.0)));
-}
-
-void store(uvec2 pixel, float depth, Shaded s)
-{
-    if (DEPTH_KEEP != 0u) {
-        pixel_words[depth_word(pixel)] = floatBitsToUint(depth);
-    }
-#if OUTPUT == OUTPUT_PLANES
-    imageStore(color, ivec2(pixel), s.color);
-    imageStore(normal_distance, ivec2(pixel), vec4(s.normal, s.distance));
-    imageStore(shading_normal_u, ivec2(pixel), vec4(s.shading_normal, s.uv.x));
-    imageStore(albedo_v, ivec2(pixel), vec4(s.albedo, s.uv.y));
-#else
-    pixel_words[second_word(pixel)] = pack_srgb(s.color);
-#endif
+    return pushed.tiles + 4u * k * pushed.count;
 }
 
 #endif

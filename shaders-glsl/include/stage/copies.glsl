@@ -1,7 +1,7 @@
 // Finds the nearest hit of a pixel among the copies in its tile's list.
 #ifndef COPIES_GLSL
 #define COPIES_GLSL
-#include "stage/compute.glsl"
+#include "stage/stores.glsl"
 
 // Loads the members of a solid that a search reads.
 void take_shape(uint number)

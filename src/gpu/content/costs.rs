@@ -68,7 +68,7 @@ impl Entry {
         let follows = prepared.is_some_and(|p| p.solver.follows_tolerance());
         let fitted = object.surface.as_ref().filter(|_| follows);
         let error = fitted.map(|_| self.error_pixels(object.level, view));
-        let tables = [Part::Tables, Part::Frusta].map(|part| {
+        let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
             let placed = object.surface.as_ref().filter(|s| s.slot(part).is_some());
             placed.map_or(0, |s| 16 * s.vectors(part).len() as u64)
         });

@@ -40,7 +40,7 @@ pub(in crate::gpu) struct Prepared {
     pub fails: bool,
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
-    /// True if cells may replace the tree.
+    /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
     pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
@@ -109,8 +109,9 @@ impl Entry {
         }
         if let Some(frusta) = begin(Part::Frusta) {
             block.hull[0] = frusta;
-            block.hull[1] = frusta + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS;
+            block.hull[3] = frusta + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS;
         }
+        block.hull[2] = begin(Part::Patches).unwrap_or(0);
         Some(block)
     }
 }

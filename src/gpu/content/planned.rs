@@ -68,6 +68,7 @@ impl Content {
             clips: self.device.clips,
             software: self.device.report.kind == "cpu",
             subgroup_size: self.device.subgroup_size,
+            most_storage: limits.max_storage_buffer_range,
             own_vectors: self.device.constants.own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
@@ -151,6 +152,7 @@ impl Content {
         new.dedup_by_key(|s| Arc::as_ptr(s));
         let part = match (self.settings.solver, self.is_compute()) {
             (Solver::Exact, false) => Part::Frusta,
+            (Solver::Exact, true) => Part::Patches,
             _ => Part::Tables,
         };
         new.par_iter().for_each(|surface| {

@@ -9,6 +9,7 @@ use crate::gpu::resources::block::{frame_block, instance_block};
 use crate::gpu::resources::blocks::{SOLID_STRIDE, SolidBlock};
 use crate::plan::View;
 use crate::scene::Shadow;
+use crate::shader::Kind;
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
@@ -129,9 +130,11 @@ impl Renderer {
                 .surface
                 .as_ref()
                 .filter(|_| step.variant.own_tables != 0);
-            let begin = tables
-                .and_then(|s| s.slot(Part::Tables))
-                .map_or(0, Slot::begin);
+            let part = match step.kind {
+                Kind::TileLists | Kind::TilePatches => Part::Patches,
+                _ => Part::Tables,
+            };
+            let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
             steps.push(BoundStep {
                 pipeline: pipelines.get(
                     step.variant,

@@ -5,7 +5,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::frame::prepare::PreparedFrame;
 use crate::gpu::frame::slot::{Bound, BoundStep, FrameSlot};
 use crate::gpu::renderer::Renderer;
-use crate::plan::{Call, IndexedDraw, Pushed};
+use crate::gpu::vk::usage::{Usage, buffer_barrier};
+use crate::plan::{Call, IndexedDraw, Pushed, Step};
 use ash::vk;
 
 /// Bytes of one indirect draw.
@@ -46,7 +47,7 @@ impl Renderer {
                         let count = vertices * (range.end - range.start);
                         raw.cmd_draw(cmd, count, 1, vertices * range.start, 0);
                     }
-                    Call::Dispatch(..) => {}
+                    Call::Dispatch(..) | Call::Indirect(..) => {}
                 }
             }
         }
@@ -75,23 +76,28 @@ impl Renderer {
     ) -> Result<()> {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
-        let mut phase = 0;
-        for (n, step) in bound.planned.plan.steps.iter().enumerate() {
-            let Call::Dispatch(groups, pushed) = &step.call else {
-                continue;
-            };
+        let plan = &bound.planned.plan;
+        let barrier = |from, to| buffer_barrier(&self.device, cmd, &slot.lists, from, to);
+        if plan.list_heads > 0 {
+            let bytes = 4 * u64::from(plan.list_heads);
+            // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
+            unsafe { raw.cmd_fill_buffer(cmd, slot.lists.raw, 0, bytes, 0) };
+            barrier(Usage::TransferWrite, Usage::ComputeWrite);
+        }
+        let mut phase = plan.steps.first().map_or(0, |step| step.phase);
+        for (n, step) in plan.steps.iter().enumerate() {
             if step.phase != phase {
-                // This phase reads the depths that the phase before wrote.
-                self.wait_for_writes(cmd);
+                match phase {
+                    0 => barrier(Usage::ComputeWrite, Usage::TileRead),
+                    // The next phase reads the depths that were written before.
+                    _ => self.wait_for_writes(cmd),
+                }
                 phase = step.phase;
             }
             self.bind_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n)?;
             // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long as
             // the caller promised.
-            unsafe {
-                self.push(cmd, pushed);
-                raw.cmd_dispatch(cmd, *groups, 1, 1);
-            }
+            unsafe { self.dispatch(cmd, slot, step) };
         }
         Ok(())
     }
@@ -137,6 +143,24 @@ impl Renderer {
             // SAFETY: as the caller promised; the draws are within the buffer.
             unsafe {
                 raw.cmd_draw_indexed_indirect(cmd, slot.draws.raw, at, count, DRAW_BYTES);
+            }
+        }
+    }
+
+    unsafe fn dispatch(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, step: &Step) {
+        let raw = &self.device.raw;
+        // SAFETY: as the caller promised; heads are within the buffer.
+        unsafe {
+            match &step.call {
+                Call::Dispatch(groups, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch(cmd, *groups, 1, 1);
+                }
+                Call::Indirect(head, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch_indirect(cmd, slot.lists.raw, 4 * u64::from(*head));
+                }
+                Call::Draws(_) | Call::Quads(_) => {}
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::gpu::content::planned::Planned;
 use crate::gpu::device::Shared;
 use crate::gpu::frame::target::ComputeTarget;
 use crate::gpu::memory::Buffer;
-use crate::gpu::memory::buffers::{indirect, storage, uniform, write, write_slice};
+use crate::gpu::memory::buffers::{indirect, lists, storage, uniform, write, write_slice};
 use crate::gpu::memory::uploads::Upload;
 use crate::gpu::resources::blocks::{
     FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
@@ -27,6 +27,7 @@ pub(crate) struct FrameSlot {
     instances: Buffer,
     shadows: Buffer,
     tiles: Buffer,
+    pub lists: Buffer,
     pub draws: Buffer,
     /// The plan and bindings to record; `None` before the slot is prepared.
     pub bound: Option<Bound>,
@@ -70,6 +71,7 @@ impl FrameSlot {
             instances: storage(device, "instances", 0)?,
             shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
             tiles: storage(device, "tiles", 0)?,
+            lists: lists(device, 0)?,
             draws: indirect(device, 0)?,
             bound: None,
             serial: 0,
@@ -114,6 +116,7 @@ impl FrameSlot {
             &self.instances,
             &self.shadows,
             &self.tiles,
+            &self.lists,
             &self.draws,
         ];
         all.iter().map(|buffer| buffer.bytes).sum()
@@ -142,11 +145,16 @@ impl FrameSlot {
         write(&mut self.shadows, 0, &all)
     }
 
-    /// Writes a plan's tiles and draws.
+    /// Writes a plan's tiles and draws, and makes room for its lists.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
         let words = 4 * plan.words.len() as u64;
         if self.tiles.bytes < words {
             self.tiles = roomy(&self.device, "tiles", words)?;
+            self.named = None;
+        }
+        let listed = 4 * u64::from(plan.list_words);
+        if self.lists.bytes < listed {
+            self.lists = lists(&self.device, listed + listed / 2)?;
             self.named = None;
         }
         let draws = size_of_val(plan.draws.as_slice()) as u64;
@@ -175,7 +183,7 @@ impl FrameSlot {
             Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![(1, whole(&self.tiles))];
+        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.lists))];
         if let Some((target, _)) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));

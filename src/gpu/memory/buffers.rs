@@ -55,6 +55,12 @@ pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Bu
     per_frame(device, name, bytes, B::STORAGE_BUFFER | B::UNIFORM_BUFFER)
 }
 
+/// Lists of tiles, which the device makes and counts.
+pub(crate) fn lists(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
+    let usage = B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
+    device_local(device, "lists of tiles", bytes, usage)
+}
+
 /// Draws that the host writes.
 pub(crate) fn indirect(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
     per_frame(device, "draws", bytes, B::INDIRECT_BUFFER)

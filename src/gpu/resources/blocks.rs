@@ -85,7 +85,8 @@ pub struct SolidBlock {
     /// Tables of the quadric search: where they begin, first record, first range, bits of the unit
     /// of `r^2`. Tables of another search: where they begin, and the search's three facts.
     pub patches: [u32; 4],
-    /// First frustum of the cells; first row of the box's sides; two unused words.
+    /// First frustum of the cells; unused; first vector of the patches that are listed; first row
+    /// of the box's sides.
     pub hull: [u32; 4],
 }
 

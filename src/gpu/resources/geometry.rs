@@ -67,7 +67,11 @@ impl State {
         surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, Parts)>,
     ) -> Result<Placed> {
         for (surface, parts) in surfaces {
-            let wanted = [(parts.tables, Part::Tables), (parts.frusta, Part::Frusta)];
+            let wanted = [
+                (parts.tables, Part::Tables),
+                (parts.frusta, Part::Frusta),
+                (parts.patches, Part::Patches),
+            ];
             for (_, part) in wanted.into_iter().filter(|(is, _)| *is) {
                 self.arena.place(surface, part)?;
             }

@@ -41,14 +41,18 @@ pub struct PipelineChoice(Variant, Kind);
 impl PipelineChoice {
     /// The name of the draw or dispatch: `cells`, `boxes`, `tiles of one copy`, ...
     #[must_use]
-    pub fn path(&self) -> &'static str {
-        match self.1 {
+    pub fn path(&self) -> String {
+        let Self(variant, kind) = *self;
+        let name = match kind {
             Kind::Boxes => "boxes",
             Kind::Cells => "cells",
             Kind::Quads => "quads of tiles",
+            Kind::TileLists => "lists of patches",
+            Kind::TilePatches => return format!("tiles of {} patches", variant.list_length),
             Kind::TileTree => "tiles of one copy",
             Kind::TileCopies => "tiles of several copies",
-        }
+        };
+        name.to_owned()
     }
 }
 
@@ -108,6 +112,7 @@ impl PipelineCompiler {
                 clips: chosen.clips(),
                 software: false,
                 subgroup_size: chosen.subgroup_size,
+                most_storage: u32::MAX,
                 own_vectors: 0,
                 least_pixels: 0,
                 occlusion_culling: true,

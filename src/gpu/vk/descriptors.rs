@@ -72,6 +72,10 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         PLANE,
         PLANE,
         PLANE,
+        one(
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::ShaderStageFlags::COMPUTE,
+        ), // lists of tiles
     ],
 ];
 

@@ -18,6 +18,8 @@ pub(crate) enum Usage {
     Sampled,
     /// Written, and perhaps read, by compute shaders.
     ComputeWrite,
+    /// Read by compute shaders and as the groups of an indirect dispatch.
+    TileRead,
     /// Added to by fragment shaders.
     FragmentAtomic,
     /// Read by the host.
@@ -32,6 +34,7 @@ impl Usage {
             Self::TransferWrite | Self::TransferRead => S::TRANSFER,
             Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::ComputeWrite => S::COMPUTE_SHADER,
+            Self::TileRead => S::COMPUTE_SHADER | S::DRAW_INDIRECT,
             Self::FragmentAtomic => S::FRAGMENT_SHADER,
             Self::HostRead => S::HOST,
         }
@@ -45,6 +48,7 @@ impl Usage {
             Self::TransferRead => A::TRANSFER_READ,
             Self::Sampled => A::SHADER_READ,
             Self::ComputeWrite | Self::FragmentAtomic => A::SHADER_READ | A::SHADER_WRITE,
+            Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
             Self::HostRead => A::HOST_READ,
         }
     }
@@ -56,7 +60,9 @@ impl Usage {
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
             Self::TransferRead => L::TRANSFER_SRC_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite | Self::FragmentAtomic | Self::HostRead => L::GENERAL,
+            Self::ComputeWrite | Self::TileRead | Self::FragmentAtomic | Self::HostRead => {
+                L::GENERAL
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bounds::{Projector, ScreenBounds};
 use super::{Batch, Item, Placements};
-use crate::plan::proxy::{is_apart, may_hold_eye};
+use crate::plan::proxy::{is_apart, is_lopsided, may_be_lopsided, may_hold_eye};
 use crate::scene::{Cluster, Placement};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -37,19 +37,35 @@ pub(super) struct Candidates<'a> {
     pub batches: &'a [Batch<'a>],
     /// The candidates, nearest first.
     pub all: Vec<Candidate<'a>>,
-    /// For each batch: true if the eye is outside of the bounding cylinder of each copy that was
-    /// read.
-    apart: Vec<AtomicBool>,
+    /// One entry per batch.
+    facts: Vec<Facts>,
+}
+
+/// Facts that hold for all copies of a batch that were read.
+#[derive(Clone, Copy)]
+pub(super) struct CopyFacts {
+    /// True if the eye is outside of each copy's bounding cylinder.
+    pub apart: bool,
+    /// True if the ratio of each box's sides is small enough for beams of 32-bit floats.
+    pub even: bool,
+}
+
+struct Facts {
+    apart: AtomicBool,
+    even: AtomicBool,
 }
 
 impl<'a> Candidates<'a> {
     pub fn new(projector: &'a Projector, batches: &'a [Batch<'a>]) -> Self {
-        let apart = |batch: &Batch| AtomicBool::new(batch.surface.is_some());
+        let facts = batches.iter().map(|batch| Facts {
+            apart: AtomicBool::new(batch.surface.is_some()),
+            even: AtomicBool::new(batch.surface.is_some()),
+        });
         let mut candidates = Self {
             projector,
             batches,
             all: Vec::new(),
-            apart: batches.iter().map(apart).collect(),
+            facts: facts.collect(),
         };
         let mut all = Vec::new();
         for (number, batch) in (0..).zip(batches) {
@@ -82,13 +98,14 @@ impl<'a> Candidates<'a> {
         let axis = batch.shape.axis.length();
         let (eye, forward) = (self.projector.eye, self.projector.rows.row(2));
         let ScreenBounds { pixels, near } = self.projector.cluster_bounds(cluster, &batch.shape)?;
+        let lopsided = || may_be_lopsided(batch.half_side, cluster);
         let entered = |surface| may_hold_eye(surface, axis, cluster, eye, forward);
         Some(Candidate {
             near: near.to_bits(),
             pixels,
             batch: number,
             cluster: Some(cluster),
-            may_be_hidden: !batch.surface.is_some_and(entered),
+            may_be_hidden: !batch.surface.is_some_and(|s| lopsided() || entered(s)),
             items: OnceLock::new(),
         })
     }
@@ -105,12 +122,15 @@ impl<'a> Candidates<'a> {
 
     /// The copy at a position among its batch's clusters, if some pixel may show it.
     pub fn item(&self, number: u32, place: u32) -> Option<Item> {
-        let batch = &self.batches[number as usize];
+        let (batch, facts) = (&self.batches[number as usize], &self.facts[number as usize]);
         let (copy, placement) = batch.placements.at(place);
         let axes = self.projector.axes(placement, batch.shape.axis);
         let ScreenBounds { pixels, near } = self.projector.bounds(&axes, &batch.shape)?;
         if batch.surface.is_some_and(|s| !is_apart(s, axes.eye)) {
-            self.apart[number as usize].store(false, Relaxed);
+            facts.apart.store(false, Relaxed);
+        }
+        if batch.surface.is_some() && is_lopsided(batch.half_side, placement) {
+            facts.even.store(false, Relaxed);
         }
         Some(Item {
             near: near.to_bits(),
@@ -121,9 +141,13 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// True for batches of which the eye is outside all copies that were read.
-    pub fn apart(&self) -> Vec<bool> {
-        self.apart.iter().map(|apart| apart.load(Relaxed)).collect()
+    /// The facts about the copies of each batch.
+    pub fn facts(&self) -> Vec<CopyFacts> {
+        let of = |facts: &Facts| CopyFacts {
+            apart: facts.apart.load(Relaxed),
+            even: facts.even.load(Relaxed),
+        };
+        self.facts.iter().map(of).collect()
     }
 }
 

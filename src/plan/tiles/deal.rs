@@ -24,7 +24,9 @@ pub(super) struct Listed {
 pub(super) struct BandLists {
     /// Compute: tiles of several copies.
     pub several: Vec<[u32; 4]>,
-    /// Compute: tiles of one copy each.
+    /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
+    /// has two such records.
+    pub listed: Vec<[u32; 4]>,
     pub single: Vec<[u32; 4]>,
     /// Fragments: quads of one copy each.
     pub quads: Vec<[u32; 4]>,
@@ -49,6 +51,8 @@ pub(super) struct Dealer<'a> {
     pub drawer: Drawer,
     /// The layer of each batch.
     pub layer_of: &'a [u32],
+    /// True if patches may be listed for a batch's tiles.
+    pub lists: &'a [bool],
     /// True if a batch has one copy.
     pub single: &'a [bool],
     /// Pixels: left, top, right, bottom.
@@ -80,16 +84,13 @@ impl Dealer<'_> {
                 }
                 continue;
             }
-            if let [one] = here
-                && (one.pixels.count_ones() >= SINGLE_PIXELS || self.single[one.batch as usize])
-            {
-                let [x, y] = place.map(|k| k * SIDE);
-                let to = &mut lists[self.layer_of[one.batch as usize] as usize];
-                to.single.push([x | y << 16, one.copy, 0, one.near]);
-                continue;
-            }
             rest.clear();
             rest.extend_from_slice(here);
+            if let Some(n) = self.single_of(here) {
+                let one = rest.remove(n);
+                let to = &mut lists[self.layer_of[one.batch as usize] as usize];
+                to.add_single(&one, place, self.lists[one.batch as usize]);
+            }
             while let Some(first) = rest.first() {
                 let layer = self.layer_of[first.batch as usize];
                 let of = |one: &Listed| self.layer_of[one.batch as usize] == layer;
@@ -99,6 +100,20 @@ impl Dealer<'_> {
         }
         lists.iter_mut().for_each(BandLists::gather);
         lists
+    }
+
+    /// Index of the tile's copy that gets a record of its own.
+    fn single_of(&self, here: &[Listed]) -> Option<usize> {
+        let is_large = |one: &Listed| one.pixels.count_ones() >= SINGLE_PIXELS;
+        match here {
+            [one] if is_large(one) || self.single[one.batch as usize] => Some(0),
+            _ => (0..here.len()).find(|&n| {
+                // Copies that coincide need the same search: the first of equal depths stays.
+                let alike = |other: &Listed| other.near == here[n].near;
+                let unique = here.iter().filter(|one| alike(one)).count() == 1;
+                self.lists[here[n].batch as usize] && is_large(&here[n]) && unique
+            }),
+        }
     }
 }
 
@@ -123,6 +138,17 @@ fn by_tile(listed: &[Listed], tiles: u32) -> (Vec<Listed>, Vec<u32>) {
 }
 
 impl BandLists {
+    /// Adds a tile's only copy, or a copy with a record of its own.
+    fn add_single(&mut self, one: &Listed, [x, y]: [u32; 2], lists: bool) {
+        let corner = (x * SIDE) | ((y * SIDE) << 16);
+        let to = if lists {
+            &mut self.listed
+        } else {
+            &mut self.single
+        };
+        to.push([corner, one.copy, 0, one.near]);
+    }
+
     /// Adds the copies of a tile.
     fn add<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone, [x, y]: [u32; 2]) {
         let at = |x: u32, y: u32| x | (y << 16);
@@ -260,10 +286,11 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn dealt(copies: &[Listed], tiles: u32) -> BandLists {
+    fn dealt(copies: &[Listed], tiles: u32, lists: bool) -> BandLists {
         let dealer = Dealer {
             drawer: Drawer::Groups,
             layer_of: &[0],
+            lists: &[lists],
             single: &[false],
             picture: [0, 0, 8 * ACROSS - 1, 23],
         };
@@ -282,12 +309,12 @@ mod tests {
 
     #[test]
     fn gathered_pixels_list_what_they_show_and_none_is_idle() {
-        let lists = dealt(&copies(), TILES);
+        let lists = dealt(&copies(), TILES, false);
         let (found, idle) = visited(&lists);
         check(&found);
         // Only the last record has idle invocations.
         assert!(idle < 64);
-        assert!(lists.single.is_empty());
+        assert_eq!(lists.listed.len() + lists.single.len(), 0);
     }
 
     /// The lists that work groups search, and the number of idle invocations.
@@ -319,28 +346,33 @@ mod tests {
         (found, idle)
     }
 
-    /// A tile's only copy has a record of its own if it is large.
     #[test]
-    fn large_only_copies_have_records_of_their_own() {
-        let (mut tiles, mut large) = (BTreeSet::new(), Vec::new());
-        let mut only = copies();
-        only.retain(|one| tiles.insert(one.tile));
-        only.sort_by_key(|one| one.tile);
-        for one in only
-            .iter()
-            .filter(|one| one.pixels.count_ones() >= SINGLE_PIXELS)
-        {
-            let [x, y] = [one.tile % ACROSS, one.tile / ACROSS].map(|k| SIDE * k);
-            large.push([x | y << 16, one.copy, 0, one.near]);
+    fn a_large_copy_of_each_tile_has_a_record_of_its_own() {
+        let lists = dealt(&copies(), TILES, true);
+        let (mut found, _) = visited(&lists);
+        let mut tiles = BTreeMap::new();
+        for &[corner, copy, none, near] in &lists.listed {
+            assert_eq!((none, near), (0, 100 + copy));
+            let tile = (corner & 0xffff) / SIDE + (corner >> 16) / SIDE * ACROSS;
+            assert_eq!(tiles.insert(tile, copy), None);
+            let here = copies().into_iter().filter(|one| one.tile == tile);
+            let large = here.filter(|one| one.pixels.count_ones() >= SINGLE_PIXELS);
+            let nearest = large.min_by_key(|one| one.near).unwrap();
+            assert_eq!(nearest.copy, copy);
+            for k in (0..64).filter(|k| nearest.pixels >> k & 1 == 1) {
+                let pixel = ((corner & 0xffff) + k % SIDE, (corner >> 16) + k / SIDE);
+                let (list, _) = found.entry(pixel).or_insert((Vec::new(), true));
+                if let Err(place) = list.binary_search(&copy) {
+                    list.insert(place, copy);
+                }
+            }
         }
-        let lists = dealt(&only, TILES);
-        assert!(large.len() > 2 && large.len() < only.len());
-        assert_eq!(lists.single, large);
-        let gathered = only
-            .iter()
-            .map(|one| one.pixels.count_ones())
-            .filter(|n| *n < SINGLE_PIXELS);
-        assert_eq!(visited(&lists).0.len() as u32, gathered.sum::<u32>());
+        let large = copies()
+            .into_iter()
+            .filter(|one| one.pixels.count_ones() >= SINGLE_PIXELS);
+        let with_one: BTreeSet<u32> = large.map(|one| one.tile).collect();
+        assert!(tiles.keys().eq(&with_one) && with_one.len() > TILES as usize / 2);
+        check(&found);
     }
 
     #[test]
@@ -354,14 +386,15 @@ mod tests {
                 pixels: 0xff << (copy % 7),
             })
             .collect();
-        let of = |copies: &[Listed]| dealt(copies, 1);
+        let of = |copies: &[Listed]| dealt(copies, 1, false);
         let lists = of(&deep);
         assert_eq!(lists.words.len(), 2 * deep.len());
         assert_eq!(lists.several, [[0, 0, 100, 100]]);
         assert_eq!(of(&deep[..10]).several[0][2], TILE_SPLIT);
     }
 
-    /// Two layers have copies in one tile. A layer lists its own copies in order.
+    /// Two layers have copies in one tile. A layer lists its own copies in order, and one copy of
+    /// the two layers has a record of its own.
     #[test]
     fn layers_share_tiles() {
         let mut all = copies();
@@ -371,15 +404,23 @@ mod tests {
         let dealer = Dealer {
             drawer: Drawer::Groups,
             layer_of: &[1, 0],
+            lists: &[true, false],
             single: &[false, false],
             picture: [0, 0, 8 * ACROSS - 1, 23],
         };
         let lists = dealer.deal(&all, TILES, 2, |tile| [tile % ACROSS, tile / ACROSS]);
+        assert!(lists[0].listed.is_empty() && !lists[1].listed.is_empty());
         let mut found = BTreeMap::<(u32, u32), BTreeSet<u32>>::new();
         for (layer, lists) in (0u32..).zip(&lists) {
             for (pixel, (list, _)) in visited(lists).0 {
                 assert!(list.is_sorted() && list.iter().all(|copy| 1 - copy % 2 == layer));
                 found.entry(pixel).or_default().extend(list);
+            }
+            for &[corner, copy, ..] in &lists.listed {
+                for k in 0..SIDE * SIDE {
+                    let pixel = ((corner & 0xffff) + k % SIDE, (corner >> 16) + k / SIDE);
+                    found.entry(pixel).or_default().insert(copy);
+                }
             }
         }
         for (pixel, wanted) in shown() {
@@ -404,6 +445,7 @@ mod tests {
         let dealer = Dealer {
             drawer: Drawer::Fragments,
             layer_of: &[0],
+            lists: &[false],
             single: &[false],
             picture,
         };

@@ -13,8 +13,8 @@
 //! 4. The listed copies are distributed to records ([`deal`], [`quads`]).
 //!
 //! A copy is dropped only where its solid is proven absent, or where solids in front of it are
-//! proven present. Pictures are identical to unculled ones to the last bit. No data comes from an
-//! earlier frame. Strips of the picture, which are
+//! proven present. Pictures are identical to unculled ones to the last bit, except for roundings
+//! where patches are listed. No data comes from an earlier frame. Strips of the picture, which are
 //! columns of tiles from top to bottom, are filled in parallel. Strips have similar loads on a
 //! field, where rows near the horizon hold most copies. Records are made in parallel, in bands of
 //! rows.
@@ -34,7 +34,7 @@ use super::view::View;
 use crate::scene::{Copies, Placement};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
-use candidates::Candidates;
+use candidates::{Candidates, CopyFacts};
 use cover::{SIDE, within};
 use deal::{BandLists, Dealer};
 use rayon::prelude::*;
@@ -54,6 +54,10 @@ pub(crate) struct Batch<'a> {
     pub outer: Option<(&'a OuterCylinders, f64)>,
     /// The surface; none unless its patches are searched and there are no replicas.
     pub surface: Option<&'a OffsetSurface>,
+    /// Half of the box's side.
+    pub half_side: f64,
+    /// True if patches may be listed for its tiles.
+    pub lists: bool,
 }
 
 /// The placements of an object's copies.
@@ -82,8 +86,7 @@ const BLOCK: u32 = 8;
 pub(crate) struct Visible<'a> {
     batches: &'a [Batch<'a>],
     strips: Vec<Strip<'a>>,
-    /// True for batches of which the eye is outside all copies.
-    apart: Vec<bool>,
+    facts: Vec<CopyFacts>,
     /// Number of tiles across and down.
     size: [u32; 2],
     picture: [u32; 4],
@@ -112,10 +115,21 @@ pub(crate) struct TileWords {
 pub(crate) struct LayerTiles {
     /// Fragments: quads of one copy each.
     pub quads: Range<u32>,
-    /// Compute: tiles of one copy each. No other tile of any layer shares their pixels.
+    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles of one
+    /// copy share pixels. The tiles are drawn before tiles of several copies.
+    pub listed: Range<u32>,
+    /// Compute: tiles of one copy each, without lists of patches.
     pub single: Range<u32>,
     /// Compute: tiles of several copies.
     pub several: Range<u32>,
+}
+
+impl LayerTiles {
+    /// Turns tiles with lists of patches into tiles without. The two ranges are neighbours.
+    pub fn unlist(&mut self) {
+        self.single.start = self.listed.start;
+        self.listed.end = self.listed.start;
+    }
 }
 
 impl<'a> Visible<'a> {
@@ -149,7 +163,7 @@ impl<'a> Visible<'a> {
         Self {
             batches: candidates.batches,
             strips,
-            apart: candidates.apart(),
+            facts: candidates.facts(),
             size,
             picture: projector.picture(),
         }
@@ -157,7 +171,13 @@ impl<'a> Visible<'a> {
 
     /// True if the eye is outside of all copies of a batch.
     pub fn is_apart(&self, batch: usize) -> bool {
-        self.apart[batch]
+        self.facts[batch].apart
+    }
+
+    /// True if patches may be listed for a batch's tiles.
+    pub fn takes_lists(&self, batch: usize) -> bool {
+        let facts = &self.facts[batch];
+        self.batches[batch].lists && facts.apart && facts.even
     }
 
     /// The copies of each batch that may show, in ascending order.
@@ -176,6 +196,9 @@ impl<'a> Visible<'a> {
     /// `layers`.
     pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
         let [across, down] = self.size;
+        let lists: Vec<bool> = (0..self.batches.len())
+            .map(|b| drawer == Drawer::Groups && self.takes_lists(b))
+            .collect();
         let single: Vec<bool> = self
             .batches
             .iter()
@@ -190,6 +213,7 @@ impl<'a> Visible<'a> {
             let dealer = Dealer {
                 drawer,
                 layer_of,
+                lists: &lists,
                 single: &single,
                 picture: self.picture,
             };
@@ -217,7 +241,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
             }
             first..records.len() as u32
         };
-        let (quads, single) = (put(|l| &l.quads), put(|l| &l.single));
+        let (quads, listed, single) = (put(|l| &l.quads), put(|l| &l.listed), put(|l| &l.single));
         let first = records.len() as u32;
         for band in bands {
             let of = |[corner, list, count, near]: &[u32; 4]| {
@@ -228,6 +252,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
         }
         all.push(LayerTiles {
             quads,
+            listed,
             single,
             several: first..records.len() as u32,
         });

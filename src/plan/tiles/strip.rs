@@ -189,6 +189,8 @@ mod tests {
                     inner: surface.inner(),
                     outer: surface.outer().map(|outer| (outer, 0.0)),
                     surface: Some(surface),
+                    half_side: 0.5,
+                    lists: true,
                 };
                 first += placements.len() as u32;
                 batch

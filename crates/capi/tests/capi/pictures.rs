@@ -3,13 +3,14 @@
 use crate::host::{self, Options, Stage};
 use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
 use glam::{DMat4, DVec3, Vec3};
-use revmap::frame::Picture;
 use revmap::gpu::{
     self, DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
-use revmap::profile::{Profile, ProfileAxis};
+use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
+use revmap_files::Picture;
+use revmap_files::ProfileAxis;
 use std::cell::RefCell;
 use std::path::Path;
 use std::process::Command;
@@ -174,7 +175,7 @@ fn the_picture_in_cpp_is_what_rust_draws() {
     // The engine, which CMake has linked with the shared library.
     run(validated(&build.join("engine")).arg(folder.path().join("engine.ppm")));
 
-    let profile = Profile::load(&drawing, ProfileAxis::Center).unwrap();
+    let profile = revmap_files::profile(&drawing, ProfileAxis::Center).unwrap();
     let mut object = Object::new("object", Arc::new(profile));
     object.color[2] = 0.4;
     object.offset.extend = -0.02;

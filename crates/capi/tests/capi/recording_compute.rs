@@ -4,7 +4,6 @@ use crate::host::{Host, Stage, open};
 use crate::recording::{OPTIONS, RANGE, add, camera, lend, ok, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
-use revmap::frame::Picture;
 use revmap::gpu::{Device, Offscreen};
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_capi::device::*;
@@ -13,6 +12,7 @@ use revmap_capi::fault::*;
 use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
+use revmap_files::Picture;
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 

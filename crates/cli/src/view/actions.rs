@@ -7,8 +7,8 @@ use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
 use revmap::error::{self, Error, Result};
-use revmap::scene::file::SceneFile;
 use revmap::settings::Planes;
+use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
 use winit::event::MouseButton;
 
@@ -132,7 +132,7 @@ impl App {
         for n in 0..saved::TURNTABLE {
             let turned = saved::turned(&self.shown, n);
             let frame = open.inspector.draw(&turned, settings, &open.stage.device)?;
-            revmap::frame::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
+            revmap_files::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::shown::Shown;
 use super::stage::Stage;
 use super::times::Times;
 use revmap::error::{self, Error, Result};
-use revmap::scene::file::SceneFile;
+use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{Duration, Instant};

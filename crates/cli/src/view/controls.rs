@@ -4,7 +4,7 @@ use super::shown::{Inspected, Shown};
 use super::times::Times;
 use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
-use revmap::maps::{MapSource, Projection};
+use revmap::maps::Projection;
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Tolerance};
 
@@ -150,8 +150,12 @@ fn object(ui: &mut Ui, object: &mut Object) -> bool {
         )
         .changed();
     changed |= choice(ui, "clip", &mut object.clip, &Clip::NAMES);
-    let projections = Projection::ALL.map(|p| (p.name(), p));
-    changed |= choice(ui, "projection", &mut texturing.projection, &projections);
+    changed |= choice(
+        ui,
+        "projection",
+        &mut texturing.projection,
+        &Projection::NAMES,
+    );
     changed | choice(ui, "bump form", &mut texturing.bump_form, &BumpForm::NAMES)
 }
 
@@ -191,7 +195,7 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
 fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
     let solvers = revmap_searches::ALL.map(|s| (s.name(), s));
     let mut changed = choice(ui, "solver", &mut search.solver, &solvers);
-    let [a, b, c] = MapSource::NAMES.map(|(name, source)| (name, Some(source)));
+    let [a, b, c] = revmap_files::MAP_SOURCES.map(|(name, source)| (name, Some(source)));
     let sources = [("best", None), a, b, c];
     changed |= choice(ui, "map source", &mut search.map_source, &sources);
     let mut pixels = search.tolerance.pixels();

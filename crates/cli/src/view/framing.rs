@@ -1,7 +1,7 @@
 //! The part of the window that the panel leaves free: the scene is centred in it.
 
-use revmap::frame::Picture;
 use revmap::scene::Camera;
+use revmap_files::Picture;
 
 /// Pixels of the window, and those at its left that the panel covers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -29,8 +29,8 @@ mod vulkan;
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::scene::file::SceneFile;
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
+use revmap_files::SceneFile;
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
 

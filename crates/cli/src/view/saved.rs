@@ -4,10 +4,10 @@ use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
-use revmap::frame::atomic_file::write_bytes;
-use revmap::scene::file::SceneFile;
 use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
 use revmap::settings::name_of;
+use revmap_files::SceneFile;
+use revmap_files::write_bytes;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
@@ -156,7 +156,9 @@ mod tests {
 
     #[test]
     fn a_turntable_comes_round() {
-        let scene = revmap::scene::file::parse(TEXT, ".", &[]).unwrap();
+        let scene = SceneFile::parse(TEXT, ".")
+            .and_then(|mut file| file.scene(&[]))
+            .unwrap();
         let shown = Shown::new(scene, revmap::settings::SearchSettings::default());
         let quarter = turned(&shown, TURNTABLE / 4).scene.camera.eye;
         assert!((quarter - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12);

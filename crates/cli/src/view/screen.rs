@@ -9,7 +9,7 @@ use super::swapchain::{Shown, Swapchain};
 use super::vulkan::Vulkan;
 use ash::vk;
 use revmap::error::Result;
-use revmap::frame::Picture;
+use revmap_files::Picture;
 use std::rc::Rc;
 
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;

@@ -7,7 +7,7 @@ use super::vulkan::Vulkan;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use revmap::error::Result;
-use revmap::frame::Picture;
+use revmap_files::Picture;
 use std::rc::Rc;
 
 /// A copy made by the device.

@@ -1,8 +1,8 @@
 //! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns
 //! of and says.
 
-use revmap::frame::read_exr;
-use revmap::maps::DisplacementMap;
+use revmap::maps::{DisplacementMap, SlopeFilter};
+use revmap_files::read_exr;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -91,8 +91,12 @@ fn maps_are_written_and_weighed() {
     };
     let (bottle, brick) = (asset("profiles/bottle.png"), asset("heights/brick.png"));
     revmap(&["bake", &bottle, "-o", "bottle.png", "--height-map", &brick]);
-    let baked = DisplacementMap::from_image(folder.path().join("bottle.displacement.png")).unwrap();
-    let own = DisplacementMap::from_image(&brick).unwrap();
+    let baked = revmap_files::displacement_map(
+        folder.path().join("bottle.displacement.png"),
+        SlopeFilter::default(),
+    )
+    .unwrap();
+    let own = revmap_files::displacement_map(&brick, SlopeFilter::default()).unwrap();
     assert_eq!(baked.size(), own.size());
     let values = |m: &DisplacementMap| m.levels[0].texels.concat();
     let (a, b) = (values(&baked), values(&own));

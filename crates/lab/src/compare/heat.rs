@@ -4,7 +4,8 @@ use super::{
     CompareOptions, PIXELS_PER_DEGREE, check, depth_error, flip, normal_error, silhouette,
 };
 use revmap::Result;
-use revmap::frame::{Frame, Picture, pixel_count};
+use revmap::frame::{Frame, pixel_count};
+use revmap_files::Picture;
 
 /// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in
 /// both frames is grey.

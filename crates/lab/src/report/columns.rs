@@ -12,7 +12,6 @@ use super::table::Table;
 use crate::compare::PixelErrors;
 use crate::method::{Edges, Method};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::maps::MapSource;
 use revmap::scene::{Offset, Shadow};
 use revmap::settings::{Tolerance, name_of};
 
@@ -138,7 +137,7 @@ pub static COLUMNS: &[Column] = columns! {
     "width", "width", "pixels across" => |_, r| Cell::Count(r.settings.width.into());
     "height", "height", "pixels down" => |_, r| Cell::Count(r.settings.height.into());
     "map_rows", "rows of the map", "rows of the shape map" => |_, r| Cell::count(r.map_rows.map(|n| n as usize));
-    "map_source", "source", "origin of the map's distances" => |_, r| Cell::name(r.source.map(MapSource::name));
+    "map_source", "source", "origin of the map's distances" => |_, r| Cell::name(r.source.map(|s| s.name));
     "map_format", "format", "storage of the map's distances" => |_, r| searched(r, Cell::text(r.settings.map_format.name()));
     "objects", "solids", "solids in the scene, copies counted" => |_, r| Cell::count(r.solids);
     "gpu_ms_median", "device's time (ms)", "time of a frame by the device's timestamps, empty where it has none or they disagree with the wall clock" => |_, r| Cell::number(gpu(r).map(|t| t.value));

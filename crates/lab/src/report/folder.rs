@@ -14,8 +14,8 @@ use super::row::{CLOCKS_APART, Clocks, Row};
 use super::table::Table;
 use crate::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::Picture;
-pub use revmap::frame::atomic_file::write_bytes;
+use revmap_files::Picture;
+pub use revmap_files::write_bytes;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are

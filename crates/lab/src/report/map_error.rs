@@ -235,10 +235,10 @@ mod tests {
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);
         let error = |source, rows| error(&view, (120, 90), source, rows);
-        let exact = error(MapSource::Exact, 512);
+        let exact = error(MapSource::EXACT, 512);
         let p99 = exact.depth.unwrap().p99;
         assert!(exact.wrong() < 0.01 && p99 < 0.5, "{exact}");
-        let [fine, coarse] = [512, 128].map(|rows| error(MapSource::Binary, rows));
+        let [fine, coarse] = [512, 128].map(|rows| error(revmap_files::BINARY, rows));
         let rms = |errors: &Comparison| errors.depth.unwrap().rms;
         assert!(rms(&fine) > 2.0 * rms(&exact), "{fine}");
         assert!(rms(&coarse) > 2.0 * rms(&fine), "{coarse}");
@@ -251,7 +251,7 @@ mod tests {
         object.offset.extend = 0.04;
         object.placement.scale = DVec3::new(1.3, 0.8, 1.1);
         object.placement.rotation = glam::DQuat::from_rotation_x(0.4);
-        let errors = error(&view.framed(15.0), (100, 75), MapSource::Exact, 512);
+        let errors = error(&view.framed(15.0), (100, 75), MapSource::EXACT, 512);
         let p99 = errors.depth.unwrap().p99;
         assert!(errors.wrong() < 0.02 && p99 < 1.0, "{errors}");
     }
@@ -263,7 +263,7 @@ mod tests {
         let settings = MethodSettings {
             width: 40,
             height: 30,
-            map_source: Some(MapSource::Exact),
+            map_source: Some(MapSource::EXACT),
             map_rows: Some(64),
             ..MethodSettings::default()
         };

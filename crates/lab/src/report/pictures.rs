@@ -8,8 +8,9 @@ use super::plan::{Labels, is_rbm_baseline};
 use crate::compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
 use crate::method::{Edges, Method, MethodSettings};
 use revmap::error::Result;
-use revmap::frame::{Frame, Picture, write_png};
+use revmap::frame::Frame;
 use revmap::settings::DrawStage;
+use revmap_files::{Picture, write_png};
 use std::path::{Path, PathBuf};
 
 /// A picture made smaller for a page.

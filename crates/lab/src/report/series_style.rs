@@ -8,6 +8,7 @@ use super::row::Row;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::settings::{DrawStage, Solver};
+use revmap_files::{BINARY, COVERAGE};
 
 /// How a method looks in the fragment stage, meshes of every fineness alike. The default stands
 /// out; searches of one family have one colour: equal steps, and cones.
@@ -62,9 +63,9 @@ pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
 /// How a source of distances looks, in charts that compare sources.
 pub fn of_source(source: MapSource) -> Style {
     match source {
-        MapSource::Binary => Style::new(color::BLACK, Marker::SQUARE),
-        MapSource::Coverage => Style::new(color::BLUE, Marker::DISK),
-        MapSource::Exact => Style::new(color::VERMILION, Marker::UP),
+        _ if source == BINARY => Style::new(color::BLACK, Marker::SQUARE),
+        _ if source == COVERAGE => Style::new(color::BLUE, Marker::DISK),
+        _ => Style::new(color::VERMILION, Marker::UP),
     }
 }
 
@@ -172,7 +173,7 @@ mod tests {
                 assert_ne!(a.dash, Dash::GUIDE);
             }
         }
-        let sources = [MapSource::Binary, MapSource::Coverage, MapSource::Exact].map(of_source);
+        let sources = [BINARY, COVERAGE, MapSource::EXACT].map(of_source);
         assert!(sources[0].color != sources[1].color && sources[1].color != sources[2].color);
     }
 

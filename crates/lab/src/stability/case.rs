@@ -2,8 +2,9 @@
 
 use revmap::error::Result;
 use revmap::maps::{MapFormat, MapSource};
-use revmap::scene::{Scene, file};
+use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Solver};
+use revmap_files::SceneFile;
 use revmap_searches::CIRCLE;
 use std::fmt::Write;
 use std::path::Path;
@@ -95,9 +96,9 @@ impl Step {
     /// The scene; `folder` holds the files that it names.
     ///
     /// # Errors
-    /// As [`file::parse`].
+    /// As [`SceneFile::parse`] and [`SceneFile::scene`].
     pub fn read(&self, folder: &Path) -> Result<Scene> {
-        file::parse(&self.scene, folder, &[])
+        SceneFile::parse(&self.scene, folder)?.scene(&[])
     }
 }
 

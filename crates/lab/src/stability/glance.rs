@@ -1,6 +1,6 @@
 //! A failure as the naked eye sees it: the part of a picture that differs most, enlarged.
 
-use revmap::frame::Picture;
+use revmap_files::Picture;
 
 /// The part that is shown, pixels.
 const PART: [usize; 2] = [40, 30];
@@ -130,6 +130,7 @@ fn at(picture: &Picture, x: usize, y: usize) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use revmap_files::Picture;
 
     #[test]
     fn the_worst_part_is_framed_and_shown() {

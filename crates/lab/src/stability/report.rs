@@ -16,8 +16,8 @@ use crate::report::pictures::Shot;
 use crate::report::series_style;
 use crate::report::table::Table;
 use revmap::error::Result;
-use revmap::frame::Picture;
 use revmap::settings::Solver;
+use revmap_files::Picture;
 use std::path::Path;
 
 /// What shares of faults are drawn at where there are none, percent.

@@ -8,7 +8,7 @@ use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
-use revmap::maps::{ColorMap, DisplacementMap, Projection};
+use revmap::maps::{Projection, SlopeFilter};
 use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_lab::compare::Comparison;
@@ -305,10 +305,12 @@ fn what_a_mesh_cannot_draw_is_refused() {
     });
     refused(ErrorKind::Content, "object.2.color_map", |s, _| {
         let file = asset("colors/natural-earth.png");
-        s.objects[2].texturing.color_map = Some(Arc::new(ColorMap::load(file).unwrap()));
+        s.objects[2].texturing.color_map = Some(Arc::new(revmap_files::color_map(file).unwrap()));
     });
     refused(ErrorKind::Content, "object.0.height_map", |s, _| {
-        let map = DisplacementMap::from_image(asset("heights/brick.png")).unwrap();
+        let map =
+            revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default())
+                .unwrap();
         s.objects[0].texturing.displacement_map = Some(Arc::new(map));
     });
     refused(ErrorKind::Content, "object.0.projection", |s, _| {

@@ -205,7 +205,7 @@ fn a_picture_is_its_outline() {
         rows: 64,
         coverage: (0..32 * 64).map(|k| coverage(k % 32, k / 32)).collect(),
     };
-    let o = object(Profile::traced(image).unwrap().outline, 0.5);
+    let o = object(revmap_files::trace(image).unwrap().outline, 0.5);
     // Eleven columns and three quarters of one.
     let r = 11.75 / 64.0;
     assert_hit(

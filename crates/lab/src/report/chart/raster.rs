@@ -7,7 +7,7 @@ use super::svg::svg;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::Picture;
+use revmap_files::Picture;
 
 /// A figure at `scale` pixels per CSS pixel, on white.
 ///

@@ -276,7 +276,7 @@ impl Chart {
             let (source, count) = (row.settings.map_source?, row.settings.map_rows?);
             let y = (column.cell)(context, row).value()?;
             Some(item(
-                &format!("{}, drawn", source.name()),
+                &format!("{}, drawn", source.name),
                 of_source(source),
                 count,
                 y,
@@ -291,7 +291,7 @@ impl Chart {
         items.extend(maps.iter().filter(alone).filter_map(|error| {
             let mut style = of_source(error.source);
             style.filled = false;
-            let name = format!("{}, the map by itself", error.source.name());
+            let name = format!("{}, the map by itself", error.source.name);
             Some(item(&name, style, error.rows, error.errors.depth?.p99))
         }));
         items.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
@@ -310,7 +310,7 @@ impl Chart {
             }
             SeriesBy::Source => {
                 let source = s.map_source?;
-                (source.name().to_owned(), of_source(source), false)
+                (source.name.to_owned(), of_source(source), false)
             }
             SeriesBy::Scene => {
                 let scenes = grouped(context.rows, |r| &r.scene);

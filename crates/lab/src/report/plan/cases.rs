@@ -4,7 +4,7 @@ use super::file::Measure;
 use crate::floor;
 use crate::method::{Edges, Method, MethodSettings};
 use crate::report::view::View;
-use revmap::maps::{MapFormat, MapSource};
+use revmap::maps::MapFormat;
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use revmap_searches::CIRCLE;
 
@@ -233,7 +233,7 @@ pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
     MethodSettings {
         method: Method::Search(CIRCLE),
         max_steps: Some(if beveled { 25 } else { 20 }),
-        map_source: Some(MapSource::Binary),
+        map_source: Some(revmap_files::BINARY),
         map_format: MapFormat::Rgba8,
         map_rows: None,
         tolerance: Tolerance::EXACT,
@@ -255,7 +255,7 @@ pub fn variant(settings: &MethodSettings) -> MethodSettings {
 pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
     s.method == CIRCLE
         && matches!(s.max_steps, Some(20 | 25))
-        && s.map_source == Some(MapSource::Binary)
+        && s.map_source == Some(revmap_files::BINARY)
         && s.map_format == MapFormat::Rgba8
         && s.map_rows.is_none()
 }
@@ -266,12 +266,13 @@ mod tests {
     use super::super::{Labels, Pick, RBM_BASELINE};
     use super::*;
     use crate::report::view::tests::spindle;
+    use revmap::maps::MapSource;
 
     fn entry() -> Measure {
         Measure {
             max_steps: vec![20, 48],
             sizes: vec![(64, 48), (32, 24)],
-            map_sources: vec![MapSource::Binary, MapSource::Exact],
+            map_sources: vec![revmap_files::BINARY, MapSource::EXACT],
             map_formats: vec![MapFormat::R16, MapFormat::Rgba8],
             methods: vec![Pick::Method(Method::Search(CIRCLE))],
             ..Measure::default()

@@ -63,7 +63,7 @@ impl Labels {
         }
         let maps = s.method.reads_map();
         if let (true, Some(source)) = (self.source && maps, s.map_source) {
-            name += &format!(" {}", source.name());
+            name += &format!(" {}", source.name);
         }
         if self.format && maps {
             name += &format!(" {}", s.map_format.name());

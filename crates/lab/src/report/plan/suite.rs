@@ -5,8 +5,8 @@ use crate::report::names::number;
 use crate::report::view::View;
 use glam::DVec3;
 use revmap::error::Result;
-use revmap::profile::{Profile, ProfileAxis};
 use revmap::scene::{Camera, Object, Scene};
+use revmap_files::ProfileAxis;
 use std::sync::Arc;
 
 /// The source of a solid.
@@ -112,9 +112,12 @@ pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
             continue;
         }
         let profile = match source {
-            Source::File(bytes) => Arc::new(Profile::from_bytes(bytes, ProfileAxis::Center)?),
+            Source::File(bytes) => Arc::new(revmap_files::profile_from_bytes(
+                bytes,
+                ProfileAxis::Center,
+            )?),
             Source::Scene(text) => {
-                let mut scene = revmap::scene::file::parse(text, "", &[])?;
+                let mut scene = revmap_files::SceneFile::parse(text, "")?.scene(&[])?;
                 scene.objects.swap_remove(0).profile
             }
         };

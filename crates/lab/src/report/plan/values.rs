@@ -30,20 +30,26 @@ where
 
 /// Values that have a list of names.
 macro_rules! named {
-    ($($type:ty),*) => {$(impl Spelled for $type {
+    ($($type:ty: $names:expr),*) => {$(impl Spelled for $type {
         type Raw = String;
 
         fn read(word: String) -> Result<Self, String> {
-            let found = Self::NAMES.iter().find(|(name, _)| *name == word);
+            let found = $names.iter().find(|(name, _)| *name == word);
             found.map(|(_, value)| *value).ok_or_else(|| {
-                let all = Self::NAMES.map(|n| n.0).join(", ");
+                let all = $names.map(|n| n.0).join(", ");
                 format!("{word:?} is not known; give one of {all}")
             })
         }
     })*};
 }
 
-named!(DrawStage, MapSource, MapFormat, Shadow, Framing);
+named!(
+    DrawStage: Self::NAMES,
+    MapSource: revmap_files::MAP_SOURCES,
+    MapFormat: Self::NAMES,
+    Shadow: Self::NAMES,
+    Framing: Self::NAMES
+);
 
 /// Values that are parsed from a word.
 macro_rules! parsed {

@@ -6,7 +6,7 @@ use super::suite::{self, Extent};
 use super::values::list;
 use crate::report::view::{Framing, View};
 use revmap::error::Result;
-use revmap::maps::{BakeOptions, ColorMap, MapSource, ShapeMap};
+use revmap::maps::{BakeOptions, ColorMap, ShapeMap};
 use revmap::scene::{Clip, Offset, Shadow};
 use revmap::settings::name_of;
 use std::sync::Arc;
@@ -235,7 +235,7 @@ fn chequered() -> Result<ColorMap> {
 fn largest_distance(view: &View) -> Result<f64> {
     let mut largest = 0.0f64;
     for object in &view.scene.objects {
-        let options = BakeOptions::new(MapSource::Binary, object.map_rows);
+        let options = BakeOptions::new(revmap_files::BINARY, object.map_rows);
         let map = ShapeMap::bake(&object.profile, &options)?;
         largest = largest.max(f64::from(map.largest_distance()));
     }

@@ -2,8 +2,8 @@
 
 use super::{MIDDLE, SPINDLE, ball, case, eye};
 use crate::stability::case::{Case, Known, Step, Text};
-use revmap::frame::Picture;
-use revmap::maps::{MapFormat, MapSource};
+use revmap::maps::MapFormat;
+use revmap_files::Picture;
 
 pub(super) fn cases() -> Vec<Case> {
     vec![budgets(), rows(), bits(), binary(), projections()]
@@ -105,7 +105,7 @@ fn binary() -> Case {
             .map(|rows| {
                 let keys = format!("profile = \"ball-{rows}.png\"\nprofile_axis = \"left\"");
                 Step {
-                    map_source: Some(MapSource::Binary),
+                    map_source: Some(revmap_files::BINARY),
                     ..Step::new(
                         f64::from(rows),
                         Text::seen(eye(15.0, 1.9), MIDDLE).object(&keys).done(),

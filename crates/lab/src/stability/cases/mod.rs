@@ -11,7 +11,7 @@ use super::case::Case;
 use crate::report::folder::png;
 use crate::report::folder::{make, write_bytes};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::Picture;
+use revmap_files::Picture;
 use std::path::Path;
 
 /// Every case, in the order of the table.

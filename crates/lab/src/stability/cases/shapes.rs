@@ -2,7 +2,7 @@
 
 use super::{MIDDLE, SPINDLE, case, eye, silhouette};
 use crate::stability::case::{Case, Step, Text};
-use revmap::frame::Picture;
+use revmap_files::Picture;
 
 pub(super) fn cases() -> Vec<Case> {
     vec![

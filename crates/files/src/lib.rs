@@ -1,0 +1,79 @@
+//! Files of [`revmap`]: what turns a file into an outline, a texture or a scene, and a frame
+//! into a file.
+//!
+//! The library draws values in memory. This crate reads them: a profile from an SVG drawing or a
+//! picture, a whole scene from TOML.
+//!
+//! ```no_run
+//! use revmap::{gpu, scene::Object, settings::Settings};
+//! use revmap_files::ProfileAxis;
+//!
+//! // A scene file with all that it names, and one object more.
+//! let mut scene = revmap_files::scene("board.toml")?;
+//! let pawn = revmap_files::profile("pawn.svg", ProfileAxis::Center)?;
+//! scene.objects.push(Object::new("pawn", pawn.into()));
+//!
+//! let device = gpu::Device::open(None)?;
+//! let drawn = gpu::draw(&device, &scene, &Settings::default())?;
+//! revmap_files::write_png(&drawn.frame, "board.png")?;
+//! revmap_files::write_exr(&drawn.frame, "board.exr")?;
+//! # Ok::<(), revmap::Error>(())
+//! ```
+//!
+//! | file | read | written |
+//! |---|---|---|
+//! | profile: SVG, svgz, PNG, JPEG | [`profile`](profile()), [`profile_from_bytes`] | |
+//! | scene: TOML, with CSV for copies | [`scene`](scene()), [`SceneFile`] for scenes that differ in some keys | [`SceneFile::text`] |
+//! | textures: PNG, JPEG | [`color_map`], [`displacement_map`] | [`write_displacement_map`] |
+//! | shape map: PNG, EXR | [`shape_map`] | [`write_shape_map`] |
+//! | frame: PNG (colour), EXR (all planes) | [`read_exr`] | [`write_png`], [`write_exr`] |
+//!
+//! A failure is an [`Error`] that names file, key and remedy. No file is left half
+//! written ([`write_atomically`]).
+//!
+//! Pictures are [traced](trace()): their outline is the curve at which they pass one half of grey.
+//! [`raster`] has the way back, from an outline to pixels. The [sources of distance](MAP_SOURCES)
+//! that are measured in pixels exist for comparison with the papers.
+
+mod atomic_file;
+mod maps;
+mod openexr;
+mod picture;
+mod pixels;
+mod profile;
+pub mod raster;
+pub mod scene;
+mod trace;
+
+pub use atomic_file::{write_atomically, write_bytes};
+pub use maps::{
+    BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
+    shape_map, write_displacement_map, write_shape_map,
+};
+pub use openexr::{read_exr, write_exr};
+pub use picture::{Picture, write_png};
+pub use profile::{ProfileAxis, ProfileOptions, Smooth, profile, profile_from_bytes};
+pub use scene::{SceneFile, scene, warnings};
+pub use trace::trace;
+
+use revmap::error::{Error, ErrorKind};
+
+/// A picture as the bytes of a PNG.
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+fn png_bytes(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let picture = picture.into();
+    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
+}
+
+/// A failure of a file.
+fn file_fault(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::File, message)
+}
+
+/// A failure of a file's content.
+fn content_fault(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Content, message)
+}

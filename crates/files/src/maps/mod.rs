@@ -1,0 +1,98 @@
+//! Textures and shape maps as files, and distances that are measured in pixels.
+
+pub(crate) mod header;
+mod shape_map;
+mod source;
+mod texture;
+mod transform;
+
+pub use shape_map::{shape_map, write_shape_map};
+pub use source::{BINARY, COVERAGE, MAP_SOURCES};
+pub use texture::{color_map, displacement_map, write_displacement_map};
+
+use crate::file_fault;
+use header::KEYWORD;
+use revmap::error::Result;
+use revmap::maps::Projection;
+use std::path::{Path, PathBuf};
+
+/// The projection in a file's name before its extension, in upper or lower case.
+///
+/// ```
+/// use revmap::maps::Projection;
+/// use revmap_files::projection_of;
+/// assert_eq!(projection_of("maps/vase.spherical.png"), Some(Projection::Spherical));
+/// assert_eq!(projection_of("vase.png"), None);
+/// ```
+#[must_use]
+pub fn projection_of(path: impl AsRef<Path>) -> Option<Projection> {
+    let stem = PathBuf::from(path.as_ref().file_stem()?);
+    let name = stem.extension()?.to_str()?;
+    let mut named = Projection::NAMES.into_iter();
+    let found = named.find(|(own, _)| own.eq_ignore_ascii_case(name));
+    found.map(|(_, projection)| projection)
+}
+
+/// `path` with the projection before its extension, unless it has one already: `vase.png` becomes
+/// `vase.spherical.png`.
+#[must_use]
+pub fn mark_projection(path: impl AsRef<Path>, projection: Projection) -> PathBuf {
+    let path = path.as_ref();
+    match (projection_of(path), path.extension()) {
+        (None, Some(extension)) => {
+            let mut marked = std::ffi::OsString::from(projection.name());
+            marked.push(".");
+            marked.push(extension);
+            path.with_extension(marked)
+        }
+        _ => path.to_path_buf(),
+    }
+}
+
+/// A file's extension in lower case.
+fn extension(path: &Path) -> Option<String> {
+    path.extension()
+        .and_then(|e| e.to_str())
+        .map(str::to_ascii_lowercase)
+}
+
+/// A PNG with a header in its text.
+fn encode_png(
+    [width, height]: [u32; 2],
+    color: png::ColorType,
+    depth: png::BitDepth,
+    header: &str,
+    data: &[u8],
+) -> Result<Vec<u8>> {
+    let mut out = Vec::new();
+    let mut write = || -> std::result::Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(&mut out, width, height);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        encoder.add_text_chunk(KEYWORD.to_owned(), header.to_owned())?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(data)?;
+        writer.finish()
+    };
+    write().map_err(|e| file_fault(format!("the map cannot be written as PNG ({e})")))?;
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_carry_projections() {
+        for (name, p) in Projection::NAMES {
+            assert_eq!(projection_of(mark_projection("a/b.c.png", p)), Some(p));
+            let upper = format!("v.{}.png", name.to_uppercase());
+            assert_eq!(projection_of(upper), Some(p));
+        }
+        assert_eq!(projection_of("spherical.png"), None);
+        assert_eq!(
+            mark_projection("v.planar.png", Projection::Arc),
+            PathBuf::from("v.planar.png")
+        );
+    }
+}

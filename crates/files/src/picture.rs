@@ -1,0 +1,163 @@
+//! Writes frames as PNG: 8-bit sRGB RGBA, for viewing.
+
+use crate::{file_fault, write_atomically};
+use revmap::error::Result;
+use revmap::frame::{Frame, linear_from_srgb};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes the colour of a frame as 8-bit sRGB RGBA. Values are clamped to `[0, 1]`; alpha is
+/// linear.
+///
+/// # Errors
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
+/// written.
+pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
+    Picture::of(frame).write_png(path)
+}
+
+/// A picture for viewing: sRGB with alpha, 8 bits each, row 0 on top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width * height` values.
+    pub rgba: Vec<[u8; 4]>,
+}
+
+impl Picture {
+    /// The colour of a frame. Values are clamped to `[0, 1]`; alpha is linear.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Self {
+        let codes = Codes::new();
+        Self {
+            width: frame.width,
+            height: frame.height,
+            rgba: (frame.color.iter())
+                .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)])
+                .collect(),
+        }
+    }
+
+    /// Writes a PNG.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
+    /// written.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_atomically(path.as_ref(), |writer| self.encode_png(writer))
+    }
+
+    /// Writes the bytes of a PNG.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](revmap::error::ErrorKind::File) if they cannot be written, or if there
+    /// are not `width * height` pixels.
+    pub fn encode_png(&self, writer: impl Write) -> Result<()> {
+        let write = || -> std::result::Result<(), png::EncodingError> {
+            let mut encoder = png::Encoder::new(writer, self.width, self.height);
+            encoder.set_color(png::ColorType::Rgba);
+            encoder.set_depth(png::BitDepth::Eight);
+            encoder.set_compression(png::Compression::Fast);
+            encoder.set_filter(png::Filter::Adaptive);
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(self.rgba.as_flattened())?;
+            writer.finish()
+        };
+        write().map_err(|e| {
+            let full = matches!(&e, png::EncodingError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
+            let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
+            file_fault(format!("cannot be written: {why}"))
+        })
+    }
+}
+
+/// Linear values at which one code turns into the next. They give exact rounding to the nearest
+/// code without a power per value.
+struct Codes([f64; 255]);
+
+impl Codes {
+    fn new() -> Self {
+        Self(std::array::from_fn(|k| {
+            linear_from_srgb((k as f64 + 0.5) / 255.0)
+        }))
+    }
+
+    fn code(&self, linear: f32) -> u8 {
+        // A NaN is below no bound, so it becomes 0, not white.
+        self.0.partition_point(|&bound| f64::from(linear) >= bound) as u8
+    }
+}
+
+fn alpha_code(alpha: f32) -> u8 {
+    (f64::from(alpha).clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use revmap::frame::srgb_from_linear;
+
+    #[test]
+    fn codes_are_the_nearest_ones() {
+        let codes = Codes::new();
+        for k in 0..=100_000 {
+            let linear = k as f32 / 100_000.0;
+            let exact = srgb_from_linear(f64::from(linear)) * 255.0;
+            let code = f64::from(codes.code(linear));
+            assert!(
+                (code - exact).abs() <= 0.500_01,
+                "{linear}: {code} for {exact}"
+            );
+        }
+        for (linear, code) in [
+            (-1.0, 0),
+            (0.0, 0),
+            (1.0, 255),
+            (9.0, 255),
+            (f32::NAN, 0),
+            (f32::INFINITY, 255),
+        ] {
+            assert_eq!(codes.code(linear), code);
+        }
+        // Published pairs.
+        assert_eq!(codes.code(0.5), 188);
+        assert_eq!(codes.code(0.215_860_5), 128);
+        assert_eq!(
+            (alpha_code(f32::NAN), alpha_code(0.5), alpha_code(2.0)),
+            (0, 128, 255)
+        );
+    }
+
+    #[test]
+    fn a_picture_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut frame = Frame::new(3, 2, [0.0; 4]).unwrap();
+        frame.color[1] = [1.0, 0.5, 0.0, 1.0];
+        frame.color[3] = [0.0, 0.215_860_5, 5.0, 0.5];
+        write_png(&frame, &path).unwrap();
+        let read = image::open(&path).unwrap().to_rgba8();
+        assert_eq!(read.dimensions(), (3, 2));
+        assert_eq!(read.get_pixel(1, 0).0, [255, 188, 0, 255]);
+        assert_eq!(read.get_pixel(0, 1).0, [0, 128, 255, 128]);
+        assert_eq!(read.get_pixel(2, 1).0, [0, 0, 0, 0]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_one_line_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let frame = Frame::new(300, 200, [0.3; 4]).unwrap();
+        let text = write_png(&frame, &path).unwrap_err().to_string();
+        assert!(
+            text.contains("a.png") && text.contains("full") && !text.contains('\n'),
+            "{text}"
+        );
+    }
+}

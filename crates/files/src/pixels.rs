@@ -1,0 +1,225 @@
+//! Pictures from files: PNG and JPEG.
+
+use crate::file_fault;
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::maps::MAX_SIDE;
+use std::io::Cursor;
+use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
+
+/// Samples of 8 or of 16 bits.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Samples {
+    Byte(Vec<u8>),
+    Word(Vec<u16>),
+}
+
+/// A decoded picture, row 0 on top. Palettes and grey of less than 8 bits are expanded.
+#[derive(Debug)]
+pub(crate) struct Pixels {
+    pub width: u32,
+    pub height: u32,
+    /// Samples of a pixel: 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
+    pub channels: usize,
+    /// `width * height * channels` values.
+    pub samples: Samples,
+}
+
+impl Pixels {
+    /// Every pixel, turned by `to` from RGBA in `[0, 1]`, as stored; opaque where the file has no
+    /// alpha.
+    pub fn map<T: Send>(&self, to: impl Fn([f32; 4]) -> T + Sync) -> Vec<T> {
+        match &self.samples {
+            Samples::Byte(v) => mapped(v, self.channels, 255.0, to),
+            Samples::Word(v) => mapped(v, self.channels, 65_535.0, to),
+        }
+    }
+
+    /// Every pixel as RGBA of 8 bits.
+    pub fn rgba8(&self) -> Vec<[u8; 4]> {
+        self.map(|p| p.map(|v| (v * 255.0).round() as u8))
+    }
+
+    /// Every pixel as RGB of 16 bits.
+    pub fn rgb16(&self) -> Vec<[u16; 3]> {
+        self.map(|[r, g, b, _]| [r, g, b].map(|v| (v * 65_535.0).round() as u16))
+    }
+
+    /// Luminance of every pixel in `[0, 1]`, as stored; alpha counts for nothing.
+    pub fn luminance(&self) -> Vec<f32> {
+        self.map(|[r, g, b, _]| luminance([r, g, b]))
+    }
+}
+
+fn mapped<S: Copy + Into<f32> + Sync, T: Send>(
+    samples: &[S],
+    channels: usize,
+    full: f32,
+    to: impl Fn([f32; 4]) -> T + Sync,
+) -> Vec<T> {
+    let value = |s: S| s.into() / full;
+    let pixels = samples.par_chunks_exact(channels);
+    let rgba = |p: &[S]| match *p {
+        [v] => [value(v), value(v), value(v), 1.0],
+        [v, a] => [value(v), value(v), value(v), value(a)],
+        [r, g, b] => [value(r), value(g), value(b), 1.0],
+        [r, g, b, a, ..] => [r, g, b, a].map(value),
+        [] => [1.0; 4], // no picture has pixels without a sample
+    };
+    pixels.map(|p| to(rgba(p))).collect()
+}
+
+/// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
+pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    // Grey comes out exactly as it went in.
+    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+}
+
+/// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; the remedy names `kinds` of
+/// files.
+///
+/// The size is read and checked before anything is decoded.
+pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
+    let broken =
+        |e: String| file_fault(format!("the image is damaged ({e}); save or copy it again"));
+    let checked = |(width, height): (u32, u32)| {
+        if width > MAX_SIDE || height > MAX_SIDE {
+            return Err(file_fault(format!(
+                "the image has {width} x {height} pixels; {MAX_SIDE} x {MAX_SIDE} is the most, scale it down"
+            )));
+        }
+        Ok(())
+    };
+    if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+        let reader = Png::open(bytes).map_err(|e| broken(e.to_string()))?;
+        checked(reader.size())?;
+        return reader.pixels().map_err(|e| broken(e.to_string()));
+    }
+    if bytes.starts_with(b"\xff\xd8\xff") {
+        let mut reader = jpeg(bytes).map_err(|e| broken(e.to_string()))?;
+        let (width, height) = reader.dimensions().unwrap_or_default();
+        let (width, height) = (width as u32, height as u32); // at most 65535
+        checked((width, height))?;
+        let samples = reader.decode().map_err(|e| broken(e.to_string()))?;
+        return Ok(Pixels {
+            width,
+            height,
+            channels: reader.output_colorspace().map_or(3, |c| c.num_components()),
+            samples: Samples::Byte(samples),
+        });
+    }
+    Err(file_fault(format!(
+        "is no picture that can be read; give a {kinds} file"
+    )))
+}
+
+/// A PNG whose header was read.
+pub(crate) struct Png<'a>(png::Reader<Cursor<&'a [u8]>>);
+
+impl<'a> Png<'a> {
+    pub fn open(bytes: &'a [u8]) -> std::result::Result<Self, png::DecodingError> {
+        // Callers check the size; the decoder's own guess at a limit would refuse large pictures of
+        // 16 bits.
+        let limits = png::Limits { bytes: usize::MAX };
+        let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+        decoder.set_transformations(png::Transformations::EXPAND);
+        decoder.read_info().map(Self)
+    }
+
+    pub fn size(&self) -> (u32, u32) {
+        self.0.info().size()
+    }
+
+    pub fn pixels(mut self) -> std::result::Result<Pixels, png::DecodingError> {
+        // A size that overflows is that of a picture that does not fit into memory.
+        let size = self.0.output_buffer_size();
+        let mut bytes = vec![0; size.ok_or(png::DecodingError::LimitsExceeded)?];
+        let frame = self.0.next_frame(&mut bytes)?;
+        bytes.truncate(frame.buffer_size());
+        let samples = if frame.bit_depth == png::BitDepth::Sixteen {
+            let words = bytes.as_chunks().0.iter();
+            Samples::Word(words.map(|w| u16::from_be_bytes(*w)).collect())
+        } else {
+            Samples::Byte(bytes)
+        };
+        Ok(Pixels {
+            width: frame.width,
+            height: frame.height,
+            channels: frame.color_type.samples(),
+            samples,
+        })
+    }
+}
+
+/// A JPEG whose headers were read, to be decoded to grey or RGB.
+fn jpeg(bytes: &[u8]) -> std::result::Result<JpegDecoder<ZCursor<&[u8]>>, DecodeErrors> {
+    let options = DecoderOptions::default()
+        .set_strict_mode(false)
+        .set_max_width(usize::MAX)
+        .set_max_height(usize::MAX);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers()?;
+    let color = match decoder.input_colorspace() {
+        Some(ColorSpace::Luma) => ColorSpace::Luma,
+        _ => ColorSpace::RGB,
+    };
+    decoder.set_options(options.jpeg_set_out_colorspace(color));
+    Ok(decoder)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use image::{DynamicImage, ImageFormat, RgbaImage};
+
+    /// What the image crate makes of every kind of pixels, ours makes of its file.
+    #[test]
+    fn pixels_are_those_of_another_decoder() {
+        let picture = DynamicImage::from(RgbaImage::from_fn(7, 5, |x, y| {
+            image::Rgba([
+                (x * 40) as u8,
+                (y * 60) as u8,
+                (x * y) as u8,
+                (x * 30 + 7) as u8,
+            ])
+        }));
+        let kinds = [
+            picture.to_luma8().into(),
+            picture.to_luma_alpha8().into(),
+            picture.to_rgb8().into(),
+            picture.clone(),
+            picture.to_luma16().into(),
+            DynamicImage::from(picture.to_luma_alpha16()),
+            picture.to_rgb16().into(),
+            picture.to_rgba16().into(),
+        ];
+        for (number, kind) in kinds.into_iter().enumerate() {
+            let ours = decode(&crate::png_bytes(kind.clone()), "PNG").unwrap();
+            assert_eq!(
+                (ours.width, ours.height, ours.channels),
+                (7, 5, number % 4 + 1)
+            );
+            assert_eq!(ours.rgba8().as_flattened(), kind.to_rgba8().as_raw());
+            assert_eq!(ours.rgb16().as_flattened(), kind.to_rgb16().as_raw());
+        }
+    }
+
+    #[test]
+    fn jpegs_are_those_of_another_decoder() {
+        let picture = DynamicImage::from(image::RgbImage::from_fn(33, 21, |x, y| {
+            image::Rgb([(x * 7) as u8, (y * 12) as u8, 90])
+        }));
+        for kind in [picture.clone(), picture.to_luma8().into()] {
+            let mut file = Cursor::new(Vec::new());
+            kind.write_to(&mut file, ImageFormat::Jpeg).unwrap();
+            let theirs = image::load_from_memory(file.get_ref()).unwrap();
+            let ours = decode(file.get_ref(), "JPEG").unwrap();
+            assert_eq!(ours.rgba8().as_flattened(), theirs.to_rgba8().as_raw());
+            let half = &file.get_ref()[..file.get_ref().len() / 4];
+            assert!(decode(half, "JPEG").is_err());
+        }
+    }
+}

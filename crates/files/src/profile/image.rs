@@ -1,0 +1,192 @@
+//! Profiles from pictures: dark is solid.
+
+use super::{ProfileAxis, ProfileOptions, full_fault, options};
+use crate::content_fault;
+use crate::maps::header::Header;
+use crate::pixels::{decode, luminance};
+use crate::trace::{trace, trace_split};
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::profile::{Profile, Raster};
+
+/// Files that profiles are read from.
+const KINDS: &str = "PNG, JPEG or SVG";
+
+/// A profile from the bytes of a PNG or JPEG.
+///
+/// The picture is laid over white in its own (sRGB) values. A pixel's coverage is its darkness, and
+/// everything darker than one half is solid. Width and height are read and checked before anything
+/// is decoded.
+///
+/// The papers' RGBA texture, if this crate wrote it, is read as a shape map: its channel A is the
+/// form, its axis the left edge.
+pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile> {
+    if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
+        return baked(bytes, &header);
+    }
+    let picture = decode(bytes, KINDS)?;
+    let (width, height) = (picture.width, picture.height);
+    if width < 2 || height < 2 {
+        return Err(content_fault(format!(
+            "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
+        )));
+    }
+    // Darkness over white; with `invert`, lightness over black.
+    let dark = picture.map(|[r, g, b, alpha]| {
+        let grey = luminance([r, g, b]);
+        alpha * if options.invert { grey } else { 1.0 - grey }
+    });
+    // If the axis is the middle of an odd width, it splits the first column that is used.
+    let first = match options.axis {
+        ProfileAxis::Left => 0,
+        ProfileAxis::Center => width / 2,
+    };
+    let split = options.axis == ProfileAxis::Center && !width.is_multiple_of(2);
+    let rows = dark.par_chunks_exact(width as usize);
+    let half = rows.flat_map_iter(|row| row[first as usize..].iter().copied());
+    let half_plane = Raster {
+        columns: width - first,
+        rows: height,
+        coverage: half.collect(),
+    };
+    let raster = options.apply(half_plane, split);
+    if raster.coverage.par_iter().all(|&c| c > 0.5) {
+        return Err(full_fault("image"));
+    }
+    let mut profile = trace_split(raster.clone(), split)?;
+    profile.warnings = options::warnings(&raster, split, &profile.outline, options);
+    Ok(profile)
+}
+
+/// The form of a shape map in its file.
+fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
+    let picture = decode(bytes, KINDS)?;
+    let raster = Raster {
+        columns: picture.width,
+        rows: picture.height,
+        coverage: picture.map(|[.., alpha]| alpha),
+    };
+    Ok(Profile {
+        radius: header.number("radius")?,
+        ..trace(raster)?
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use super::*;
+    use crate::png_bytes as png;
+    use image::{DynamicImage, GrayImage, Luma, Rgba, RgbaImage};
+
+    fn raster(bytes: &[u8], axis: ProfileAxis) -> Raster {
+        profile(bytes, &axis.into()).unwrap().raster.unwrap()
+    }
+
+    /// The same darkness per pixel in every kind of pixel that PNG has.
+    #[test]
+    fn kinds_of_pixels_agree() {
+        let dark = |x: u32, y: u32| if x < 2 && y > 0 { 1.0f32 } else { 0.2 };
+        let grey8 = GrayImage::from_fn(4, 4, |x, y| Luma([(255.0 * (1.0 - dark(x, y))) as u8]));
+        let expected = raster(&png(grey8.clone()), ProfileAxis::Left);
+        assert_eq!((expected.columns, expected.rows), (4, 4));
+        assert!((expected.coverage[0] - 0.2).abs() < 1e-6);
+        assert_eq!(expected.coverage[4], 1.0);
+        let picture = DynamicImage::ImageLuma8(grey8);
+        // Black whose opacity is the coverage: the same picture after it is laid over white.
+        let alpha = RgbaImage::from_fn(4, 4, |x, y| {
+            Rgba([0, 0, 0, (255.0 * dark(x, y)).round() as u8])
+        });
+        let kinds = [
+            DynamicImage::from(picture.to_luma_alpha8()),
+            picture.to_rgb8().into(),
+            picture.to_rgba8().into(),
+            picture.to_luma16().into(),
+            DynamicImage::from(picture.to_luma_alpha16()),
+            picture.to_rgb16().into(),
+            picture.to_rgba16().into(),
+            alpha.into(),
+        ];
+        for kind in kinds {
+            let got = raster(&png(kind), ProfileAxis::Left);
+            for (a, b) in got.coverage.iter().zip(&expected.coverage) {
+                assert!((a - b).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn one_bit_and_palette() {
+        // Written byte by byte, since the image crate writes neither.
+        let write = |depth, color, palette: Option<Vec<u8>>, data: &[u8]| {
+            let mut out = Vec::new();
+            let mut e = png::Encoder::new(&mut out, 8, 2);
+            e.set_depth(depth);
+            e.set_color(color);
+            if let Some(p) = palette {
+                e.set_palette(p);
+            }
+            e.write_header().unwrap().write_image_data(data).unwrap();
+            out
+        };
+        let bits = write(
+            png::BitDepth::One,
+            png::ColorType::Grayscale,
+            None,
+            &[0x0f, 0xff],
+        );
+        let indexed = write(
+            png::BitDepth::One,
+            png::ColorType::Indexed,
+            Some(vec![10, 20, 10, 250, 255, 255]),
+            &[0x0f, 0xff],
+        );
+        for bytes in [bits, indexed] {
+            let r = raster(&bytes, ProfileAxis::Left);
+            let solid: Vec<bool> = r.coverage.iter().map(|&c| c > 0.5).collect();
+            assert_eq!(
+                solid[..8],
+                [true, true, true, true, false, false, false, false]
+            );
+            assert!(solid[8..].iter().all(|&s| !s));
+        }
+    }
+
+    #[test]
+    fn the_right_half_of_even_and_odd_widths() {
+        let even = GrayImage::from_fn(6, 3, |x, _| Luma([(x * 40) as u8]));
+        let r = raster(&png(even), ProfileAxis::Center);
+        assert_eq!((r.columns, r.rows), (3, 3));
+        assert!((r.coverage[0] - (1.0 - 120.0 / 255.0)).abs() < 1e-6);
+        // Odd: 5 x 3, the middle column and its neighbours solid in the lower rows.
+        let odd = GrayImage::from_fn(5, 3, |x, y| {
+            Luma([if y > 0 && (1..4).contains(&x) { 0 } else { 255 }])
+        });
+        let p = profile(&png(odd), &ProfileAxis::Center.into()).unwrap();
+        assert!((p.radius - 5.0 / 6.0).abs() < 1e-15);
+        // The solid is one column and a half wide and two rows high.
+        assert_eq!(p.raster, None);
+        let b = p.outline.bounds().unwrap();
+        let found = [b.r_min, b.r_max, b.z_min, b.z_max];
+        for (found, wanted) in found.into_iter().zip([0.0, 0.5, 0.0, 2.0 / 3.0]) {
+            assert!((found - wanted).abs() < 0.12 / 3.0, "{b:?}");
+        }
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let text = |bytes: &[u8]| {
+            profile(bytes, &ProfileAxis::Left.into())
+                .unwrap_err()
+                .to_string()
+        };
+        let filled = |v| png(GrayImage::from_pixel(8, 8, Luma([v])));
+        assert!(text(&filled(255)).contains("empty"));
+        assert!(text(&filled(0)).contains("full"));
+        assert!(text(&png(GrayImage::from_pixel(1, 1, Luma([0])))).contains("1 x 1"));
+        let whole = png(GrayImage::from_fn(64, 64, |x, y| Luma([(x ^ y) as u8 * 4])));
+        assert!(text(&whole[..whole.len() / 2]).contains("damaged"));
+        assert!(text(&whole[..20]).contains("damaged"));
+        assert!(text(b"BM not a picture").contains("PNG, JPEG or SVG"));
+    }
+}

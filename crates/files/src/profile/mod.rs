@@ -1,0 +1,91 @@
+//! Profiles from drawings and pictures.
+
+mod drawing;
+mod image;
+mod noise;
+mod options;
+mod paint;
+mod svg;
+
+pub use noise::Smooth;
+pub use options::{ProfileAxis, ProfileOptions};
+
+use crate::{content_fault, file_fault};
+use revmap::error::{Error, Result};
+use revmap::profile::Profile;
+use std::path::Path;
+
+/// Reads a profile from a file, by its content: PNG, JPEG, or SVG (also gzip-compressed).
+///
+/// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the bottom
+/// edge `z = 0`. Everything darker than one half over white is solid, unless the options say
+/// otherwise. Pictures are traced as by [`trace`](crate::trace()). The curves of drawings are
+/// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, and half
+/// of that with the axis in the middle.
+///
+/// ```no_run
+/// let pawn = revmap_files::profile("pawn.svg", revmap_files::ProfileAxis::Center)?;
+/// # Ok::<(), revmap::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File) for a file that is missing, a folder,
+/// damaged, or neither picture nor drawing.
+/// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) for a picture of more than 16384 or
+/// less than 2 pixels on a side, all light or all dark, or a drawing with parts that have no
+/// outline (text, pictures, patterns, masks, filters). The error names the file in both cases.
+pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Profile> {
+    let (path, options) = (path.as_ref(), options.into());
+    let read = || profile_from_bytes(&read_file(path)?, options);
+    read().map_err(|e| e.in_file(path))
+}
+
+/// Reads a profile from the bytes of a file, such as one embedded in the program; otherwise like
+/// [`profile`].
+///
+/// # Errors
+/// The errors of [`profile`], without a file name.
+pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Profile> {
+    let options = options.into();
+    options.check()?;
+    if is_drawing(bytes) {
+        drawing::profile(bytes, options.for_drawing()?)
+    } else {
+        image::profile(bytes, &options)
+    }
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>> {
+    if path.is_dir() {
+        return Err(file_fault("is a folder; give a PNG, JPEG or SVG file"));
+    }
+    std::fs::read(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => file_fault("does not exist; give a PNG, JPEG or SVG file"),
+        _ => file_fault(format!(
+            "cannot be read ({e}); check the file's permissions"
+        )),
+    })
+}
+
+/// Returns true if the bytes are XML, after blanks and a byte order mark, or gzip.
+fn is_drawing(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let first = text.iter().find(|b| !b.is_ascii_whitespace());
+    first == Some(&b'<') || bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// The failure of a picture without anything dark.
+pub(crate) fn empty_fault(what: &str) -> Error {
+    content_fault(format!(
+        "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
+         white, or set profile_threshold, profile_invert or profile_axis"
+    ))
+}
+
+/// The failure of a picture that is dark all over.
+fn full_fault(what: &str) -> Error {
+    content_fault(format!(
+        "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
+         or set profile_threshold or profile_invert (a plain cylinder: use a polygon)"
+    ))
+}

@@ -1,0 +1,297 @@
+//! Options for reading a picture: the grey level that is solid and the amount of noise that is
+//! blurred away. Also warnings about a picture that looks unintended.
+
+use super::noise::{ROUGH, Smooth};
+use crate::content_fault;
+use crate::trace::roughness;
+use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::profile::{Outline, Raster, loop_area};
+
+/// The part of the picture that is the half-plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProfileAxis {
+    /// The axis is the left edge: the picture is a half profile.
+    Left,
+    /// The axis is the middle: the picture is a whole silhouette, and its right half is used.
+    #[default]
+    Center,
+}
+
+impl ProfileAxis {
+    /// Every value with its name in options and scene files.
+    pub const NAMES: [(&'static str, Self); 2] = [("left", Self::Left), ("center", Self::Center)];
+}
+
+/// Options for reading a profile from a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileOptions {
+    /// The part of the picture that is the half-plane.
+    pub axis: ProfileAxis,
+    /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
+    /// own (sRGB) values. For pictures only.
+    pub threshold: f64,
+    /// Light is solid instead of dark, over black: transparent pixels stay empty. For pictures
+    /// only.
+    pub invert: bool,
+    /// Gaussian blur that removes noise before the outline is traced. For pictures only.
+    pub smooth: Smooth,
+}
+
+impl Default for ProfileOptions {
+    fn default() -> Self {
+        Self {
+            axis: ProfileAxis::default(),
+            threshold: 0.5,
+            invert: false,
+            smooth: Smooth::default(),
+        }
+    }
+}
+
+impl From<ProfileAxis> for ProfileOptions {
+    fn from(axis: ProfileAxis) -> Self {
+        Self {
+            axis,
+            ..Self::default()
+        }
+    }
+}
+
+impl ProfileOptions {
+    /// The largest standard deviation of the blur, pixels.
+    pub const MOST_SMOOTH: f64 = 100.0;
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content), with the key as in a scene file.
+    pub fn check(&self) -> Result<()> {
+        let wrong = |key: &str, message: String| Err(content_fault(message).at_key(key));
+        if !(self.threshold > 0.0 && self.threshold < 1.0) {
+            let message = format!("is {:?}; give a grey level between 0 and 1", self.threshold);
+            return wrong("profile_threshold", message);
+        }
+        if let Smooth::Pixels(pixels) = self.smooth
+            && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
+        {
+            let most = Self::MOST_SMOOTH;
+            let message = format!("is {pixels:?}; give pixels from 0 to {most}, or \"auto\"");
+            return wrong("profile_smooth", message);
+        }
+        Ok(())
+    }
+
+    /// Refuses options that apply only to pictures. [`Smooth::Auto`] is accepted, since a drawing
+    /// has no noise.
+    pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
+        let plain = Self::from(self.axis);
+        let key = match self {
+            _ if self.threshold != plain.threshold => "profile_threshold",
+            _ if self.invert => "profile_invert",
+            _ if ![plain.smooth, Smooth::Auto].contains(&self.smooth) => "profile_smooth",
+            _ => return Ok(self.axis),
+        };
+        let message = "counts for pictures alone; leave it out for a drawing";
+        Err(content_fault(message).at_key(key))
+    }
+
+    /// The darkness of a picture's half-plane as coverage, with the threshold at one half and noise
+    /// blurred away. `split`: the axis is the middle of column 0.
+    pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
+        // Everything darker than this is solid.
+        let edge = 1.0
+            - if self.invert {
+                1.0 - self.threshold
+            } else {
+                self.threshold
+            } as f32;
+        let (below, above) = (0.5 / edge, 0.5 / (1.0 - edge));
+        raster.coverage.par_iter_mut().for_each(|c| {
+            if edge != 0.5 {
+                *c = if *c < edge {
+                    *c * below
+                } else {
+                    1.0 - (1.0 - *c) * above
+                };
+            }
+        });
+        self.smooth.apply(&mut raster, split);
+        raster
+    }
+}
+
+/// Loops smaller than this many pixels are specks.
+const SPECK: f64 = 9.0;
+/// This many specks are noise.
+const NOISE: usize = 8;
+
+/// Features of a picture and its outline that look unintended: one sentence each, with the key that
+/// changes it. `split`: the axis is the middle of column 0.
+pub(super) fn warnings(
+    raster: &Raster,
+    split: bool,
+    outline: &Outline,
+    options: &ProfileOptions,
+) -> Vec<String> {
+    let mut found = Vec::new();
+    if !options.invert && is_light_on_dark(raster) {
+        found.push(
+            "the picture looks like a light solid on dark ground; set profile_invert = true if light is solid"
+                .to_owned(),
+        );
+    }
+    let pixel = f64::from(raster.rows).powi(-2);
+    let specks = outline
+        .loops
+        .iter()
+        .filter(|l| loop_area(l).abs() < SPECK * pixel);
+    let specks = specks.count();
+    if specks >= NOISE {
+        found.push(format!(
+            "the picture is noisy: {specks} specks of less than {SPECK} pixels; profile_smooth = 2 blurs them away"
+        ));
+    } else if options.smooth != Smooth::Auto {
+        let rough = roughness(raster, split);
+        if rough >= ROUGH {
+            found.push(format!(
+                "the outline is rough ({rough:.3} texels rms, by noise or compression); set profile_smooth = \"auto\""
+            ));
+        }
+    }
+    found
+}
+
+/// Returns true if the ground is dark and the middle is light.
+fn is_light_on_dark(raster: &Raster) -> bool {
+    let columns = raster.columns as usize;
+    let dark = |values: &mut dyn Iterator<Item = &f32>| {
+        let (mut count, mut all) = (0.0, 0.0f64);
+        for value in values {
+            count += f64::from(u8::from(*value > 0.5));
+            all += 1.0;
+        }
+        count / all.max(1.0)
+    };
+    let column = |k: usize| raster.coverage.iter().skip(k).step_by(columns.max(1));
+    dark(&mut column(columns.saturating_sub(1))) >= 0.95
+        && dark(&mut raster.coverage.iter().take(columns)) >= 0.6
+        && dark(&mut column(0)) <= 0.7
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::{png_bytes, profile_from_bytes};
+    use image::{GrayImage, Luma};
+    use revmap::profile::Profile;
+
+    const SIDE: u32 = 96;
+
+    /// A ball in the middle of a picture.
+    fn ball(shade: impl Fn(u32, u32, bool) -> u8) -> Vec<u8> {
+        png_bytes(GrayImage::from_fn(SIDE, SIDE, |x, y| {
+            let from = |v: u32| f64::from(v) + 0.5 - 0.5 * f64::from(SIDE);
+            Luma([shade(x, y, from(x).hypot(from(y)) < 30.0)])
+        }))
+    }
+
+    fn solid_and_ground(solid: u8, ground: u8) -> Vec<u8> {
+        ball(|_, _, within| if within { solid } else { ground })
+    }
+
+    /// The result of reading a picture, with options that differ from the default.
+    fn read(bytes: &[u8], change: impl Fn(&mut ProfileOptions)) -> Result<Profile> {
+        let mut options = ProfileOptions::default();
+        change(&mut options);
+        profile_from_bytes(bytes, options)
+    }
+
+    /// Asserts that the outline is the ball's, to within `tolerance` pixels, without a warning.
+    #[track_caller]
+    fn assert_ball(profile: &Result<Profile>, tolerance: f64) {
+        let profile = profile.as_ref().unwrap();
+        assert!(profile.warnings.is_empty(), "{:?}", profile.warnings);
+        assert_eq!(profile.outline.loops.len(), 1);
+        for s in profile.outline.surface_segments() {
+            let radius = (s.a - glam::DVec2::new(0.0, 0.5)).length() * f64::from(SIDE);
+            assert!((radius - 30.0).abs() < tolerance, "{radius}");
+        }
+    }
+
+    #[track_caller]
+    fn assert_warned(bytes: &[u8], words: &str) {
+        let warnings = read(bytes, |_| {}).unwrap().warnings;
+        assert!(warnings[0].contains(words), "{warnings:?}");
+    }
+
+    #[test]
+    fn light_on_dark_is_noticed_and_turned_round() {
+        let light = solid_and_ground(255, 0);
+        assert_warned(&light, "profile_invert");
+        assert_ball(&read(&light, |o| o.invert = true), 0.6);
+        // The usual case gives no warning. A hollow glass that fills its picture is not a light
+        // solid either.
+        let glass = ball(|x, y, _| match x.abs_diff(SIDE / 2) < 30 && y < 80 {
+            true => 255,
+            false => 0,
+        });
+        for usual in [solid_and_ground(0, 255), glass] {
+            assert!(read(&usual, |_| {}).unwrap().warnings.is_empty());
+        }
+    }
+
+    #[test]
+    fn the_threshold_parts_greys() {
+        // A ball of grey 150 on ground of grey 220 is all light by default.
+        let grey = solid_and_ground(150, 220);
+        assert!(read(&grey, |_| {}).is_err());
+        assert_ball(&read(&grey, |o| o.threshold = 0.7), 0.6);
+        // With `invert`, light is everything above the threshold.
+        let inverted = read(&solid_and_ground(220, 150), |o| {
+            (o.threshold, o.invert) = (0.7, true);
+        });
+        assert_ball(&inverted, 0.6);
+    }
+
+    #[test]
+    fn noise_is_noticed_and_blurred_away() {
+        let mut state = 1u32;
+        let mut noise = Vec::new();
+        for _ in 0..SIDE * SIDE {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            noise.push((state >> 24) as f64 / 255.0 - 0.5);
+        }
+        let noisy = ball(|x, y, solid| {
+            let grey = if solid { 60.0 } else { 190.0 };
+            (grey + 180.0 * noise[(y * SIDE + x) as usize]).clamp(0.0, 255.0) as u8
+        });
+        assert_warned(&noisy, "profile_smooth = 2");
+        assert_ball(&read(&noisy, |o| o.smooth = Smooth::Pixels(2.0)), 2.5);
+    }
+
+    #[test]
+    fn a_blur_is_even_about_the_axis() {
+        let clean = solid_and_ground(0, 255);
+        let profile = read(&clean, |o| o.smooth = Smooth::Pixels(3.0));
+        assert_ball(&profile, 0.8);
+        // Mirrored at the axis, the ball's poles stay level: the second derivative moves the edge
+        // alike all round.
+        let poles = profile.unwrap().outline.bounds().unwrap();
+        assert!((poles.z_max - 0.5 - (0.5 - poles.z_min)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused() {
+        let clean = solid_and_ground(0, 255);
+        for threshold in [0.0, 1.0, f64::NAN, -3.0] {
+            let error = read(&clean, |o| o.threshold = threshold).unwrap_err();
+            assert_eq!(error.key.as_deref(), Some("profile_threshold"));
+        }
+        for smooth in [-1.0, 101.0, f64::NAN] {
+            let error = read(&clean, |o| o.smooth = Smooth::Pixels(smooth)).unwrap_err();
+            assert_eq!(error.key.as_deref(), Some("profile_smooth"));
+        }
+    }
+}

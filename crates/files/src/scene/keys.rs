@@ -1,0 +1,342 @@
+//! A table of a scene file: only known keys, each read as its required type. Every message has the
+//! key's full path.
+
+use crate::content_fault;
+use glam::DVec3;
+use revmap::error::{Error, Result};
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// A table whose keys are all known.
+pub(super) struct Keys<'a> {
+    table: &'a Table,
+    path: String,
+}
+
+/// A type of values.
+pub(super) trait Entry: Sized {
+    /// The type in words.
+    fn wanted() -> String;
+    /// The value, or in words what stands in its place.
+    fn read(value: &Value) -> std::result::Result<Self, String>;
+}
+
+/// A type of values that lists hold, too.
+trait Item: Entry + Copy + Default {
+    /// Several values in words.
+    const SEVERAL: &'static str;
+    fn item(value: &Value) -> Option<Self>;
+}
+
+macro_rules! items {
+    ($($item:ty: $one:literal, $several:literal, $read:expr;)*) => {$(
+        impl Item for $item {
+            const SEVERAL: &'static str = $several;
+
+            fn item(value: &Value) -> Option<Self> {
+                $read(value)
+            }
+        }
+
+        impl Entry for $item {
+            fn wanted() -> String {
+                $one.to_owned()
+            }
+
+            fn read(value: &Value) -> std::result::Result<Self, String> {
+                Self::item(value).ok_or_else(|| describe(value))
+            }
+        }
+    )*};
+}
+items! {
+    f64: "a number", "numbers", number;
+    // Numbers that overflow become infinite, and the scene's check refuses them.
+    f32: "a number", "numbers", |v| number(v).map(|x| x as Self);
+    u32: "a whole number that is not negative", "whole numbers that are not negative",
+        |v: &Value| v.as_integer().and_then(|i| Self::try_from(i).ok());
+    bool: "true or false", "of true or false", Value::as_bool;
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(x) => Some(*x),
+        Value::Integer(i) => Some(*i as f64),
+        _ => None,
+    }
+}
+
+impl<T: Item, const N: usize> Entry for [T; N] {
+    fn wanted() -> String {
+        format!("{N} {} in brackets", T::SEVERAL)
+    }
+
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        let items = value.as_array().ok_or_else(|| describe(value))?;
+        if items.len() != N {
+            return Err(format!("{} values", items.len()));
+        }
+        let mut out = [T::default(); N];
+        for (slot, item) in out.iter_mut().zip(items) {
+            *slot = T::item(item).ok_or_else(|| describe(item))?;
+        }
+        Ok(out)
+    }
+}
+
+impl Entry for DVec3 {
+    fn wanted() -> String {
+        <[f64; 3]>::wanted()
+    }
+
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        <[f64; 3]>::read(value).map(Self::from_array)
+    }
+}
+
+impl<'a> Keys<'a> {
+    /// Checks the keys of `table`, whose path is `path` (`""`: the whole file).
+    ///
+    /// # Errors
+    /// The first key that is not in `known`, a list of words, with the nearest known key.
+    pub(super) fn new(table: &'a Table, path: impl Into<String>, known: &str) -> Result<Self> {
+        let path = path.into();
+        let keys = Self { table, path };
+        let known: Vec<&str> = known.split_whitespace().collect();
+        match table.keys().find(|key| !known.contains(&key.as_str())) {
+            None => Ok(keys),
+            Some(stranger) => Err(keys.fail(stranger, unknown(stranger, &known))),
+        }
+    }
+
+    /// The full path of `key`.
+    pub(super) fn place(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    /// A failure at `key`.
+    pub(super) fn fail(&self, key: &str, message: impl Into<String>) -> Error {
+        content_fault(message).at_key(self.place(key))
+    }
+
+    fn wrong(&self, key: &str, wanted: &str, found: &str) -> Error {
+        self.fail(key, format!("expected {wanted}, found {found}"))
+    }
+
+    /// The value of `key`, turned by `read`; an error names what is `wanted`.
+    fn read<T>(
+        &self,
+        key: &str,
+        wanted: &str,
+        read: impl Fn(&'a Value) -> Option<T>,
+    ) -> Result<Option<T>> {
+        let value = |v| read(v).ok_or_else(|| self.wrong(key, wanted, &describe(v)));
+        self.table.get(key).map(value).transpose()
+    }
+
+    /// The value of `key`, if the table has it.
+    pub(super) fn get<T: Entry>(&self, key: &str) -> Result<Option<T>> {
+        let read = |v| T::read(v).map_err(|found| self.wrong(key, &T::wanted(), &found));
+        self.table.get(key).map(read).transpose()
+    }
+
+    /// Replaces `slot` by the value of `key`, if the table has it.
+    pub(super) fn set<T: Entry>(&self, key: &str, slot: &mut T) -> Result<()> {
+        if let Some(value) = self.get(key)? {
+            *slot = value;
+        }
+        Ok(())
+    }
+
+    /// A number; `Some(None)` for the word `"auto"`.
+    pub(super) fn number_or_auto(&self, key: &str) -> Result<Option<Option<f64>>> {
+        self.read(key, "a number or \"auto\"", |value| match value {
+            Value::String(word) if word == "auto" => Some(None),
+            other => number(other).map(Some),
+        })
+    }
+
+    fn text(&self, key: &str) -> Result<Option<&'a str>> {
+        self.read(key, "text in quotes", Value::as_str)
+    }
+
+    /// A file name, relative to `folder`.
+    pub(super) fn file(&self, key: &str, folder: &Path) -> Result<Option<PathBuf>> {
+        match self.text(key)? {
+            Some("") => Err(self.fail(
+                key,
+                "the file name is empty; name a file or leave the key out",
+            )),
+            name => Ok(name.map(|name| folder.join(name))),
+        }
+    }
+
+    /// Replaces `slot` by the value of the name in `names` that the table gives, if it does.
+    pub(super) fn choose<T: Copy>(
+        &self,
+        key: &str,
+        names: &[(&str, T)],
+        slot: &mut T,
+    ) -> Result<()> {
+        let Some(text) = self.text(key)? else {
+            return Ok(());
+        };
+        let Some((_, value)) = names.iter().find(|(name, _)| *name == text) else {
+            let all: Vec<_> = names.iter().map(|(name, _)| format!("{name:?}")).collect();
+            let message = format!("{text:?} is not known; give one of {}", all.join(", "));
+            return Err(self.fail(key, message));
+        };
+        *slot = *value;
+        Ok(())
+    }
+
+    /// A list of pairs of numbers, of any length.
+    pub(super) fn pairs(&self, key: &str) -> Result<Option<Vec<[f64; 2]>>> {
+        let items = self.read(key, "a list of [r, z] pairs of numbers", Value::as_array)?;
+        let pair = |(i, item): (usize, &Value)| {
+            let wanted = "a pair of numbers [r, z]";
+            let place = format!("{key}.{i}");
+            <[f64; 2]>::read(item).map_err(|_| self.wrong(&place, wanted, &describe(item)))
+        };
+        let pairs = items.map(|items| items.iter().enumerate().map(pair).collect());
+        pairs.transpose()
+    }
+
+    /// A table below this one.
+    pub(super) fn table(&self, key: &str) -> Result<Option<&'a Table>> {
+        self.read(key, &format!("a table [{key}]"), Value::as_table)
+    }
+
+    /// A list of tables below this one.
+    pub(super) fn tables(&self, key: &str) -> Result<Option<Vec<&'a Table>>> {
+        let wanted = format!("tables, each begun by [[{key}]]");
+        let Some(items) = self.read(key, &wanted, Value::as_array)? else {
+            return Ok(None);
+        };
+        let table = |item: &'a Value| {
+            let table = item.as_table();
+            table.ok_or_else(|| self.wrong(key, &wanted, &describe(item)))
+        };
+        items.iter().map(table).collect::<Result<_>>().map(Some)
+    }
+}
+
+/// A value as messages show it: its type, and the value itself if it is short.
+fn describe(value: &Value) -> String {
+    match value {
+        Value::String(s) if s.chars().count() <= 40 => format!("the text {s:?}"),
+        Value::String(_) => "a long text".to_owned(),
+        Value::Integer(i) => format!("{i}"),
+        Value::Float(x) => format!("{x:?}"),
+        Value::Boolean(b) => format!("{b}"),
+        Value::Datetime(d) => format!("the date {d}"),
+        Value::Array(a) => format!("a list of {} values", a.len()),
+        Value::Table(_) => "a table".to_owned(),
+    }
+}
+
+/// The message for an unknown key.
+fn unknown(stranger: &str, known: &[&str]) -> String {
+    match nearest(stranger, known) {
+        Some(friend) => format!("unknown key; did you mean `{friend}`?"),
+        None => format!("unknown key; known here: {}", known.join(", ")),
+    }
+}
+
+/// The name closest to `word`, if it is close enough to be a spelling of it.
+fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
+    let word = word.to_lowercase().replace('-', "_");
+    let allowed = (word.chars().count() / 3).clamp(1, 3);
+    names
+        .iter()
+        .map(|name| (strsim::osa_distance(&word, name), *name))
+        .filter(|(distance, _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const KNOWN: &str = "bevel chamfer map_rows repeat mirror name points";
+
+    fn read(text: &str) -> Table {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn a_slip_is_met_with_the_nearest_key_and_nonsense_with_all() {
+        let words: Vec<&str> = KNOWN.split(' ').collect();
+        for (slip, meant) in [
+            ("bevle", Some("bevel")),
+            ("map-rows", Some("map_rows")),
+            ("Chamfer", Some("chamfer")),
+            ("xyzzy", None),
+        ] {
+            assert_eq!(nearest(slip, &words), meant);
+        }
+        let message = |text: &str, path: &str| {
+            let refused = Keys::new(&read(text), path, KNOWN).err();
+            refused.unwrap().to_string()
+        };
+        assert_eq!(
+            message("bevle = 1", "object.0"),
+            "object.0.bevle: unknown key; did you mean `bevel`?"
+        );
+        let all = message("xyzzy = 1", "");
+        let start = "xyzzy: unknown key; known here: bevel, chamfer";
+        assert!(all.starts_with(start), "{all}");
+    }
+
+    #[test]
+    fn wrong_types_say_what_was_found() {
+        let table = read(
+            "bevel = \"much\"\nmap_rows = -1\nrepeat = [1, 2]\nmirror = [true, 1, false]\nname = 3\npoints = [[1, 2], [3]]",
+        );
+        let keys = Keys::new(&table, "object.2", KNOWN).unwrap();
+        let cases = [
+            (
+                keys.get::<f64>("bevel").err(),
+                "object.2.bevel: expected a number, found the text \"much\"",
+            ),
+            (
+                keys.get::<u32>("map_rows").err(),
+                "object.2.map_rows: expected a whole number that is not negative, found -1",
+            ),
+            (
+                keys.get::<[u32; 3]>("repeat").err(),
+                "object.2.repeat: expected 3 whole numbers that are not negative in brackets, found 2 values",
+            ),
+            (
+                keys.get::<[bool; 3]>("mirror").err(),
+                "object.2.mirror: expected 3 of true or false in brackets, found 1",
+            ),
+            (
+                keys.text("name").err(),
+                "object.2.name: expected text in quotes, found 3",
+            ),
+            (
+                keys.pairs("points").err(),
+                "object.2.points.1: expected a pair of numbers [r, z], found a list of 1 values",
+            ),
+        ];
+        for (found, wanted) in cases {
+            assert_eq!(found.unwrap().to_string(), wanted);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_serve_as_numbers() {
+        let table = read("bevel = 2\nrepeat = [1, 2.5, 3]");
+        let keys = Keys::new(&table, "", KNOWN).unwrap();
+        assert_eq!(keys.get("bevel").unwrap(), Some(2.0));
+        assert_eq!(keys.get("repeat").unwrap(), Some([1.0, 2.5, 3.0]));
+        assert_eq!(keys.get::<f64>("chamfer").unwrap(), None);
+    }
+}

@@ -1,0 +1,151 @@
+//! Scenes from TOML files.
+//!
+//! Paths are relative to the scene file. Unknown keys are errors. Every key but an object's
+//! `profile` (or `polygon`) and the camera's `eye` and `target` has a default.
+//! `docs/scene-files.md` of the repository lists every key with its type, range and default.
+
+mod instances;
+mod keys;
+mod overrides;
+mod reader;
+mod warnings;
+
+pub use warnings::warnings;
+
+use crate::{ProfileOptions, Smooth, file_fault};
+use glam::DVec3;
+use reader::Reader;
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::scene::{Camera, Scene};
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// Reads the scene `file` and all files that it names. [`SceneFile`] also replaces values.
+///
+/// # Errors
+/// The errors of [`SceneFile::open`] and [`SceneFile::scene`].
+pub fn scene(file: impl AsRef<Path>) -> Result<Scene> {
+    SceneFile::open(file)?.scene(&[])
+}
+
+/// A scene file for scenes that differ in some keys: files that it names are read once and shared
+/// by all scenes.
+pub struct SceneFile {
+    root: Table,
+    file: Option<PathBuf>,
+    reader: Reader,
+}
+
+impl SceneFile {
+    /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture) gets a scene of its
+    /// own: all of it, seen from in front and a little above. Noise of a picture is smoothed
+    /// ([`Smooth::Auto`]).
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] for a file that cannot be read; the errors of a profile.
+    pub fn open(file: impl AsRef<Path>) -> Result<Self> {
+        let file = file.as_ref();
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let is_profile = |e: &str| ["svg", "svgz", "png", "jpg", "jpeg"].contains(&e);
+        let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if ending.is_some_and(|e| is_profile(&e)) {
+            return Self::of_profile(file, folder);
+        }
+        let text = std::fs::read_to_string(file).map_err(|e| {
+            file_fault(format!("cannot be read ({e}); give a scene in TOML")).in_file(file)
+        })?;
+        let mut read = Self::parse(&text, folder).map_err(|e| e.in_file(file))?;
+        read.file = Some(file.to_owned());
+        Ok(read)
+    }
+
+    /// Reads `text`; paths in it are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] for text that is not TOML.
+    pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
+        Ok(Self {
+            root: text.parse().map_err(|e| syntax(text, &e))?,
+            file: None,
+            reader: Reader::new(folder.as_ref()),
+        })
+    }
+
+    fn of_profile(file: &Path, folder: &Path) -> Result<Self> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let mut reader = Reader::new(folder);
+        let options = ProfileOptions {
+            smooth: Smooth::Auto,
+            ..ProfileOptions::default()
+        };
+        let profile = reader.load_profile(file, options)?;
+        // The distance at which a sphere about the box fills the picture's height.
+        let reach = profile.radius.hypot(0.5) * 1.05;
+        let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
+        let target = DVec3::new(0.0, 0.0, 0.5);
+        let eye = target + distance * DVec3::new(0.9, 0.3, 0.32).normalize();
+        let table = |entries: [(&str, Value); 2]| {
+            Table::from_iter(entries.map(|(key, value)| (key.to_owned(), value)))
+        };
+        let camera = table([
+            ("eye", eye.to_array().to_vec().into()),
+            ("target", target.to_array().to_vec().into()),
+        ]);
+        let object = table([
+            ("profile", name.into_owned().into()),
+            ("profile_smooth", "auto".into()),
+        ]);
+        let root = table([("camera", camera.into()), ("object", vec![object].into())]);
+        Ok(Self {
+            root,
+            file: None,
+            reader,
+        })
+    }
+
+    /// Every file that was read for its scenes.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.reader.files().chain(&self.file).map(PathBuf::as_path)
+    }
+
+    /// The scene. Each of `sets` is `key=value` and replaces the file's value:
+    /// `object.0.bevel=0.4`, `camera.eye=[1, 2, 3]`, `object.1.profile=vase.svg`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] and [`ErrorKind::File`], with file and key; [`ErrorKind::Usage`] for
+    /// a malformed assignment, with its key or `sets`.
+    pub fn scene(&mut self, sets: &[String]) -> Result<Scene> {
+        let mut read = || {
+            let scene = self.reader.scene(&overrides::applied(&self.root, sets)?)?;
+            scene.check()?;
+            Ok(scene)
+        };
+        read().map_err(|e: Error| match &self.file {
+            Some(file) => e.in_file(file),
+            None => e,
+        })
+    }
+
+    /// The file's text with each of `sets` (as in [`SceneFile::scene`]) replacing the file's value.
+    /// Paths in the text are relative to the same folder; comments and the order of keys are lost.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for a malformed assignment.
+    pub fn text(&self, sets: &[String]) -> Result<String> {
+        let fault = |e| Error::new(ErrorKind::Other, format!("cannot be written as TOML: {e}"));
+        toml::to_string(&overrides::applied(&self.root, sets)?).map_err(fault)
+    }
+}
+
+/// A fault of TOML's grammar, on one line.
+fn syntax(text: &str, error: &toml::de::Error) -> Error {
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    let start = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..start).unwrap_or("");
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    file_fault(format!("is not TOML: {message}")).at_key(format!("line {line}, column {column}"))
+}
+
+#[cfg(test)]
+mod tests;

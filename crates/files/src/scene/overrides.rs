@@ -1,0 +1,151 @@
+//! `key=value`: values put into a scene's tables before they are read.
+
+use revmap::error::{Error, ErrorKind, Result};
+use toml::{Table, Value};
+
+/// `root` with each of `sets` written into it by [`apply`].
+pub(super) fn applied(root: &Table, sets: &[String]) -> Result<Table> {
+    let mut root = root.clone();
+    sets.iter().try_for_each(|set| apply(&mut root, set))?;
+    Ok(root)
+}
+
+/// Writes `assignment`, `path.to.key=value`, into `root`: `object.0.bevel=0.4`, `camera.eye.2=1.5`.
+/// The value is read as TOML, or else as text. Missing tables on the path are made; list entries
+/// must exist.
+fn apply(root: &mut Table, assignment: &str) -> Result<()> {
+    let (path, value) = assignment.split_once('=').ok_or_else(|| {
+        Error::new(
+            ErrorKind::Usage,
+            format!("{assignment:?} assigns nothing; write key=value, as in object.0.bevel=0.4"),
+        )
+        .at_key("sets")
+    })?;
+    let path = path.trim();
+    let steps: Vec<&str> = path.split('.').map(str::trim).collect();
+    let fail = |message: String| Error::new(ErrorKind::Usage, message).at_key(path);
+    if steps.iter().any(|step| step.is_empty()) {
+        return Err(fail(
+            "a part of the key is empty; write it as in object.0.bevel".to_owned(),
+        ));
+    }
+    put(root, &steps, parse(value.trim())).map_err(fail)
+}
+
+/// Writes a value at the end of the path `steps`.
+fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(), String> {
+    let [step, below @ ..] = steps else {
+        return Ok(());
+    };
+    if below.is_empty() {
+        table.insert((*step).to_owned(), value);
+        return Ok(());
+    }
+    let entry = table.entry(*step);
+    match (entry.or_insert_with(|| Table::new().into()), below) {
+        (Value::Table(inner), _) => put(inner, below, value),
+        (Value::Array(items), [last]) => {
+            let which = match items.iter().any(Value::is_table) {
+                true => format!("{step}.0.{last}"),
+                false => format!("{step}.0"),
+            };
+            let item = last.parse().ok().and_then(|i: usize| items.get_mut(i));
+            let item = item.filter(|item| !item.is_table());
+            *item.ok_or_else(|| format!("`{step}` is a list; say which: {which}"))? = value;
+            Ok(())
+        }
+        (Value::Array(items), [index, below @ ..]) => {
+            let count = items.len();
+            let item = index.parse().ok().and_then(|i: usize| items.get_mut(i));
+            let inner = item.and_then(Value::as_table_mut).ok_or_else(|| {
+                format!("there is no {step}.{index}: the scene has {count}, counted from 0")
+            })?;
+            put(inner, below, value)
+        }
+        _ => Err(format!("`{step}` is a value, which has no keys below it")),
+    }
+}
+
+/// The parsed value if it is TOML, otherwise the text itself.
+fn parse(text: &str) -> Value {
+    format!("value = {text}")
+        .parse::<Table>()
+        .ok()
+        .filter(|table| table.len() == 1) // a line break in `text` would bring keys of its own
+        .and_then(|mut table| table.remove("value"))
+        .unwrap_or_else(|| Value::String(text.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn scene() -> Table {
+        "[camera]\nfov_y = 40\n[[object]]\nbevel = 0\n[[object]]\nbevel = 1"
+            .parse()
+            .unwrap()
+    }
+
+    #[test]
+    fn values_are_toml_or_text() {
+        for (text, wanted) in [
+            ("0.4", Value::Float(0.4)),
+            ("7", Value::Integer(7)),
+            ("true", Value::Boolean(true)),
+            (
+                "[1, 2]",
+                Value::Array(vec![Value::Integer(1), Value::Integer(2)]),
+            ),
+            ("\"a b\"", Value::String("a b".into())),
+            ("pawn.svg", Value::String("pawn.svg".into())),
+            ("0,4", Value::String("0,4".into())),
+            ("1\nother = 2", Value::String("1\nother = 2".into())),
+            ("", Value::String(String::new())),
+        ] {
+            assert_eq!(parse(text), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn keys_are_found_in_lists_and_made_in_tables() {
+        let mut root = scene();
+        for assignment in [
+            "object.1.bevel=0.5",
+            "camera.eye = [1, 2, 3]",
+            "camera.eye.2 = 4.5",
+            "background=[0,0,0,1]",
+            "new.key=x=y",
+        ] {
+            apply(&mut root, assignment).unwrap();
+        }
+        assert_eq!(root["object"][0]["bevel"], Value::Integer(0));
+        assert_eq!(root["object"][1]["bevel"], Value::Float(0.5));
+        assert_eq!(root["camera"]["eye"].as_array().unwrap().len(), 3);
+        assert_eq!(root["camera"]["eye"][2], Value::Float(4.5));
+        assert_eq!(root["camera"]["fov_y"], Value::Integer(40));
+        assert_eq!(root["new"]["key"], Value::String("x=y".into()));
+    }
+
+    #[test]
+    fn wrong_paths_are_usage_errors() {
+        for (assignment, wanted) in [
+            ("bevel", "sets: \"bevel\" assigns nothing"),
+            (
+                "object.2.bevel=1",
+                "object.2.bevel: there is no object.2: the scene has 2",
+            ),
+            (
+                "object.bevel=1",
+                "object.bevel: `object` is a list; say which: object.0.bevel",
+            ),
+            ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),
+            ("camera..x=1", "a part of the key is empty"),
+            ("=1", "a part of the key is empty"),
+        ] {
+            let error = apply(&mut scene(), assignment).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::Usage);
+            assert!(error.to_string().contains(wanted), "{error}");
+        }
+    }
+}

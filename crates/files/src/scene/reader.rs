@@ -1,0 +1,258 @@
+//! Tables of a scene file into a scene, with all files that they name.
+
+use super::instances;
+use super::keys::Keys;
+use crate::{
+    ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, projection_of,
+};
+use revmap::error::{Error, Result};
+use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
+use revmap::profile::Profile;
+use revmap::scene::{
+    BumpForm, Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
+};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toml::Table;
+
+/// Keys of the whole file.
+pub(super) const SCENE: &str = "background ambient shadow camera light object";
+/// Keys of `[camera]`.
+pub(super) const CAMERA: &str = "eye target up fov_y";
+/// Keys of `[[light]]`.
+pub(super) const LIGHT: &str = "direction color radius";
+/// Keys of `[[object]]`.
+pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
+    profile_smooth radius map_rows color color_map specular shininess height_map bump bump_form \
+    projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
+    instances";
+/// `R` of a polygon's box unless the file gives another.
+const RADIUS: f64 = 0.5;
+
+/// Files read so far: those named more than once are read once and shared.
+pub(super) struct Reader {
+    folder: PathBuf,
+    profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
+    /// Polygon profiles with their points and radius.
+    polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
+    color_maps: HashMap<PathBuf, Arc<ColorMap>>,
+    height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
+    instances: Vec<PathBuf>,
+}
+
+impl Reader {
+    pub(super) fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            profiles: Vec::new(),
+            polygons: Vec::new(),
+            color_maps: HashMap::new(),
+            height_maps: HashMap::new(),
+            instances: Vec::new(),
+        }
+    }
+
+    /// Every file that was read.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let profiles = self.profiles.iter().map(|(file, ..)| file);
+        profiles
+            .chain(self.color_maps.keys())
+            .chain(self.height_maps.keys())
+            .chain(&self.instances)
+    }
+
+    pub(super) fn scene(&mut self, root: &Table) -> Result<Scene> {
+        let keys = Keys::new(root, "", SCENE)?;
+        let empty = Table::new();
+        let mut scene = Scene::new(camera(keys.table("camera")?.unwrap_or(&empty))?);
+        keys.set("background", &mut scene.background)?;
+        keys.set("ambient", &mut scene.ambient)?;
+        keys.choose("shadow", &Shadow::NAMES, &mut scene.shadow)?;
+        if let Some(tables) = keys.tables("light")? {
+            let lights = tables.into_iter().enumerate();
+            scene.lights = lights.map(light).collect::<Result<_>>()?;
+        }
+        let objects = keys.tables("object")?.unwrap_or_default();
+        for (index, table) in objects.into_iter().enumerate() {
+            scene.objects.push(self.object(table, index)?);
+        }
+        if scene.objects.is_empty() {
+            return Err(keys.fail(
+                "object",
+                "the scene is empty; add an [[object]] with a profile",
+            ));
+        }
+        Ok(scene)
+    }
+
+    fn object(&mut self, table: &Table, index: usize) -> Result<Object> {
+        let keys = Keys::new(table, format!("object.{index}"), OBJECT)?;
+        let mut object = self.profile(&keys)?;
+        keys.set("map_rows", &mut object.map_rows)?;
+        keys.set("color", &mut object.color)?;
+        let Specular {
+            strength,
+            shininess,
+        } = &mut object.specular;
+        keys.set("specular", strength)?;
+        keys.set("shininess", shininess)?;
+        object.texturing = self.texturing(&keys, object.file.as_deref())?;
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = &mut object.offset;
+        keys.set("extend", extend)?;
+        keys.set("bevel", bevel)?;
+        keys.set("chamfer", chamfer)?;
+        keys.choose("clip", &Clip::NAMES, &mut object.clip)?;
+        keys.set("axis", &mut object.axis)?;
+        keys.set("repeat", &mut object.repeat)?;
+        keys.set("mirror", &mut object.mirror)?;
+        object.placement = placement(&keys)?;
+        if let Some(file) = keys.file("instances", &self.folder)? {
+            object.instances = instances::load(&file)?.into();
+            if !self.instances.contains(&file) {
+                self.instances.push(file);
+            }
+        }
+        Ok(object)
+    }
+
+    /// An object with its profile, and defaults otherwise.
+    fn profile(&mut self, keys: &Keys) -> Result<Object> {
+        let file = keys.file("profile", &self.folder)?;
+        let polygon = keys.pairs("polygon")?;
+        let mut options = ProfileOptions::default();
+        keys.choose("profile_axis", &ProfileAxis::NAMES, &mut options.axis)?;
+        keys.set("profile_threshold", &mut options.threshold)?;
+        keys.set("profile_invert", &mut options.invert)?;
+        options.smooth = match keys.number_or_auto("profile_smooth")? {
+            Some(Some(pixels)) => Smooth::Pixels(pixels),
+            Some(None) => Smooth::Auto,
+            None => options.smooth,
+        };
+        let widths = polygon.iter().flatten().map(|[r, _]| *r);
+        let mut radius = widths.filter(|r| r.is_finite()).fold(RADIUS, f64::max);
+        keys.set("radius", &mut radius)?;
+        match (file, polygon) {
+            (Some(file), None) => {
+                let profile = self
+                    .load_profile(&file, options)
+                    .map_err(|e| below(keys, "profile", e))?;
+                let name = file.file_name().unwrap_or_default().to_string_lossy();
+                let mut object = Object::new(name, profile);
+                object.file = Some(file);
+                Ok(object)
+            }
+            (None, Some(points)) => {
+                let same =
+                    |known: &&(Vec<[f64; 2]>, f64, _)| known.0 == points && known.1 == radius;
+                if let Some((_, _, profile)) = self.polygons.iter().find(same) {
+                    return Ok(Object::new("polygon", profile.clone()));
+                }
+                let profile =
+                    Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
+                let profile = Arc::new(profile);
+                self.polygons.push((points, radius, profile.clone()));
+                Ok(Object::new("polygon", profile))
+            }
+            (None, None) => Err(keys.fail(
+                "profile",
+                "is missing; name an image or a drawing, or give a polygon",
+            )),
+            (Some(_), Some(_)) => {
+                Err(keys.fail("polygon", "stands beside a profile; give one of the two"))
+            }
+        }
+    }
+
+    /// A file's profile, read once.
+    pub(super) fn load_profile(
+        &mut self,
+        file: &Path,
+        options: ProfileOptions,
+    ) -> Result<Arc<Profile>> {
+        let same = |known: &&(PathBuf, ProfileOptions, _)| known.0 == file && known.1 == options;
+        if let Some((.., known)) = self.profiles.iter().find(same) {
+            return Ok(known.clone());
+        }
+        let new = Arc::new(profile(file, options)?);
+        self.profiles.push((file.to_owned(), options, new.clone()));
+        Ok(new)
+    }
+
+    fn texturing(&mut self, keys: &Keys, profile: Option<&Path>) -> Result<Texturing> {
+        let mut covering = Texturing {
+            projection: profile.and_then(projection_of).unwrap_or_default(),
+            ..Texturing::default()
+        };
+        if let Some(file) = keys.file("color_map", &self.folder)? {
+            let map = shared(&mut self.color_maps, &file, |f| color_map(f));
+            covering.color_map = Some(map.map_err(|e| e.at_key(keys.place("color_map")))?);
+        }
+        if let Some(file) = keys.file("height_map", &self.folder)? {
+            let read = |f: &Path| displacement_map(f, SlopeFilter::default());
+            let map = shared(&mut self.height_maps, &file, read);
+            covering.displacement_map = Some(map.map_err(|e| e.at_key(keys.place("height_map")))?);
+        }
+        keys.set("bump", &mut covering.bump)?;
+        keys.choose("bump_form", &BumpForm::NAMES, &mut covering.bump_form)?;
+        keys.choose("projection", &Projection::NAMES, &mut covering.projection)?;
+        keys.set("texture_repeat", &mut covering.repeat)?;
+        Ok(covering)
+    }
+}
+
+fn camera(table: &Table) -> Result<Camera> {
+    let keys = Keys::new(table, "camera", CAMERA)?;
+    let needed = |key: &str| {
+        let missing = || keys.fail(key, "is missing; give three numbers, as in [1.6, 0.3, 1.1]");
+        keys.get(key)?.ok_or_else(missing)
+    };
+    let mut camera = Camera::new(needed("eye")?, needed("target")?);
+    keys.set("up", &mut camera.up)?;
+    keys.set("fov_y", &mut camera.fov_y)?;
+    Ok(camera)
+}
+
+fn light((index, table): (usize, &Table)) -> Result<Light> {
+    let keys = Keys::new(table, format!("light.{index}"), LIGHT)?;
+    let mut light = Light::default();
+    keys.set("direction", &mut light.direction)?;
+    keys.set("color", &mut light.color)?;
+    keys.set("radius", &mut light.radius)?;
+    Ok(light)
+}
+
+fn placement(keys: &Keys) -> Result<Placement> {
+    let mut placement = Placement::default();
+    keys.set("position", &mut placement.position)?;
+    keys.set("scale", &mut placement.scale)?;
+    if let Some(xyzw) = keys.get("rotation")? {
+        let unit = instances::unit(xyzw);
+        placement.rotation = unit.map_err(|e| e.at_key(keys.place("rotation")))?;
+    }
+    Ok(placement)
+}
+
+/// A fault with its own key, or else `key`, put below the object's.
+fn below(keys: &Keys, key: &str, mut error: Error) -> Error {
+    let own = error.key.take();
+    error.at_key(keys.place(own.as_deref().unwrap_or(key)))
+}
+
+/// The content of `file`, read when it is first named.
+fn shared<T>(
+    known: &mut HashMap<PathBuf, Arc<T>>,
+    file: &Path,
+    read: impl Fn(&Path) -> Result<T>,
+) -> Result<Arc<T>> {
+    if let Some(value) = known.get(file) {
+        return Ok(value.clone());
+    }
+    let value = Arc::new(read(file)?);
+    known.insert(file.to_path_buf(), value.clone());
+    Ok(value)
+}

@@ -1,0 +1,346 @@
+//! Tests of the reader of scene files.
+
+#![allow(clippy::unwrap_used)]
+use super::reader::{CAMERA, LIGHT, OBJECT};
+use super::*;
+use glam::DQuat;
+use revmap::maps::Projection;
+use revmap::scene::{BumpForm, Light, Offset, Placement, Shadow, Specular, Texturing};
+use std::sync::Arc;
+
+const CAMERA_LINES: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
+const CONE: &str = "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n";
+
+fn parse(text: &str, folder: impl AsRef<Path>, sets: &[String]) -> Result<Scene> {
+    SceneFile::parse(text, folder)?.scene(sets)
+}
+
+/// A scene of one cone, with further lines.
+fn cone(lines: &str) -> Result<Scene> {
+    parse(&format!("{CAMERA_LINES}{CONE}{lines}"), "", &[])
+}
+
+#[track_caller]
+fn fault(result: Result<Scene>, wanted: &str) {
+    let message = result.err().unwrap().to_string();
+    assert!(message.contains(wanted), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+}
+
+/// A half profile, dark below a light top, and a texture, in a folder of their own.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let half = image::GrayImage::from_fn(8, 16, |x, y| {
+        image::Luma([if x < 6 && y > 4 { 0 } else { 255 }])
+    });
+    half.save(folder.path().join("half.spherical.png")).unwrap();
+    image::RgbImage::from_pixel(4, 2, image::Rgb([9, 8, 7]))
+        .save(folder.path().join("t.png"))
+        .unwrap();
+    std::fs::write(
+        folder.path().join("copies.csv"),
+        "0,0,0,0,0,0,1,1,1,1\n1,0,0,0,0,0,1,1,1,2\n",
+    )
+    .unwrap();
+    folder
+}
+
+/// A table of values, each with the one that it must equal.
+macro_rules! equal {
+    ($($found:expr => $wanted:expr;)*) => {$(assert_eq!($found, $wanted, stringify!($found));)*};
+}
+
+#[test]
+fn what_is_not_said_has_the_documented_default() {
+    let scene = cone("").unwrap();
+    let object = &scene.objects[0];
+    let Texturing {
+        bump,
+        bump_form,
+        projection,
+        repeat,
+        ..
+    } = object.texturing;
+    equal! {
+        scene.background => [0.0; 4];
+        scene.camera.up => DVec3::Z;
+        scene.camera.fov_y => 40.0;
+        scene.lights => Light::pair();
+        scene.shadow => Shadow::Off;
+        object.name => "polygon";
+        object.profile.radius => 0.5;
+        object.map_rows => 512;
+        object.color => [0.8; 3];
+        object.offset => Offset { extend: 0.0, bevel: 0.0, chamfer: 1.0 };
+        object.axis => [0.5; 2];
+        object.repeat => [1; 3];
+        object.mirror => [false; 3];
+        object.placement => Placement::default();
+        projection => Projection::Cylindrical;
+        bump_form => BumpForm::SurfaceGradient;
+        (bump, repeat) => (1.0, [1.0; 2]);
+    }
+}
+
+#[test]
+fn every_key_arrives() {
+    let folder = folder();
+    let text = r#"
+background = [0.1, 0.2, 0.3, 1]
+ambient = [0.5, 0.6, 0.7]
+shadow = "soft"
+[camera]
+eye = [1.6, 0.3, 1.1]
+target = [0.0, 0.0, 0.5]
+up = [0, 1, 0]
+fov_y = 25.5
+[[light]]
+direction = [1, 2, -3]
+radius = 3.5
+color = [2, 1, 0.5]
+[[light]]
+[[object]]
+profile = "half.spherical.png"
+profile_axis = "left"
+map_rows = 64
+color = [0.1, 0.2, 0.3]
+color_map = "t.png"
+specular = 0.75
+shininess = 9
+height_map = "t.png"
+bump = 0.02
+bump_form = "papers"
+texture_repeat = [3, 2]
+extend = -0.01
+bevel = 0.25
+chamfer = 0.5
+axis = [0.25, 0.75]
+repeat = [1, 2, 3]
+mirror = [true, false, true]
+position = [1, 2, 3]
+rotation = [0, 0, 2, 0]
+scale = [1, 2, 0.5]
+instances = "copies.csv"
+"#;
+    let scene = parse(text, folder.path(), &[]).unwrap();
+    let light = Light {
+        direction: DVec3::new(1.0, 2.0, -3.0),
+        color: [2.0, 1.0, 0.5],
+        radius: 3.5,
+    };
+    let object = &scene.objects[0];
+    let Texturing {
+        bump,
+        bump_form,
+        projection,
+        repeat,
+        ..
+    } = object.texturing;
+    let color = object.texturing.color_map.as_ref().unwrap();
+    let slopes = object.texturing.displacement_map.as_ref().unwrap();
+    equal! {
+        scene.background => [0.1, 0.2, 0.3, 1.0];
+        scene.ambient => [0.5, 0.6, 0.7];
+        scene.shadow => Shadow::Soft;
+        scene.camera.eye => DVec3::new(1.6, 0.3, 1.1);
+        scene.camera.up => DVec3::Y;
+        scene.camera.fov_y => 25.5;
+        scene.lights => [light, Light::default()];
+        object.name => "half.spherical.png";
+        object.file => Some(folder.path().join("half.spherical.png"));
+        object.profile.radius => 0.5;
+        object.map_rows => 64;
+        object.color => [0.1, 0.2, 0.3];
+        object.specular => Specular { strength: 0.75, shininess: 9.0 };
+        color.levels[0].texels[0] => [9, 8, 7, 255];
+        slopes.size() => [4, 2];
+        (bump, bump_form) => (0.02, BumpForm::Papers);
+        (projection, repeat) => (Projection::Spherical, [3.0, 2.0]);
+        object.offset => Offset { extend: -0.01, bevel: 0.25, chamfer: 0.5 };
+        object.axis => [0.25, 0.75];
+        object.repeat => [1, 2, 3];
+        object.mirror => [true, false, true];
+        object.placement.position => DVec3::new(1.0, 2.0, 3.0);
+        object.placement.rotation => DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
+        object.placement.scale => DVec3::new(1.0, 2.0, 0.5);
+        object.instances.len() => 2;
+        object.instances[1].scale.z => 2.0;
+        object.placements().len() => 2;
+    }
+}
+
+#[test]
+fn objects_of_one_file_and_axis_share_their_profile() {
+    let folder = folder();
+    let object = |axis: &str| {
+        format!("[[object]]\nprofile = \"half.spherical.png\"\nprofile_axis = \"{axis}\"\n")
+    };
+    let text = [
+        CAMERA_LINES.to_owned(),
+        object("left"),
+        object("left"),
+        object("center"),
+    ]
+    .concat();
+    let scene = parse(&text, folder.path(), &[]).unwrap();
+    let [a, b, c] = [0, 1, 2].map(|i| &scene.objects[i].profile);
+    assert!(Arc::ptr_eq(a, b));
+    assert!(!Arc::ptr_eq(a, c));
+    assert_eq!((a.radius, c.radius), (0.5, 0.25));
+}
+
+/// A polygon that is wider than the usual box gets a box of its own width. A radius that is given
+/// stays, and the box cuts the polygon.
+#[test]
+fn a_wide_polygon_gets_a_wide_box() {
+    let radius = |polygon: &str, given: &str| {
+        let text = format!("{CAMERA_LINES}[[object]]\npolygon = {polygon}\n{given}");
+        let scene = parse(&text, std::path::Path::new("."), &[]).unwrap();
+        scene.objects[0].profile.radius
+    };
+    let wide = "[[0, 0], [1, 0], [1, 1], [0, 1]]";
+    assert_eq!(radius(wide, ""), 1.0);
+    assert_eq!(radius(wide, "radius = 0.5"), 0.5);
+    assert_eq!(radius("[[0, 0], [0.3, 0], [0, 1]]", ""), 0.5);
+}
+
+#[test]
+fn a_named_projection_goes_before_the_file_name() {
+    let folder = folder();
+    let text = format!(
+        "{CAMERA_LINES}[[object]]\nprofile = \"half.spherical.png\"\nprofile_axis = \"left\"\nprojection = \"arc\"\n"
+    );
+    let scene = parse(&text, folder.path(), &[]).unwrap();
+    assert_eq!(scene.objects[0].texturing.projection, Projection::Arc);
+}
+
+#[test]
+fn no_light_can_be_asked_for() {
+    let scene = parse(&format!("light = []\n{CAMERA_LINES}{CONE}"), "", &[]).unwrap();
+    assert!(scene.lights.is_empty());
+}
+
+#[test]
+fn sets_come_before_what_the_file_says() {
+    let sets = [
+        "object.0.bevel=0.4",
+        "camera.fov_y=20",
+        "shadow=hard",
+        "background=[1, 1, 1, 1]",
+    ]
+    .map(String::from);
+    let scene = parse(&format!("{CAMERA_LINES}{CONE}bevel = 1\n"), "", &sets).unwrap();
+    assert_eq!(scene.objects[0].offset.bevel, 0.4);
+    assert_eq!(scene.camera.fov_y, 20.0);
+    assert_eq!(scene.shadow, Shadow::Hard);
+    assert_eq!(scene.background, [1.0; 4]);
+    let set = |text: &str| parse(&format!("{CAMERA_LINES}{CONE}"), "", &[text.to_owned()]);
+    fault(
+        set("object.0.bevle=0.4"),
+        "object.0.bevle: unknown key; did you mean `bevel`?",
+    );
+    fault(
+        set("object.0.bevel=much"),
+        "object.0.bevel: expected a number, found the text \"much\"",
+    );
+    fault(set("object.0.bevel=-1"), "object.0.bevel: is -1.0");
+}
+
+#[test]
+fn slips_are_named_with_their_full_key() {
+    for (line, wanted) in [
+        (
+            "bevle = 1",
+            "object.0.bevle: unknown key; did you mean `bevel`?",
+        ),
+        ("bevel = \"1\"", "object.0.bevel: expected a number"),
+        ("scale = [1, 0, 1]", "object.0.scale: has 0.0"),
+        (
+            "scale = 2",
+            "object.0.scale: expected 3 numbers in brackets, found 2",
+        ),
+        ("rotation = [0, 0, 0, 0]", "object.0.rotation:"),
+        ("repeat = [1, 0, 1]", "object.0.repeat: has 0"),
+        ("chamfer = 2", "object.0.chamfer: is 2.0"),
+        ("extend = nan", "object.0.extend: is NaN"),
+        ("radius = 0", "object.0.radius: 0 is no radius"),
+        (
+            "projection = \"mercator\"",
+            "object.0.projection: \"mercator\" is not known; give one of \"planar\"",
+        ),
+        (
+            "profile = \"x.svg\"",
+            "object.0.polygon: stands beside a profile",
+        ),
+        (
+            "color_map = \"none.png\"",
+            "none.png: object.0.color_map: the colour map cannot be read",
+        ),
+        ("instances = \"none.csv\"", "none.csv: cannot be read"),
+        ("[[object]]\n", "object.1.profile: is missing"),
+        (
+            "[[light]]\ncolour = [1, 1, 1]",
+            "light.0.colour: unknown key; did you mean `color`?",
+        ),
+    ] {
+        fault(cone(line), wanted);
+    }
+    for (text, wanted) in [
+        (CONE, "camera.eye: is missing"),
+        (CAMERA_LINES, "object: the scene is empty"),
+        ("camera = 3", "camera: expected a table [camera], found 3"),
+        (
+            "object = 3\n[camera]\neye=[1,0,0]\ntarget=[0,0,0]",
+            "object: expected tables",
+        ),
+    ] {
+        fault(parse(text, "", &[]), wanted);
+    }
+}
+
+#[test]
+fn faults_of_the_grammar_name_the_line() {
+    fault(parse("[camera]\neye = [1, 2\nfov_y = 1", "", &[]), "line 3");
+    fault(
+        parse("[camera]\nup = 1\nup = 2", "", &[]),
+        "line 3, column 1: is not TOML",
+    );
+}
+
+#[test]
+fn the_file_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.toml");
+    fault(scene(&file), "s.toml: cannot be read");
+    std::fs::write(&file, "bakground = 1").unwrap();
+    fault(
+        scene(&file),
+        "s.toml: bakground: unknown key; did you mean `background`?",
+    );
+    std::fs::write(
+        &file,
+        format!("{CAMERA_LINES}[[object]]\nprofile = \"none.png\""),
+    )
+    .unwrap();
+    fault(scene(&file), "none.png: object.0.profile:");
+    fault(scene(folder.path()), "cannot be read");
+}
+
+/// The tables of the document name every key.
+#[test]
+fn every_key_is_documented() {
+    let source = include_str!("../../../../docs/scene-files.md");
+    let documented = |key: &str| source.lines().any(|l| l.starts_with(&format!("| `{key}`")));
+    for (table, keys) in [
+        ("object.N.", OBJECT),
+        ("camera.", CAMERA),
+        ("light.N.", LIGHT),
+    ] {
+        for key in keys.split_whitespace() {
+            assert!(documented(&format!("{table}{key}")), "{key}");
+        }
+    }
+    for key in ["background", "ambient", "shadow"] {
+        assert!(documented(key), "{key}");
+    }
+}

@@ -1,0 +1,157 @@
+//! Warnings about a scene that is allowed but looks unintended.
+
+use glam::DVec3;
+use revmap::scene::{CameraFrame, Scene, Shadow};
+
+/// A field of view below this many degrees looks like one in radians.
+const NARROW: f64 = 2.0;
+/// A light brighter than this looks like a colour from 0 to 255.
+const BRIGHT: f32 = 16.0;
+/// More solids than this cast shadows slowly: 10,000 on 80 x 60 pixels took a minute and a half.
+const CROWD: usize = 1000;
+
+/// Warnings for a picture of `width x height` pixels, one sentence each, with the key. The
+/// causes are a field of view that looks like radians, colours above 1,
+/// [warnings](revmap::profile::Profile::warnings) of the profiles' pictures, shadows of a crowd,
+/// and an empty view.
+#[must_use]
+pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
+    let mut found = Vec::new();
+    let fov = scene.camera.fov_y;
+    if fov < NARROW {
+        found.push(format!(
+            "camera.fov_y: is {fov} degrees; if radians are meant, give {:.1}",
+            fov.to_degrees()
+        ));
+    }
+    let mut color = |key: &str, channels: &[f32], most: f32| {
+        if let Some(c) = channels.iter().find(|c| **c > most) {
+            found.push(format!(
+                "{key}: has {c}; colours are linear from 0 to 1, divide by 255 if bytes are meant"
+            ));
+        }
+    };
+    color("background", &scene.background, 1.0);
+    color("ambient", &scene.ambient, BRIGHT);
+    for (i, light) in scene.lights.iter().enumerate() {
+        color(&format!("light.{i}.color"), &light.color, BRIGHT);
+    }
+    for (i, object) in scene.objects.iter().enumerate() {
+        color(&format!("object.{i}.color"), &object.color, 1.0);
+    }
+    for (i, object) in scene.objects.iter().enumerate() {
+        let of_profile = object.profile.warnings.iter();
+        found.extend(of_profile.map(|w| format!("object.{i}.profile: {w}")));
+    }
+    let copies: usize = scene.objects.iter().map(|o| o.placements().len()).sum();
+    if scene.shadow != Shadow::Off && copies > CROWD {
+        found.push(format!(
+            "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
+        ));
+    }
+    if !is_in_view(scene, width, height) {
+        found.push(
+            "nothing is in view; turn camera.target to the objects, or move camera.eye".to_owned(),
+        );
+    }
+    found
+}
+
+/// Returns true if a ball about any copy's box is at least partly in the picture.
+fn is_in_view(scene: &Scene, width: u32, height: u32) -> bool {
+    let Ok(camera) = CameraFrame::new(&scene.camera, width, height) else {
+        return true;
+    };
+    // The four sides of the view, normals inwards.
+    let (w, h) = (f64::from(width), f64::from(height));
+    let corner = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(x, y)| camera.direction(x, y));
+    let sides = [0, 1, 2, 3].map(|k| corner[k].cross(corner[(k + 1) % 4]).normalize_or_zero());
+    scene.objects.iter().any(|object| {
+        let grown = object.offset.extend.max(0.0) + object.offset.bevel;
+        let radius = object.profile.radius + grown;
+        let half = DVec3::new(radius, radius, 0.5 + grown);
+        object.placements().iter().any(|p| {
+            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, 0.5));
+            let from = middle - camera.eye;
+            let reach = (p.scale * half).length();
+            from.dot(camera.forward) > -reach && sides.iter().all(|s| s.dot(from) > -reach)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use revmap::profile::Profile;
+    use revmap::scene::{Camera, Object};
+    use std::sync::Arc;
+
+    fn scene() -> Scene {
+        let points = [[0.0, 0.1], [0.3, 0.1], [0.0, 0.9]];
+        let profile = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+        let mut scene = Scene::new(Camera::new(
+            DVec3::new(2.0, 0.0, 0.5),
+            DVec3::new(0.0, 0.0, 0.5),
+        ));
+        scene.objects.push(Object::new("cone", profile));
+        scene
+    }
+
+    #[track_caller]
+    fn warns(words: &str, change: impl Fn(&mut Scene)) {
+        let mut scene = scene();
+        assert!(warnings(&scene, 80, 60).is_empty());
+        change(&mut scene);
+        scene.check().unwrap();
+        let found = warnings(&scene, 80, 60);
+        assert!(found.len() == 1 && found[0].contains(words), "{found:?}");
+    }
+
+    #[test]
+    fn what_looks_unintended_is_named() {
+        warns(
+            "camera.fov_y: is 0.7 degrees; if radians are meant, give 40.1",
+            |s| s.camera.fov_y = 0.7,
+        );
+        warns("background", |s| s.background = [255.0, 0.0, 0.0, 1.0]);
+        warns("object.0.color: has 200", |s| s.objects[0].color[1] = 200.0);
+        warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
+    }
+
+    #[test]
+    fn shadows_of_a_crowd_are_slow() {
+        let crowd = |s: &mut Scene| {
+            let object = &mut s.objects[0];
+            object.instances = vec![object.placement; CROWD + 1].into();
+        };
+        warns("shadow: 1001 solids", |s| {
+            crowd(s);
+            s.shadow = Shadow::Soft;
+        });
+        let mut unlit = scene();
+        crowd(&mut unlit);
+        assert!(warnings(&unlit, 80, 60).is_empty());
+    }
+
+    #[test]
+    fn a_camera_that_looks_elsewhere_sees_nothing() {
+        for target in [
+            DVec3::new(4.0, 0.0, 0.5),
+            DVec3::new(2.0, 1.0, 0.5),
+            DVec3::new(2.1, 0.0, 5.0),
+            DVec3::new(2.0, -1.0, -3.0),
+        ] {
+            warns("nothing is in view", |s| s.camera.target = target);
+        }
+        // The eye is within the solid's box, so every view direction counts.
+        let mut within = scene();
+        within.camera.eye = DVec3::new(0.1, 0.0, 0.5);
+        within.camera.target = DVec3::new(1.0, 0.2, 0.5);
+        assert!(warnings(&within, 80, 60).is_empty());
+        // A solid at the picture's edge counts.
+        let mut edge = scene();
+        edge.camera.target = DVec3::new(0.0, 1.0, 0.5);
+        assert!(warnings(&edge, 80, 60).is_empty());
+    }
+}

@@ -1,0 +1,15 @@
+//! Files as a program reads and writes them: those of the repository, damaged ones, and maps of
+//! every source.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod damaged_files;
+mod map_accuracy;
+mod profiles;
+mod scenes;
+mod shape_maps;
+
+/// A file of the repository's `assets`.
+fn asset(name: &str) -> std::path::PathBuf {
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+    std::path::Path::new(assets).join(name)
+}

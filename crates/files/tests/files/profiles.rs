@@ -1,0 +1,141 @@
+//! Profiles from files: accepted files, and refused files with their messages.
+
+use glam::DVec2;
+use revmap::maps::{BakeOptions, MapSource, ShapeMap};
+use revmap::profile::Profile;
+use revmap_files::ProfileAxis;
+use revmap_files::raster::pictured;
+use std::path::Path;
+
+fn asset(name: &str) -> Profile {
+    let file = crate::asset("profiles").join(name);
+    revmap_files::profile(file, ProfileAxis::Center).unwrap()
+}
+
+fn refusal(path: &Path) -> String {
+    let error = revmap_files::profile(path, ProfileAxis::Center).unwrap_err();
+    let text = error.to_string();
+    assert!(text.starts_with(&path.display().to_string()), "{text}");
+    assert!(!text.contains('\n'), "{text}");
+    text
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    assert!(refusal(&folder.path().join("missing.svg")).contains("does not exist"));
+    assert!(refusal(folder.path()).contains("folder"));
+    assert!(refusal(&file("empty.png", b"")).contains("give a PNG, JPEG or SVG"));
+    assert!(refusal(&file("noise.svg", b"\x01\x02\x03")).contains("give a PNG, JPEG or SVG"));
+    assert!(refusal(&file("text.svg", b"<svg")).contains("damaged"));
+    let bottle = std::fs::read(crate::asset("profiles/bottle.png")).unwrap();
+    for part in [8, 30, bottle.len() / 3] {
+        assert!(refusal(&file("cut.png", &bottle[..part])).contains("damaged"));
+    }
+    // A file is read by its content, not its name.
+    let renamed = file("bottle.svg", &bottle);
+    assert_eq!(
+        revmap_files::profile(renamed, ProfileAxis::Center).unwrap(),
+        asset("bottle.png")
+    );
+}
+
+/// Every real profile touches its axis, is inside its box, and is one patch of plausible size.
+#[test]
+fn real_profiles_are_plausible() {
+    for (name, radius, area) in [
+        ("pawn.svg", 85.0 / 220.0, 0.199),
+        ("bishop.svg", 85.0 / 340.0, 0.119),
+        ("king.svg", 85.0 / 400.0, 0.102),
+        ("rook.svg", 85.0 / 260.0, 0.180),
+        ("bottle.png", 229.0 / 946.0, 0.148),
+    ] {
+        let profile = asset(name);
+        assert!((profile.radius - radius).abs() < 1e-12, "{name}");
+        let bounds = profile.outline.bounds().unwrap();
+        assert_eq!(bounds.r_min, 0.0, "{name}");
+        assert!(
+            bounds.r_max < radius && bounds.z_min > 0.0 && bounds.z_max < 1.0,
+            "{name}: {bounds:?}"
+        );
+        let solid = profile.outline.area();
+        assert!((solid - area).abs() < 0.01 * area, "{name}: {solid}");
+    }
+}
+
+/// The map of a drawing as an image must agree with the drawing's, at the image's resolution and at
+/// others.
+#[test]
+fn an_image_of_a_drawing_gives_its_distances() {
+    for name in ["pawn.svg", "bishop.svg", "king.svg", "rook.svg"] {
+        let drawing = asset(name);
+        let rows = 600;
+        let columns = (drawing.radius * f64::from(rows)).ceil() as u32;
+        let image = pictured(&drawing, columns, rows, 256).unwrap();
+        for rows in [300, 512, 600] {
+            let exact =
+                ShapeMap::bake(&drawing, &BakeOptions::new(MapSource::EXACT, rows)).unwrap();
+            let traced = ShapeMap::bake(&image, &BakeOptions::new(MapSource::EXACT, rows)).unwrap();
+            let errors = exact.distance.iter().zip(&traced.distance);
+            let errors: Vec<f64> = errors
+                .map(|(a, b)| f64::from(a - b).abs() * 600.0)
+                .collect();
+            let max = errors.iter().copied().fold(0.0, f64::max);
+            // The bottom of a sharp notch is beyond the last pixel that is half covered. It is the
+            // nearest point of whole wedges inside the solid.
+            assert!(max < 1.7, "{name} at {rows}: {max} pixels");
+            let outside: Vec<f64> = errors
+                .iter()
+                .zip(&exact.form)
+                .filter(|(_, s)| !**s)
+                .map(|(e, _)| *e)
+                .collect();
+            let rms = (outside.iter().map(|e| e * e).sum::<f64>() / outside.len() as f64).sqrt();
+            assert!(rms < 0.045, "{name} at {rows}: rms {rms} pixels");
+        }
+    }
+}
+
+/// A whole silhouette of odd width has half a pixel on its axis: nothing may move by that half.
+#[test]
+fn odd_widths_stay_where_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let (radius, height) = (30.3, 80);
+    let mut maps = Vec::new();
+    for width in [80u32, 81] {
+        // A ball about the middle of the picture, with coverage by 16 x 16 samples.
+        let middle = DVec2::new(f64::from(width) / 2.0, 40.0);
+        let picture = image::GrayImage::from_fn(width, height, |x, y| {
+            let hits = (0..256)
+                .filter(|k| {
+                    let p = DVec2::new(f64::from(k % 16), f64::from(k / 16)) / 16.0 + 1.0 / 32.0;
+                    (p + DVec2::new(f64::from(x), f64::from(y))).distance(middle) < radius
+                })
+                .count();
+            image::Luma([(255.0 * (1.0 - hits as f64 / 256.0)).round() as u8])
+        });
+        let file = folder.path().join(format!("{width}.png"));
+        picture.save(&file).unwrap();
+        let profile = revmap_files::profile(&file, ProfileAxis::Center).unwrap();
+        assert_eq!(profile.radius, f64::from(width) / 160.0);
+        maps.push(ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 160)).unwrap());
+    }
+    for map in maps {
+        let mut worst = 0.0f64;
+        for k in 0..400 {
+            let p = DVec2::new(f64::from(k % 20) / 42.0, (f64::from(k / 20) + 0.5) / 20.0);
+            let exact = p.distance(DVec2::new(0.0, 0.5)) - radius / 80.0;
+            // The distance has a peak near the middle of the ball, which no bilinear grid can
+            // follow.
+            if exact > -0.3 {
+                worst = worst.max((map.distance_at(p.x, p.y) - exact).abs() * 80.0);
+            }
+        }
+        assert!(worst < 0.03, "off by {worst} pixels");
+    }
+}

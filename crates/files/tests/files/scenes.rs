@@ -1,0 +1,106 @@
+//! The scenes that come with the program: each is readable, is drawn inside its frame, and its
+//! chess pieces are on their board.
+
+use glam::{DVec2, DVec3};
+use revmap::scene::{CameraFrame, Scene};
+use std::path::PathBuf;
+
+fn folder() -> PathBuf {
+    crate::asset("scenes")
+}
+
+fn scenes() -> Vec<(String, Scene)> {
+    let entries = std::fs::read_dir(folder()).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    let load = |file: PathBuf| {
+        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+        let scene = revmap_files::scene(&file).unwrap_or_else(|e| panic!("{e}"));
+        (name, scene)
+    };
+    files.into_iter().map(load).collect()
+}
+
+/// Points all around each solid.
+fn rims(scene: &Scene) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    for object in &scene.objects {
+        for circle in object.profile.outline.loops.concat() {
+            for placement in object.placements() {
+                for k in 0..64 {
+                    let turn = DVec2::from_angle(f64::from(k) / 64.0 * std::f64::consts::TAU);
+                    let local = (circle.x * turn).extend(circle.y);
+                    points
+                        .push(placement.position + placement.rotation * (placement.scale * local));
+                }
+            }
+        }
+    }
+    points
+}
+
+#[test]
+fn there_is_one_for_every_profile_and_for_every_kind_of_input() {
+    let names: Vec<String> = scenes().into_iter().map(|(name, _)| name).collect();
+    for name in [
+        "chess", "pawn", "rook", "bishop", "king", "bottle", "sphere", "vase", "goblet",
+    ] {
+        assert!(names.iter().any(|n| n == name), "{name}");
+    }
+}
+
+/// The solids extend nearly to the picture's edge, and not beyond it.
+#[test]
+fn solids_fill_their_picture() {
+    for (name, scene) in scenes() {
+        let camera = CameraFrame::new(&scene.camera, 800, 600).unwrap();
+        let forward = (scene.camera.target - scene.camera.eye).normalize();
+        let right = forward.cross(scene.camera.up).normalize();
+        let up = right.cross(forward);
+        // The picture's half height at distance 1, from the ray through the middle of its upper
+        // edge.
+        let edge = camera.direction(400.0, 0.0);
+        let half = edge.dot(up) / edge.dot(forward);
+        let fill = rims(&scene)
+            .into_iter()
+            .map(|point| {
+                let seen = point - scene.camera.eye;
+                let depth = seen.dot(forward);
+                (seen.dot(up).abs() / depth / half).max(seen.dot(right).abs() / depth / half * 0.75)
+            })
+            .fold(0.0, f64::max);
+        assert!((0.85..1.0).contains(&fill), "{name}: {fill:.3}");
+    }
+}
+
+#[test]
+fn pieces_stand_on_their_board() {
+    let scene = revmap_files::scene(folder().join("chess.toml")).unwrap();
+    let mut patches = 0;
+    for object in scene.objects.iter().filter(|o| o.file.is_some()) {
+        let foot = object.profile.outline.bounds().unwrap().z_min;
+        for placement in object.placements() {
+            let z = placement.position.z + placement.scale.z * foot;
+            assert!(z.abs() < 0.005, "{}: its foot is at {z:.4}", object.name);
+            patches += 1;
+        }
+    }
+    assert_eq!(patches, 18);
+}
+
+/// Copies of one drawing share its profile, and so its map.
+#[test]
+fn light_and_dark_pieces_share_their_profiles() {
+    let scene = revmap_files::scene(folder().join("chess.toml")).unwrap();
+    let find = |name: &str| {
+        let found: Vec<_> = scene.objects.iter().filter(|o| o.name == name).collect();
+        assert_eq!(found.len(), 2, "{name}");
+        std::sync::Arc::ptr_eq(&found[0].profile, &found[1].profile)
+    };
+    assert!(
+        ["pawn.svg", "rook.svg", "bishop.svg", "king.svg"]
+            .iter()
+            .all(|name| find(name))
+    );
+}

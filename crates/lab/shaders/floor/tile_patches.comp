@@ -1,0 +1,29 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The floor of tiles with lists of patches: a ray hits where it enters the solid's bounding cylinder. No list is read.
+#include "stage/tile.glsl"
+
+void main()
+{
+    begin_frame();
+    take_record();
+    take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
+    begin_tile();
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
+    vec3 o = ray_origin(tile_rays, pixel);
+    vec3 v = ray_direction(tile_rays, pixel);
+    float a = dot(v.xy, v.xy);
+    float b = dot(o.xy, v.xy);
+    float inside = b * b - a * (dot(o.xy, o.xy) - solid.bounds.y * solid.bounds.y);
+    Nearest nearest;
+    nearest.hit.t = -(b + sqrt(max(inside, 0.0))) / a;
+    nearest.hit.point = o + nearest.hit.t * v;
+    nearest.hit.normal = vec3(nearest.hit.point.xy, 0.0);
+    nearest.hit.sense = vec3(1.0);
+    nearest.hit.at_border = false;
+    nearest.instance = 0u;
+    nearest.steps = 0u;
+    nearest.exhausted = false;
+    nearest.depth = depth_of(tile_rays.base + nearest.hit.t);
+    store_tile(pixel, true, nearest);
+}

@@ -1,0 +1,85 @@
+// Intersects a pixel's ray with the listed patches of its tile, without branches. A few invocations load record,
+// instance and patches for the whole group, because lavapipe 22 reads storage buffers lane by lane.
+#ifndef LISTED_GLSL
+#define LISTED_GLSL
+#extension GL_EXT_control_flow_attributes : require
+#include "stage/tile.glsl"
+#include "search/patch_row.glsl"
+
+const uint INSTANCE_WORDS = 20u;
+layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
+    uint instance_words[];
+};
+
+shared uint shared_record[4];
+shared uint shared_instance[INSTANCE_WORDS];
+shared float listed[8u * LONGEST_LIST];
+
+// Loads the record into shared memory; take_shared_record() reads it after a barrier.
+void share_record()
+{
+    if (gl_LocalInvocationIndex < 4u) {
+        shared_record[gl_LocalInvocationIndex] = record_word(gl_LocalInvocationIndex);
+    }
+}
+
+void take_shared_record()
+{
+    tile_record = uvec4(shared_record[0], shared_record[1], shared_record[2], shared_record[3]);
+}
+
+// Loads the tile's instance and patches into shared memory.
+void share_patches()
+{
+    uint self = gl_LocalInvocationIndex;
+    if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
+        shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
+    }
+    if (ONE_SOLID == 0u) {
+        solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record.y + 16u]].solid.hull.z;
+    }
+    uint none = listed_word(0u, 0u);
+    uint runs = tile_record.z;
+    [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
+        uint place = j + self;
+        if (place < 8u * LIST_LENGTH) {
+            uint number = place >> 3;
+            uint lower = runs >> 9 & 63u;
+            uint k = number < lower ? (runs & 511u) + number : (runs >> 15 & 511u) + number - lower;
+            k = number < lower + (runs >> 24) ? k : none;
+            listed[place] = uintBitsToFloat(listed_word(1u + 3u * k + (place >> 2 & 1u), place & 3u));
+        }
+    }
+}
+
+vec4 instance_vector(uint n)
+{
+    uint at = 4u * n;
+    return uintBitsToFloat(uvec4(shared_instance[at], shared_instance[at + 1u], shared_instance[at + 2u], shared_instance[at + 3u]));
+}
+
+void take_shared_instance()
+{
+    if (ONE_INSTANCE != 0u) {
+        tile_instance = instances[pushed.instance];
+    } else {
+        tile_instance = Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u), uvec4(shared_instance[16]));
+    }
+}
+
+vec4 listed_vector(uint n)
+{
+    return vec4(listed[4u * n], listed[4u * n + 1u], listed[4u * n + 2u], listed[4u * n + 3u]);
+}
+
+bool search_listed(uvec2 pixel, out Hit hit)
+{
+    // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
+    PatchRow row = begin_row(tile_rays, pixel, sides_of_box());
+    [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
+        take_patch_of_row(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
+    }
+    return end_row(row, LIST_LENGTH, hit);
+}
+
+#endif

@@ -1,0 +1,54 @@
+// Intersects a pixel's ray with a few patches in sequence, without branches: those of a cell or of a tile's list.
+#ifndef PATCH_ROW_GLSL
+#define PATCH_ROW_GLSL
+#include "core/hit.glsl"
+#include "core/pixel_ray.glsl"
+#include "search/quadric.glsl"
+
+struct PatchRow {
+    Meridian m; // s = 0 is in the plane at depth `base`
+    float least, most; // range of t of valid hits
+    float best;
+    vec4 quadric; // patch of the nearest hit so far
+};
+
+// `sides`: sides of the box, relative to the axis. No ray may be in the solid before it enters them.
+PatchRow begin_row(PixelRays rays, uvec2 pixel, vec4 sides)
+{
+    PatchRow row;
+    row.m.v = ray_direction(rays, pixel);
+    row.m.o = ray_origin(rays, pixel);
+    row.m.a = dot(row.m.v.xy, row.m.v.xy);
+    row.m.b = dot(row.m.o.xy, row.m.v.xy);
+    row.m.c = dot(row.m.o.xy, row.m.o.xy);
+    row.least = -rays.base;
+    row.most = 2e38;
+    if (OUTSIDE == 0u) {
+        vec2 span = between_sides(row.m.o, row.m.v, sides);
+        row.least = max(row.least, span.x);
+        row.most = span.y;
+    }
+    row.best = row.most;
+    row.quadric = vec4(0.0);
+    return row;
+}
+
+void take_patch_of_row(inout PatchRow row, vec4 quadric, vec4 guard)
+{
+    take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric);
+}
+
+// Returns true if one of `count` patches was hit.
+bool end_row(PatchRow row, uint count, out Hit hit)
+{
+    hit.t = row.best;
+    hit.normal = quadric_normal(row.m, row.best, row.quadric);
+    hit.point = row.m.o + row.best * row.m.v;
+    hit.sense = vec3(1.0);
+    hit.steps = count;
+    hit.exhausted = false;
+    hit.at_border = false;
+    return row.best < row.most;
+}
+
+#endif

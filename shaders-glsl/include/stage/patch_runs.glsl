@@ -1,0 +1,65 @@
+// Runs of patches that a tile's rays may hit, and the list made from them.
+//
+// Layout of the table, in vectors: first a header with the number of patches and the unit of radii (float bits). Then
+// three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
+#ifndef PATCH_RUNS_GLSL
+#define PATCH_RUNS_GLSL
+#define LIST_WORDS
+#include "stage/compute.glsl"
+
+// The first and the last patch, and the widest gap between two successive ones.
+struct PatchRuns {
+    uint first;
+    uint last;
+    uvec2 gap;
+    bool any;
+};
+
+const PatchRuns NO_PATCHES = PatchRuns(0u, 0u, uvec2(0u), false);
+
+// Adds patch `k` to the runs if `meets` is true. Calls must have ascending `k`.
+void take_patch(inout PatchRuns runs, uint k, bool meets)
+{
+    runs.gap = meets && runs.any && k - runs.last > runs.gap.y - runs.gap.x ? uvec2(runs.last, k) : runs.gap;
+    runs.first = meets && !runs.any ? k : runs.first;
+    runs.last = meets ? k : runs.last;
+    runs.any = runs.any || meets;
+}
+
+// Returns the number of patches of each run.
+uvec2 lengths_of(PatchRuns runs)
+{
+    bool split = runs.gap.y - runs.gap.x > 1u;
+    return split ? uvec2(runs.gap.x + 1u - runs.first, runs.last + 1u - runs.gap.y)
+                 : uvec2(runs.last + 1u - runs.first, 0u);
+}
+
+// Adds a record to list `n`. Heads are zero at first; the first record completes the indirect dispatch.
+void append(uint n, uvec4 record)
+{
+    uint head = list_head(n);
+    uint place = atomicAdd(list_words[head], 1u);
+    if (place == 0u) {
+        list_words[head + 1u] = 1u;
+        list_words[head + 2u] = 1u;
+    }
+    uint at = list_tiles(n) + 4u * place;
+    for (uint k = 0u; k < 4u; ++k) {
+        list_words[at + k] = record[k];
+    }
+}
+
+// Adds the record if its runs are short enough for a list. Returns false if not; then the tile must use the tree.
+bool append_runs(uvec2 record, PatchRuns runs)
+{
+    uvec2 lengths = lengths_of(runs);
+    uint listed = lengths.x + lengths.y;
+    if (listed > LONGEST_LIST) {
+        return false;
+    }
+    uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
+    append(n, uvec4(record, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24, 0u));
+    return true;
+}
+
+#endif

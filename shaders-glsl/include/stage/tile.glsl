@@ -1,0 +1,54 @@
+// State of a tile with a single copy.
+#ifndef TILE_GLSL
+#define TILE_GLSL
+#include "stage/stores.glsl"
+
+uvec4 tile_record; // corner, index of the instance; then the runs of its listed patches, or its span (float bits)
+Instance tile_instance;
+Look tile_look;
+PixelRays tile_rays;
+
+// Loads frame and lights. Tile shaders call this first.
+void begin_frame()
+{
+    take_frame();
+    take_lights();
+}
+
+uint record_word(uint n)
+{
+    return LIST_LENGTH != 0u ? list_words[list_tiles(pushed.list) + 4u * gl_WorkGroupID.x + n]
+                             : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
+}
+
+// Loads the record and its instance.
+void take_record()
+{
+    tile_record = uvec4(record_word(0u), record_word(1u), record_word(2u), record_word(3u));
+    tile_instance = instances[ONE_INSTANCE != 0u ? pushed.instance : tile_record.y];
+}
+
+uvec2 tile_corner()
+{
+    return uvec2(tile_record.x & 0xffffu, tile_record.x >> 16);
+}
+
+// Computes look and rays from the instance and its solid.
+void begin_tile()
+{
+    tile_look = look_of(tile_instance);
+    tile_rays = pixel_rays(tile_instance);
+}
+
+void store_tile(uvec2 pixel, bool found, Hit hit)
+{
+    float depth = depth_of(tile_rays.base + hit.t);
+    if (all(lessThan(pixel, frame.size.xy))) {
+        count_steps(pixel, hit);
+        if (found && (DEPTH_TEST == 0u || depth < drawn_depth(pixel))) {
+            store(pixel, depth, shade(tile_look, tile_rays, pixel, hit));
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,99 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Lists the patches that the rays of each single-copy tile may hit. A work group processes 64 records. If all records
+// have the same instance, the invocations first test all patches against a beam around the whole group. Each invocation
+// then tests only the remaining patches against its own tile.
+#include "stage/patch_runs.glsl"
+#include "stage/beam.glsl"
+#include "core/meridian.glsl"
+
+const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
+const uint RECORDS = GROUP_PIXELS * GROUP_PIXELS;
+shared uint met[MET_WORDS]; // one bit per patch
+shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles, pixels
+shared uint copies; // 1 if the group has several instances, else 0
+
+void main()
+{
+    take_frame();
+    uint self = gl_LocalInvocationIndex;
+    uint group_first = pushed.first + gl_WorkGroupID.x * RECORDS;
+    bool present = gl_WorkGroupID.x * RECORDS + self < pushed.count;
+    uint record = present ? group_first + self : group_first;
+    uint place = tile_words[4u * record];
+    uvec2 corner = uvec2(place & 0xffffu, place >> 16);
+    uint number = tile_words[4u * record + 1u];
+    Instance instance;
+    if (ONE_INSTANCE != 0u) {
+        instance = instances[pushed.instance];
+        take_solid(pushed.solid);
+    } else {
+        instance = instances[number];
+        take_solid(instance.solid.x);
+    }
+    PixelRays rays = pixel_rays(instance);
+    float farthest = farthest_of(rays, instance);
+    uvec2 header = patch_tables[solid.hull.z].xy;
+    float unit = uintBitsToFloat(header.y);
+
+    if (self == 0u) {
+        low_x = low_y = 0xffffffffu;
+        high_x = high_y = copies = 0u;
+    }
+    barrier();
+    atomicMin(low_x, corner.x);
+    atomicMin(low_y, corner.y);
+    atomicMax(high_x, corner.x);
+    atomicMax(high_y, corner.y);
+    if (ONE_INSTANCE == 0u && number != tile_words[4u * group_first + 1u]) {
+        atomicOr(copies, 1u);
+    }
+    barrier();
+    bool shares = copies == 0u;
+    if (self < MET_WORDS) {
+        met[self] = shares ? 0u : 0xffffffffu;
+    }
+    barrier();
+    if (shares) {
+        uint side = max(high_x - low_x, high_y - low_y) + GROUP_PIXELS;
+        Beam wide = beam_of(rays, uvec2(low_x, low_y), side, farthest, unit);
+        vec2 unused;
+        for (uint k = self; k < header.x; k += RECORDS) {
+            if (may_meet(wide, k, unused)) {
+                atomicOr(met[k >> 5], 1u << (k & 31u));
+            }
+        }
+    }
+    barrier();
+
+    Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
+    // If the box cuts the solid, a ray may be inside the solid before it enters the box, and then hits the cut face.
+    // The tile of such a ray uses the tree.
+    bool cut = false;
+    vec2 outer = vec2(-1e30, 1e30);
+    vec2 inner = vec2(-1e30, 1e30);
+    if (OUTSIDE == 0u) {
+        vec4 wider = beam.width * vec4(-1.0, -1.0, 1.0, 1.0);
+        outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
+        inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
+        inner.x = inner.x <= inner.y ? inner.x : 1e30;
+    }
+    PatchRuns runs = NO_PATCHES;
+    vec2 all = vec2(3e38, -3e38);
+    for (uint w = 0u; w << 5 < header.x; ++w) {
+        uint rest = met[w];
+        while (rest != 0u) {
+            uint k = w << 5 | uint(findLSB(rest));
+            rest &= rest - 1u;
+            vec2 span;
+            bool meets = k < header.x && may_meet(beam, min(k, header.x), span) && span.x <= outer.y;
+            cut = cut || meets && span.x < inner.x;
+            all = meets ? vec2(min(all.x, span.x), max(all.y, span.y)) : all;
+            take_patch(runs, k, meets);
+        }
+    }
+    bool shows = present && runs.any && outer.x <= outer.y;
+    if (shows && (cut || !append_runs(uvec2(place, number), runs))) {
+        append(LIST_LENGTHS, uvec4(place, number, floatBitsToUint(all)));
+    }
+}

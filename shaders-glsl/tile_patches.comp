@@ -1,0 +1,26 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Intersects the pixels of a tile with its listed patches.
+#include "search/listed.glsl"
+
+void main()
+{
+    begin_frame();
+    if (ONE_SOLID != 0u) {
+        take_solid(pushed.solid); // before any barrier: see take_frame()
+    }
+    share_record();
+    barrier();
+    take_shared_record();
+    share_patches();
+    barrier();
+    take_shared_instance();
+    if (ONE_SOLID == 0u) {
+        take_solid(tile_instance.solid.x);
+    }
+    begin_tile();
+    uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
+    Hit hit;
+    bool found = search_listed(pixel, hit);
+    store_tile(pixel, found, hit);
+}

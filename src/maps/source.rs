@@ -1,0 +1,55 @@
+//! The method that measures the distances of a shape map.
+
+use super::{Bounds, exact};
+use crate::profile::Profile;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+/// A method that measures distances, plain data: the library's own is [`MapSource::EXACT`]. Other
+/// crates bring methods for comparison. Two methods of one name are equal.
+#[derive(Clone, Copy)]
+pub struct MapSource {
+    /// Name in options and files.
+    pub name: &'static str,
+    /// Measures a profile on a grid of `columns` x `rows` texels, laid out as in
+    /// [`ShapeMap`](super::ShapeMap).
+    pub measure: fn(profile: &Profile, columns: u32, rows: u32) -> Measured,
+}
+
+/// The signed distance at each texel's centre, object units, and the rectangle that the solid
+/// occupies; `None` if the grid shows no solid.
+pub type Measured = (Vec<f32>, Option<Bounds>);
+
+impl MapSource {
+    /// Exact distance to the outline's segments.
+    pub const EXACT: Self = Self {
+        name: "exact",
+        measure: exact::measure,
+    };
+}
+
+impl Default for MapSource {
+    fn default() -> Self {
+        Self::EXACT
+    }
+}
+
+impl PartialEq for MapSource {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for MapSource {}
+
+impl Hash for MapSource {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+impl fmt::Debug for MapSource {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
