@@ -42,7 +42,8 @@ fn generate() -> Fallible<()> {
         entry: module.entry.file(),
         macros: module.macros(),
         hook: None,
-        named: false,
+        optimized: true,
+        for_tests: false,
     };
     let mut all: Vec<_> = list::modules().into_iter().map(module).collect();
     // Tests read the layouts of blocks from this module.
@@ -55,7 +56,8 @@ fn generate() -> Fallible<()> {
             ("OUTPUT", "OUTPUT_PLANES"),
         ],
         hook: None,
-        named: true,
+        optimized: false,
+        for_tests: true,
     });
     let includes = Path::new(SOURCES).join("include");
     let modules = Modules {

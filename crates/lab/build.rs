@@ -1,16 +1,18 @@
+//! Turns the shaders of the mesh baseline into the SPIR-V that Rust embeds. With the feature
+//! `shaderc` the GLSL is compiled here; without it the SPIR-V kept in `shaders/spirv/` is taken.
+//! `REVMAP_KEEP_SPIRV=1 cargo build` renews what is kept.
+//!
 //! Compiles the floor's shaders where the feature `shaderc` is on: those of the renderer, with what
 //! `shaders/floor/` has in place of theirs. None is kept in the repository: they are for measuring
 //! alone.
 
-use shaderc_link::modules::Fallible;
-#[cfg(feature = "shaderc")]
-use shaderc_link::modules::{Module, Modules};
+use shaderc_link::modules::{Fallible, Module, Modules, files_in};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=shaders/floor");
+    println!("cargo::rerun-if-changed=shaders");
     println!("cargo::rerun-if-changed=../../shaders-glsl");
     if let Err(error) = generate() {
         for line in error.to_string().lines() {
@@ -28,7 +30,34 @@ fn generate() -> Fallible<()> {
     }
     text.push_str("];\n");
     std::fs::write(out.join("floor.rs"), text)?;
+    let mesh = ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"];
+    let mesh = Modules {
+        entries: &["shaders"],
+        includes: &["shaders"],
+        kept: "shaders/spirv",
+        all: mesh
+            .map(|entry| module(entry.to_owned(), entry, Vec::new(), false))
+            .into(),
+    };
+    let sources = files_in("shaders", &["vert", "frag", "glsl"])?;
+    std::fs::write(out.join("mesh.rs"), mesh.embed(&sources)?)?;
     Ok(())
+}
+
+fn module(
+    name: String,
+    entry: &'static str,
+    macros: Vec<(&'static str, &'static str)>,
+    optimized: bool,
+) -> Module {
+    Module {
+        name,
+        entry,
+        macros,
+        hook: None,
+        optimized,
+        for_tests: false,
+    }
 }
 
 #[cfg(not(feature = "shaderc"))]
@@ -51,12 +80,12 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
         "tile_tree.comp",
         "tile_copies.comp",
     ];
-    let mut all = vec![module("proxy_cells.vert", Vec::new())];
+    let mut all = vec![floor_module("proxy_cells.vert", Vec::new())];
     for file in entries {
         for variant in VARIANTS {
             let mut macros = vec![("SEARCH", "SEARCH_QUADRIC")];
             macros.extend(variant);
-            all.push(module(file, macros));
+            all.push(floor_module(file, macros));
         }
     }
     let modules = Modules {
@@ -72,18 +101,9 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
 
 /// Its name is as `floor.rs` has it.
 #[cfg(feature = "shaderc")]
-fn module(entry: &'static str, macros: Vec<(&'static str, &'static str)>) -> Module {
+fn floor_module(entry: &'static str, macros: Vec<(&'static str, &'static str)>) -> Module {
     let value = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
-    let name = format!(
-        "{entry} {} {}",
-        value("OUTPUT").unwrap_or("OUTPUT_COLOR"),
-        value("TEXTURED").unwrap_or("0"),
-    );
-    Module {
-        name,
-        entry,
-        macros,
-        hook: None,
-        named: false,
-    }
+    let output = value("OUTPUT").unwrap_or("OUTPUT_COLOR");
+    let textured = value("TEXTURED").unwrap_or("0");
+    module(format!("{entry} {output} {textured}"), entry, macros, true)
 }

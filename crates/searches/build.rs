@@ -35,10 +35,8 @@ fn generate() -> Fallible<()> {
         .map(|entry| format!("{LIBRARY}/{entry}").into())
         .to_vec();
     for folder in ["core", "search", "stage"] {
-        sources.extend(modules::files_in(
-            format!("{includes}/{folder}"),
-            &["glsl"],
-        )?);
+        let folder = format!("{includes}/{folder}");
+        sources.extend(modules::files_in(folder, &["glsl"])?);
     }
     sources.extend(modules::files_in(OWN, &["glsl"])?);
     sources.extend(["src/list.rs", "../../src/search/module.rs"].map(PathBuf::from));
@@ -47,7 +45,8 @@ fn generate() -> Fallible<()> {
         entry: listed.module.entry(),
         macros: listed.module.macros(),
         hook: Some(("search/hook.glsl", listed.hook)),
-        named: false,
+        optimized: true,
+        for_tests: false,
     });
     let modules = Modules {
         entries: &[LIBRARY],

@@ -13,6 +13,7 @@ mod offscreen;
 mod prewarm;
 mod renderer;
 pub(crate) mod resources;
+mod scene_view;
 #[cfg(feature = "other-shaders")]
 #[doc(hidden)]
 pub use vk::compiler;
@@ -30,7 +31,7 @@ pub use frame::prepare::PreparedFrame;
 pub use frame::target::ComputeTarget;
 pub use memory::Buffer;
 pub use memory::budget::MemoryUse;
-pub use offscreen::{Guest, Offscreen, Times};
+pub use offscreen::{Guest, Offscreen, OffscreenOptions, Times};
 pub use prewarm::Prewarm;
 pub use renderer::Renderer;
 pub use vk::call::{allocation_error, vulkan_error};

@@ -10,14 +10,13 @@ use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::frame::read_back;
 use crate::gpu::frame::target::Target;
 use crate::gpu::renderer::Renderer;
+use crate::gpu::scene_view::view_of;
 use crate::gpu::vk::clock::Clock;
 use crate::gpu::vk::commands::Commands;
 use crate::plan::{DepthOrder, DrawPath, View};
-use crate::scene::{CameraFrame, Cluster, Growth, Object, Placement, Scene};
+use crate::scene::{CameraFrame, Object, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
-use glam::DVec3;
-use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -55,6 +54,26 @@ pub struct Offscreen {
     device: Arc<Shared>,
 }
 
+/// How a scene is drawn off screen, beside the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OffscreenOptions {
+    /// True if a guest draws the scene's objects, now and after every update. Camera, background,
+    /// lights and the range of depths are the scene's. Default: false.
+    pub guests_only: bool,
+    /// Samples of a pixel in the fragment stage, 1, 2, 4 or 8; a frame holds their means. Default:
+    /// 1. Rays go through pixel centres at any count.
+    pub samples: u32,
+}
+
+impl Default for OffscreenOptions {
+    fn default() -> Self {
+        Self {
+            guests_only: false,
+            samples: 1,
+        }
+    }
+}
+
 /// Other content that is drawn in an off-screen frame's pass, into the same depth buffer.
 pub trait Guest {
     /// Records work that the draws need beforehand, such as copies into buffers. The times leave it
@@ -81,24 +100,32 @@ impl Offscreen {
     /// Errors of baking and of the scene's values ([`ErrorKind::Content`]); [`ErrorKind::TooLarge`]
     /// for more pixels than the device takes; errors of Vulkan calls.
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
-        Self::open(device, scene, settings, false)
+        Self::with(device, scene, settings, OffscreenOptions::default())
     }
 
-    /// Same as [`Offscreen::new`], but without the scene's objects, now and in every update: a
-    /// guest draws them. Camera, background, lights and the range of depths are the scene's.
+    /// Same as [`Offscreen::new`], with options.
     ///
     /// # Errors
-    /// Same as [`Offscreen::new`].
-    pub fn for_guests(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
-        Self::open(device, scene, settings, true)
-    }
-
-    fn open(
+    /// Same as [`Offscreen::new`]; [`ErrorKind::Usage`] for several samples in compute.
+    pub fn with(
         device: &Device,
         scene: &Scene,
         settings: &Settings,
-        guests_only: bool,
+        options: OffscreenOptions,
     ) -> Result<Self> {
+        let OffscreenOptions {
+            guests_only,
+            samples,
+        } = options;
+        // Several samples smooth silhouettes by themselves.
+        let settings = &Settings {
+            antialias: settings.antialias && samples == 1,
+            ..*settings
+        };
+        if samples != 1 && settings.stage == DrawStage::Compute {
+            let message = "compute draws one sample a pixel; give the stage fragment";
+            return Err(Error::new(ErrorKind::Usage, message).at_key("samples"));
+        }
         if matches!(settings.planes, Planes::Depth { .. }) {
             let message = "depth alone is drawn in a host's pass; give color or all";
             return Err(Error::new(ErrorKind::Usage, message));
@@ -113,7 +140,7 @@ impl Offscreen {
             DrawStage::Compute => vk::RenderPass::null(),
             _ => shared
                 .pipelines()?
-                .own_pass(settings.planes, keeps_depths)?,
+                .own_pass(settings.planes, keeps_depths, samples)?,
         };
         let target = Target::new(
             &shared,
@@ -121,6 +148,7 @@ impl Offscreen {
             settings.stage,
             settings.planes,
             keeps_depths,
+            samples,
             size,
         )?;
         let output = match settings.stage {
@@ -130,7 +158,7 @@ impl Offscreen {
                     pass: raw,
                     subpass: 0,
                 },
-                samples: 1,
+                samples,
                 depth: DepthOrder::Normal,
                 planes: settings.planes,
             }),
@@ -395,41 +423,4 @@ impl Offscreen {
         }
         Ok(())
     }
-}
-
-/// The view of a scene's camera, with a depth range that contains every box.
-fn view_of(scene: &Scene, size: (u32, u32)) -> Result<View> {
-    let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
-    View::from_camera(&scene.camera, size, depth_range(scene, &camera))
-}
-
-/// The depth range that contains every box; near is never closer than a ten-thousandth of far.
-fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
-    let mut low = f64::INFINITY;
-    let mut high: f64 = 0.0;
-    for object in &scene.objects {
-        // Corners of hulls extend a little beyond the box, corners of convex hulls by some texels
-        // more.
-        let growth = Growth::of(object);
-        let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
-        let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
-        let middle_z = 0.5 * (1.0 + growth.high - growth.low);
-        let range = |p: &Placement| {
-            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, middle_z));
-            let depth = (middle - camera.eye).dot(camera.forward);
-            let reach = (p.rotation.conjugate() * camera.forward * p.scale)
-                .abs()
-                .dot(half);
-            [depth - reach, depth + reach]
-        };
-        let farthest = [radius * SQRT_2, middle_z.abs() + half.z];
-        let of = |cluster: &Cluster| cluster.around(camera.eye, farthest).along(camera.forward);
-        low = low.min(object.least_of_copies(|c| of(c)[0], |p| range(p)[0]));
-        high = high.max(-object.least_of_copies(|c| -of(c)[1], |p| -range(p)[1]));
-    }
-    if high <= 0.0 {
-        return [1.0, 2.0];
-    }
-    let far = high * 1.001;
-    [(low * 0.999).max(far * 1e-4), far]
 }

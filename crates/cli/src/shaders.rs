@@ -156,7 +156,7 @@ fn compiled(
                         technique,
                         stage,
                         solver,
-                        path: choice.path().to_owned(),
+                        path: choice.path(),
                         executable,
                     }));
                 }

@@ -55,14 +55,11 @@ impl Method {
     pub fn mesh(segments: u32, rings: u32) -> Result<Self> {
         let quads = u64::from(segments) * u64::from(rings);
         if segments < 3 || rings < 2 || quads > Self::MOST_QUADS {
-            return Err(Error::new(
-                ErrorKind::Usage,
-                format!(
-                    "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 \
-                     rings, and at most {} of both together",
-                    Self::MOST_QUADS
-                ),
-            ));
+            let most = Self::MOST_QUADS;
+            let message = format!(
+                "mesh:{segments}x{rings} has {quads} quads; give at least 3 segments and 2 rings, and at most {most} of both together"
+            );
+            return Err(Error::new(ErrorKind::Usage, message));
         }
         Ok(Self::Mesh { segments, rings })
     }
@@ -191,16 +188,13 @@ impl FromStr for Method {
             .strip_prefix("mesh:")
             .and_then(|rest| rest.split_once('x'))
             .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-        match numbers {
-            Some((segments, rings)) => Self::mesh(segments, rings),
-            None => Err(Error::new(
-                ErrorKind::Usage,
-                format!(
-                    "{text:?} is no search; give one of {}, a mesh as mesh:64x128, or floor",
-                    revmap_searches::ALL.map(Solver::name).join(", ")
-                ),
-            )),
+        if let Some((segments, rings)) = numbers {
+            return Self::mesh(segments, rings);
         }
+        let known = revmap_searches::ALL.map(Solver::name).join(", ");
+        let message =
+            format!("{text:?} is no search; give one of {known}, a mesh as mesh:64x128, or floor");
+        Err(Error::new(ErrorKind::Usage, message))
     }
 }
 
@@ -226,6 +220,15 @@ impl Edges {
             Self::Silhouettes => "silhouettes".to_owned(),
             Self::Rays(count) => format!("{count} rays"),
             Self::Msaa => "MSAA 4".to_owned(),
+        }
+    }
+
+    /// Samples of a pixel in one pass.
+    #[must_use]
+    pub fn samples(self) -> u32 {
+        match self {
+            Self::Msaa => 4,
+            Self::OneRay | Self::Silhouettes | Self::Rays(_) => 1,
         }
     }
 }
@@ -320,33 +323,12 @@ mod tests {
 
     #[test]
     fn names_are_read_and_bounded() {
-        for text in [
-            "mesh:3x2",
-            "mesh:levels",
-            "floor",
-            "mesh:64x128",
-            "mesh:2048x2048",
-            "quadric",
-        ] {
+        for text in "mesh:3x2 mesh:levels floor mesh:64x128 mesh:2048x2048 quadric".split(' ') {
             assert_eq!(text.parse::<Method>().unwrap().to_string(), text);
         }
-        for bad in [
-            "mesh",
-            "mesh:",
-            "mesh:2x1",
-            "mesh:0x0",
-            "mesh:3x1",
-            "mesh:99999999x9",
-            "mesh:axb",
-            "mesh:64",
-            "mesh:64x",
-            "mesh:-3x9",
-            "mesh:64x128x2",
-            "mesh:2049x2048",
-            "MESH:64x128",
-            "magic",
-            "",
-        ] {
+        let bad = "mesh mesh: mesh:2x1 mesh:0x0 mesh:3x1 mesh:99999999x9 mesh:axb mesh:64 mesh:64x \
+                   mesh:-3x9 mesh:64x128x2 mesh:2049x2048 MESH:64x128 magic";
+        for bad in bad.split(' ').chain([""]) {
             let error = bad.parse::<Method>().unwrap_err();
             assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
             assert!(!error.message.contains('\n'), "{error}");
@@ -366,9 +348,7 @@ mod tests {
             ..Settings::exact()
         };
         assert_eq!(Settings::from(&settings), wanted);
-        assert_eq!(
-            Method::ALL.map(|m| m.solver().unwrap()),
-            revmap_searches::ALL
-        );
+        let solvers = Method::ALL.map(|m| m.solver().unwrap());
+        assert_eq!(solvers, revmap_searches::ALL);
     }
 }

@@ -1,11 +1,11 @@
 //! One renderer for every method: searches and meshes behind the same calls.
 
 use crate::floor;
-use crate::mesh::{MeshOffscreen, MeshPipelines, Multisampled};
+use crate::mesh::{MeshLayer, MeshPipelines};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, ObjectCost, Offscreen, Times};
+use revmap::gpu::{Device, ObjectCost, Offscreen, OffscreenOptions, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::{Arc, OnceLock};
@@ -52,24 +52,24 @@ impl MethodDevice {
     /// Makes all ready to draw a scene.
     ///
     /// # Errors
-    /// As [`Offscreen::new`] or [`MeshOffscreen::new`].
+    /// As [`Offscreen::new`]; [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) and
+    /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) for what a mesh does not draw.
     pub fn renderer(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodRenderer> {
-        Ok(if settings.method.is_mesh() {
-            let mesh = MeshOffscreen::new(&self.pipelines, scene, settings)?;
-            MethodRenderer::Mesh(Box::new(mesh))
-        } else {
-            let own = Settings::from(settings);
-            let device = self.device_of(scene, settings.method)?;
-            MethodRenderer::Search(Box::new(Offscreen::new(device, scene, &own)?))
-        })
-    }
-
-    /// Makes all ready for a picture of four samples a pixel.
-    ///
-    /// # Errors
-    /// As [`Multisampled::new`].
-    pub fn multisampled(&self, scene: &Scene, settings: &MethodSettings) -> Result<Multisampled> {
-        Multisampled::new(&self.pipelines, scene, settings)
+        let options = OffscreenOptions {
+            guests_only: settings.method.is_mesh(),
+            samples: settings.edges.samples(),
+        };
+        let device = self.device_of(scene, settings.method)?;
+        let own = Settings::from(settings);
+        let offscreen = Box::new(Offscreen::with(device, scene, &own, options)?);
+        let mut meshes = None;
+        if options.guests_only {
+            let (pipelines, samples) = (&self.pipelines, options.samples);
+            let mut new = MeshLayer::new(pipelines, &offscreen, settings, samples)?;
+            new.update(scene, || Ok(*offscreen.view()))?;
+            meshes = Some(Box::new(new));
+        }
+        Ok(MethodRenderer { meshes, offscreen })
     }
 
     fn device_of(&self, scene: &Scene, method: Method) -> Result<&Device> {
@@ -108,23 +108,26 @@ impl MethodDevice {
     }
 }
 
-/// A scene on a device and a picture that it is drawn into, by either kind of method.
-pub enum MethodRenderer {
-    /// By a search, or by the floor.
-    Search(Box<Offscreen>),
-    /// As meshes.
-    Mesh(Box<MeshOffscreen>),
+/// A scene on a device and a picture that it is drawn into, by any method.
+pub struct MethodRenderer {
+    // Dropped first: its frames were waited for.
+    meshes: Option<Box<MeshLayer>>,
+    /// Of meshes without the scene's objects.
+    offscreen: Box<Offscreen>,
 }
 
 impl MethodRenderer {
     /// Takes over a scene.
     ///
     /// # Errors
-    /// As [`Offscreen::update`] or [`MeshOffscreen::update`].
+    /// As [`Offscreen::update`]; of what a mesh does not draw.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
-        match self {
-            Self::Search(offscreen) => offscreen.update(scene),
-            Self::Mesh(mesh) => mesh.update(scene),
+        match &mut self.meshes {
+            None => self.offscreen.update(scene),
+            Some(meshes) => meshes.update(scene, || {
+                self.offscreen.update(scene)?;
+                Ok(*self.offscreen.view())
+            }),
         }
     }
 
@@ -133,9 +136,9 @@ impl MethodRenderer {
     /// # Errors
     /// Of Vulkan.
     pub fn prewarm(&mut self) -> Result<()> {
-        match self {
-            Self::Search(offscreen) => offscreen.prewarm(),
-            Self::Mesh(_) => Ok(()),
+        match self.meshes {
+            None => self.offscreen.prewarm(),
+            Some(_) => Ok(()),
         }
     }
 
@@ -144,10 +147,10 @@ impl MethodRenderer {
     /// # Errors
     /// Of drawing.
     pub fn draw(&mut self) -> Result<Times> {
-        match self {
-            Self::Search(offscreen) => offscreen.draw(),
-            Self::Mesh(mesh) => mesh.draw(),
-        }
+        let guest = self.meshes.as_ref().map(|meshes| meshes.guest());
+        let times = self.offscreen.draw_with(guest)?;
+        self.meshes.iter_mut().for_each(|m| m.drop_staging());
+        Ok(times)
     }
 
     /// The frame that was drawn last.
@@ -155,55 +158,40 @@ impl MethodRenderer {
     /// # Errors
     /// Of Vulkan.
     pub fn read(&mut self) -> Result<Frame> {
-        match self {
-            Self::Search(offscreen) => offscreen.read(),
-            Self::Mesh(mesh) => mesh.read(),
-        }
+        self.offscreen.read()
     }
 
     /// As [`Offscreen::rebuild_count`], or how many meshes were made.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
-        match self {
-            Self::Search(offscreen) => offscreen.rebuild_count(),
-            Self::Mesh(mesh) => mesh.rebuild_count(),
-        }
+        let meshes = self.meshes.as_ref().map(|meshes| meshes.made_count());
+        meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
     }
 
     /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
     /// maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
-        match self {
-            Self::Search(offscreen) => offscreen.map_bytes(),
-            Self::Mesh(mesh) => [mesh.mesh_bytes(), 0],
-        }
+        let meshes = self.meshes.as_ref().map(|meshes| [meshes.bytes(), 0]);
+        meshes.unwrap_or_else(|| self.offscreen.map_bytes())
     }
 
     /// As [`Offscreen::object_costs`]; none of a mesh.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
-        match self {
-            Self::Search(offscreen) => offscreen.object_costs(),
-            Self::Mesh(_) => Vec::new(),
-        }
+        self.offscreen.object_costs()
     }
 
     /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
-        match self {
-            Self::Search(offscreen) => offscreen.device_bytes(),
-            Self::Mesh(mesh) => mesh.mesh_bytes(),
-        }
+        let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
+        meshes.unwrap_or_else(|| self.offscreen.device_bytes())
     }
 
     /// As [`Offscreen::notes`]; none of a mesh.
     #[must_use]
     pub fn notes(&self) -> &[String] {
-        match self {
-            Self::Search(offscreen) => offscreen.notes(),
-            Self::Mesh(_) => &[],
-        }
+        self.offscreen.notes()
     }
 }

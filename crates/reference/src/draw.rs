@@ -1,9 +1,9 @@
 //! Draws a whole picture by the reference, rows in parallel; any number of threads gives the same
 //! bits.
 
-use super::shade::shade;
-use super::texture::Lengths;
+use super::shade::Colors;
 use super::{Ray, Reference};
+use glam::DVec3;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
@@ -28,13 +28,13 @@ pub fn draw(
     let mut frame = Frame::new(width, height, scene.background)?;
     let camera = CameraFrame::new(&scene.camera, width, height)?;
     let reference = Reference::new(scene)?;
-    let lengths = Lengths::new(scene)?;
+    let colors = Colors::new(scene)?;
     let done = AtomicUsize::new(0);
     let rows: Vec<Vec<(u32, [f32; 17])>> = (0..height)
         .into_par_iter()
         .map(|j| {
             let row = (0..width)
-                .filter_map(|i| Some((i, pixel(scene, &reference, &lengths, &camera, i, j)?)))
+                .filter_map(|i| Some((i, pixel(scene, &reference, &colors, camera.pixel(i, j))?)))
                 .collect();
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, height as usize);
             row
@@ -49,45 +49,16 @@ pub fn draw(
     Ok(frame)
 }
 
-/// The colours of a scene along single rays.
-#[derive(Debug)]
-pub struct Colors<'a> {
-    scene: &'a Scene,
-    lengths: Lengths,
-}
-
-impl<'a> Colors<'a> {
-    /// Prepares a scene.
-    ///
-    /// # Errors
-    /// The errors of [`ArcLength::new`](revmap::maps::ArcLength::new).
-    pub fn new(scene: &'a Scene) -> Result<Self> {
-        let lengths = Lengths::new(scene)?;
-        Ok(Self { scene, lengths })
-    }
-
-    /// The linear colour of the first hit along a ray; `None` without a hit. Rays towards the
-    /// lights begin at least `lift` off the surface, world units.
-    #[must_use]
-    pub fn along(&self, reference: &Reference, ray: Ray, lift: f64) -> Option<[f32; 4]> {
-        let hit = reference.trace(ray).hit?;
-        Some(shade(self.scene, reference, &self.lengths, &hit, ray, lift)?.color)
-    }
-}
-
 /// All channels of a pixel, in the order of [`revmap::frame::CHANNELS`]; `None` if the ray enters
 /// no box.
 fn pixel(
     scene: &Scene,
     reference: &Reference,
-    lengths: &Lengths,
-    camera: &CameraFrame,
-    i: u32,
-    j: u32,
+    colors: &Colors,
+    direction: DVec3,
 ) -> Option<[f32; 17]> {
-    let direction = camera.pixel(i, j);
     let ray = Ray {
-        origin: camera.eye,
+        origin: scene.camera.eye,
         direction,
     };
     let trace = reference.trace(ray);
@@ -99,7 +70,7 @@ fn pixel(
         value[16] = steps;
         return (trace.evaluations > 0).then_some(value);
     };
-    let shaded = shade(scene, reference, lengths, &hit, ray, 0.0)?;
+    let shaded = colors.shade(reference, &hit, ray, 0.0)?;
     let [r, g, b, a] = shaded.color;
     let [nx, ny, nz] = hit.normal.as_vec3().to_array();
     let [sx, sy, sz] = shaded.shading_normal.as_vec3().to_array();

@@ -4,7 +4,8 @@
 //! segments crossed on the way to `r = +inf`, counted within one of many horizontal slabs. The
 //! loops' direction and order therefore do not matter.
 
-use glam::DVec2;
+use super::tree::{Bounds, Tree};
+use glam::{DVec2, DVec3};
 use revmap::profile::Outline;
 
 /// Points closer to the axis than this are on it. A segment between two such points closes a loop
@@ -23,16 +24,6 @@ struct Segment {
     along: DVec2,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    min: DVec2,
-    max: DVec2,
-    /// In a leaf: the first segment. Otherwise: the right child (the left one follows its parent).
-    next: u32,
-    /// Number of segments; 0 for a node that is not a leaf.
-    count: u32,
-}
-
 /// The segment nearest to a point of the half-plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
@@ -46,7 +37,7 @@ pub(super) struct Nearest {
 #[derive(Debug)]
 pub(super) struct Field {
     segments: Vec<Segment>,
-    nodes: Vec<Node>,
+    tree: Tree,
     slabs: Slabs,
 }
 
@@ -55,9 +46,8 @@ pub(super) struct Field {
 struct Slabs {
     low: f64,
     per_unit: f64,
-    /// `starts[k]..starts[k + 1]` are the indices in `members` of slab `k`.
-    starts: Vec<u32>,
-    members: Vec<u32>,
+    /// The indices of the segments in each slab, from below.
+    members: Vec<Vec<u32>>,
 }
 
 impl Field {
@@ -86,12 +76,14 @@ impl Field {
         if segments.is_empty() {
             return None;
         }
-        let mut nodes = Vec::with_capacity(segments.len());
-        build(&mut segments, 0, &mut nodes);
+        let tree = Tree::new(&mut segments, 4, |s| Bounds {
+            min: s.a.min(s.b).extend(0.0),
+            max: s.a.max(s.b).extend(0.0),
+        });
         let slabs = Slabs::new(&segments);
         let mut field = Self {
             segments,
-            nodes,
+            tree,
             slabs,
         };
         field.turn_normals_outwards();
@@ -149,48 +141,25 @@ impl Field {
         if nearest.distance < 1e-12 {
             return s.normal;
         }
-        if self.inside(q) {
-            -away.normalize()
-        } else {
-            away.normalize()
-        }
+        let outwards = if self.inside(q) { -1.0 } else { 1.0 };
+        outwards * away.normalize()
     }
 
     /// The segment nearest to `q`.
     pub fn nearest(&self, q: DVec2, hint: u32) -> Nearest {
         let mut best = (self.segments[hint as usize].square_to(q), hint);
-        let mut stack = [(0u32, 0f64); 64];
-        stack[0] = (0, self.nodes[0].square_to(q));
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let (index, bound) = stack[height];
-            if bound >= best.0 {
-                continue;
+        let point = q.extend(0.0);
+        let least = |bounds: &Bounds| {
+            let outside = (bounds.min - point).max(point - bounds.max);
+            outside.max(DVec3::ZERO).length_squared()
+        };
+        self.tree.search(best.0, least, |k| {
+            let square = self.segments[k].square_to(q);
+            if square < best.0 {
+                best = (square, k as u32);
             }
-            let node = self.nodes[index as usize];
-            if node.count > 0 {
-                for k in node.next..node.next + node.count {
-                    let square = self.segments[k as usize].square_to(q);
-                    if square < best.0 {
-                        best = (square, k);
-                    }
-                }
-                continue;
-            }
-            let mut children =
-                [index + 1, node.next].map(|c| (c, self.nodes[c as usize].square_to(q)));
-            // The nearer child is visited first: it goes on top.
-            if children[0].1 < children[1].1 {
-                children.swap(0, 1);
-            }
-            for child in children {
-                if child.1 < best.0 && height < stack.len() {
-                    stack[height] = child;
-                    height += 1;
-                }
-            }
-        }
+            square
+        });
         Nearest {
             segment: best.1,
             distance: best.0.sqrt(),
@@ -215,56 +184,11 @@ impl Segment {
     }
 }
 
-impl Node {
-    fn square_to(&self, q: DVec2) -> f64 {
-        (self.min - q)
-            .max(q - self.max)
-            .max(DVec2::ZERO)
-            .length_squared()
-    }
-}
-
-const LEAF: usize = 4;
-
-/// Appends the tree over `segments`, which are sorted into its order; `first` is the index of the
-/// slice in the whole.
-fn build(segments: &mut [Segment], first: u32, nodes: &mut Vec<Node>) {
-    let min = segments
-        .iter()
-        .fold(DVec2::INFINITY, |m, s| m.min(s.a).min(s.b));
-    let max = segments
-        .iter()
-        .fold(DVec2::NEG_INFINITY, |m, s| m.max(s.a).max(s.b));
-    let place = nodes.len();
-    let leaf = segments.len() <= LEAF;
-    nodes.push(Node {
-        min,
-        max,
-        next: first,
-        count: if leaf { segments.len() as u32 } else { 0 },
-    });
-    if leaf {
-        return;
-    }
-    let axis = usize::from(max.y - min.y > max.x - min.x);
-    let half = segments.len() / 2;
-    segments.select_nth_unstable_by(half, |p, q| {
-        (p.a[axis] + p.b[axis]).total_cmp(&(q.a[axis] + q.b[axis]))
-    });
-    let (left, right) = segments.split_at_mut(half);
-    build(left, first, nodes);
-    nodes[place].next = nodes.len() as u32;
-    build(right, first + half as u32, nodes);
-}
-
 impl Slabs {
     fn new(segments: &[Segment]) -> Self {
-        let low = segments
-            .iter()
-            .fold(f64::INFINITY, |m, s| m.min(s.a.y).min(s.b.y));
-        let high = segments
-            .iter()
-            .fold(f64::NEG_INFINITY, |m, s| m.max(s.a.y).max(s.b.y));
+        let heights = || segments.iter().flat_map(|s| [s.a.y, s.b.y]);
+        let low = heights().fold(f64::INFINITY, f64::min);
+        let high = heights().fold(f64::NEG_INFINITY, f64::max);
         let count = segments.len().clamp(16, 8192);
         let per_unit = if high > low {
             count as f64 / (high - low)
@@ -273,27 +197,15 @@ impl Slabs {
         };
         let slab = |z: f64| (((z - low) * per_unit) as usize).min(count - 1);
         let range = |s: &Segment| slab(s.a.y.min(s.b.y))..=slab(s.a.y.max(s.b.y));
-        let mut starts = vec![0u32; count + 1];
-        for s in segments {
-            for k in range(s) {
-                starts[k + 1] += 1;
-            }
-        }
-        for k in 0..count {
-            starts[k + 1] += starts[k];
-        }
-        let mut fill = starts.clone();
-        let mut members = vec![0; starts[count] as usize];
+        let mut members = vec![Vec::new(); count];
         for (index, s) in segments.iter().enumerate() {
-            for k in range(s) {
-                members[fill[k] as usize] = index as u32;
-                fill[k] += 1;
+            for slab in &mut members[range(s)] {
+                slab.push(index as u32);
             }
         }
         Self {
             low,
             per_unit,
-            starts,
             members,
         }
     }
@@ -302,12 +214,11 @@ impl Slabs {
     /// rounding, so none is missed.
     fn at(&self, z: f64) -> &[u32] {
         let place = (z - self.low) * self.per_unit;
-        let count = self.starts.len() - 1;
+        let count = self.members.len();
         if place < 0.0 || place > count as f64 || place.is_nan() {
             return &[];
         }
-        let k = (place as usize).min(count - 1);
-        &self.members[self.starts[k] as usize..self.starts[k + 1] as usize]
+        &self.members[(place as usize).min(count - 1)]
     }
 }
 
@@ -316,24 +227,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::samples;
+    use crate::tests::analytic::signed_distance as brute;
     use proptest::prelude::*;
-
-    fn brute(outline: &Outline, q: DVec2) -> f64 {
-        let mut best = f64::INFINITY;
-        let mut turns = 0.0;
-        for points in &outline.loops {
-            for (k, &a) in points.iter().enumerate() {
-                let b = points[(k + 1) % points.len()];
-                // Winding number by angles, independent of the tree and the slabs.
-                turns += (a - q).perp_dot(b - q).atan2((a - q).dot(b - q));
-                if a.x.max(b.x) > 0.0 {
-                    let s = ((q - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-                    best = best.min(q.distance(a + (b - a) * s));
-                }
-            }
-        }
-        if turns.abs() > 3.0 { -best } else { best }
-    }
 
     proptest! {
         #[test]

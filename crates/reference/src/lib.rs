@@ -5,20 +5,12 @@
 //! the exact distance to the profile's outline. `F` changes along a ray at most by a known factor,
 //! so steps can be proven not to pass a surface.
 //!
-//! | | [`Reference`] | [`Analytic`] |
-//! |---|---|---|
-//! | finds the first hit by | proven steps, then a narrowed bracket | roots of quadratics and quartics |
-//! | knows | everything a scene can say | outlines, no replicas |
-//! | time of a ray | microseconds, hardly growing with the outline | grows with the square of the outline |
-//! | is for | pictures and measurements | checking the first |
-//!
-//! The two methods differ by less than 1e-9 in position on random solids, offsets and rays, except
-//! for rays that either marks as grazing.
+//! Steps are proven, then a bracket is narrowed. Tests compare with a second method, by formula.
 //!
 //! ```
 //! use glam::{DVec2, DVec3};
 //! use revmap::profile::{Outline, Profile};
-//! use revmap_reference::{Ray, trace};
+//! use revmap_reference::{Ray, Reference};
 //! use revmap::scene::{Camera, Object, Scene};
 //! use std::sync::Arc;
 //! // A cylinder of radius 1/4, from the floor of its box to the ceiling.
@@ -26,12 +18,12 @@
 //! let profile = Profile::new(Outline { loops: vec![points] }, 0.5);
 //! let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
 //! scene.objects.push(Object::new("cylinder", Arc::new(profile)));
-//! let hit = trace(&scene, Ray { origin: DVec3::new(2.0, 0.0, 0.5), direction: DVec3::NEG_X })?.hit;
+//! let ray = Ray { origin: DVec3::new(2.0, 0.0, 0.5), direction: DVec3::NEG_X };
+//! let hit = Reference::new(&scene)?.trace(ray).hit;
 //! assert!(hit.is_some_and(|hit| (hit.t - 1.75).abs() < 1e-12 && hit.normal == DVec3::X));
 //! # Ok::<(), revmap::Error>(())
 //! ```
 
-mod analytic;
 mod bracket;
 mod draw;
 mod field;
@@ -45,9 +37,10 @@ mod samples;
 mod shade;
 mod solid;
 mod texture;
+mod tree;
 
-pub use analytic::Analytic;
-pub use draw::{Colors, draw};
+pub use draw::draw;
+pub use shade::Colors;
 pub use solid::Surface;
 
 use field::Field;
@@ -56,7 +49,7 @@ use parts::{Part, Parts};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::profile::Profile;
 use revmap::scene::{Placement, Scene};
-use solid::{LocalHit, Solid};
+use solid::Solid;
 use std::sync::Arc;
 
 /// A ray in the world. The direction may have any length, and `t` is in units of that length.
@@ -119,22 +112,12 @@ impl Reference {
     /// [`ErrorKind::Content`] if a profile has no surface, or a placement is invalid (a scale that
     /// is not positive, a rotation that is zero, a number that is not finite).
     pub fn new(scene: &Scene) -> Result<Self> {
-        let mut fields: Vec<(*const Profile, Arc<Field>)> = Vec::new();
+        let mut fields = Vec::new();
         let mut parts = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let key = format!("object.{index}");
-            // Objects that share a profile share its preparation.
-            let pointer = Arc::as_ptr(&object.profile);
-            let field = match fields.iter().find(|(p, _)| *p == pointer) {
-                Some((_, field)) => field.clone(),
-                None => {
-                    let field = Arc::new(
-                        prepare(&object.profile).map_err(|e| e.at_key(format!("{key}.profile")))?,
-                    );
-                    fields.push((pointer, field.clone()));
-                    field
-                }
-            };
+            let field = shared(&mut fields, &object.profile, prepare)
+                .map_err(|e| e.at_key(format!("{key}.profile")))?;
             let solid = Arc::new(Solid::new(object, field));
             for (instance, placement) in object.placements().iter().enumerate() {
                 let placement = checked(placement).map_err(|e| e.at_key(&key))?;
@@ -159,76 +142,44 @@ impl Reference {
         if !is_ray(ray.origin, ray.direction) {
             return all;
         }
-        self.parts.along(ray.origin, ray.direction, |part| {
-            let (origin, direction) = part.local(ray.origin, ray.direction);
-            let found = part.solid.trace(origin, direction);
+        self.parts.along(ray, |part| {
+            let found = part.solid.trace(part.local(ray));
             all.evaluations += found.evaluations;
             all.grazes |= found.grazes;
-            let Some(LocalHit {
-                t,
-                normal,
-                surface,
-                place,
-                cell,
-            }) = found.hit
-            else {
+            let Some(mut hit) = found.hit else {
                 return f64::INFINITY;
             };
-            let (object, instance) = (part.object, part.instance);
+            (hit.object, hit.instance) = (part.object, part.instance);
             // If two are hit at once, the first in the scene is used, independent of the order in
             // the tree.
-            let first = all.hit.is_none_or(|best| {
-                t < best.t || (t == best.t && (object, instance) < (best.object, best.instance))
-            });
-            if first {
+            let place = |hit: &Hit| (hit.object, hit.instance);
+            let is_first =
+                |best: Hit| hit.t < best.t || (hit.t == best.t && place(&hit) < place(&best));
+            if all.hit.is_none_or(is_first) {
                 let Placement {
                     rotation, scale, ..
                 } = part.placement;
-                let normal = (rotation * (normal / scale)).normalize_or_zero();
-                all.hit = Some(Hit {
-                    t,
-                    object,
-                    instance,
-                    normal,
-                    surface,
-                    place,
-                    cell,
-                });
+                hit.normal = (rotation * (hit.normal / scale)).normalize_or_zero();
+                all.hit = Some(hit);
             }
-            t
+            hit.t
         });
         all
     }
 
-    /// The depth to which a ray enters the solids (negative), or the distance by which it misses
-    /// all of them (positive), in object units and to within `tolerance`. This is the least value
-    /// along the ray of `max(F, g)`, with `g` the distance to the box's faces, negative inside.
+    /// The depth to which a ray between two values of `t` enters the solids (negative), or the
+    /// distance by which it misses all of them (positive), in object units and to within
+    /// `tolerance`. This is the least value of `max(F, g)`, with `g` the distance to the box's
+    /// faces, negative inside.
     ///
     /// The clearance distinguishes a wrong pixel from one that rounding decides: both signs are
-    /// right at a silhouette as long as the clearance is small. An invalid ray has the clearance
-    /// `+inf`.
-    #[must_use]
-    pub fn clearance(&self, ray: Ray, tolerance: f64) -> f64 {
-        self.clearance_within(ray, [0.0, f64::INFINITY], tolerance)
-    }
-
-    /// The clearance of a part of the ray, between two values of `t`. With equal values it is the
+    /// right at a silhouette as long as the clearance is small. With equal values of `t` it is the
     /// distance of a drawn hit from the surface. With a part up to a drawn hit, it shows a solid
-    /// that the drawing has passed.
+    /// that the drawing has passed. An invalid ray has the clearance `+inf`.
     #[must_use]
     pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
-        if !is_ray(ray.origin, ray.direction) {
-            return f64::INFINITY;
-        }
-        let [from, to] = within(part);
-        self.parts.list().iter().fold(f64::INFINITY, |least, one| {
-            let (origin, direction) = one.local(ray.origin, ray.direction);
-            let start = origin + direction * from;
-            least.min(
-                one.solid
-                    .clearance(start, direction, to - from, tolerance.max(1e-9)),
-            )
-        })
+        self.each_lowest(ray, part, tolerance, None)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Returns true if a part of a ray, between two values of `t`, is deeper in a solid than
@@ -236,31 +187,43 @@ impl Reference {
     /// [`Reference::clearance_within`], which computes the depth.
     #[must_use]
     pub fn goes_deeper(&self, ray: Ray, part: [f64; 2], depth: f64, tolerance: f64) -> bool {
-        if !is_ray(ray.origin, ray.direction) {
-            return false;
-        }
-        let [from, to] = within(part);
-        self.parts.list().iter().any(|one| {
-            let (origin, direction) = one.local(ray.origin, ray.direction);
-            let start = origin + direction * from;
-            let tolerance = tolerance.max(1e-9);
-            one.solid
-                .is_below(start, direction, to - from, tolerance, -depth)
+        self.each_lowest(ray, part, tolerance, Some(-depth))
+            .any(|lowest| lowest < -depth)
+    }
+
+    /// [`Solid::lowest`] of each part of the scene, on the part of the ray ahead of its start.
+    fn each_lowest(
+        &self,
+        ray: Ray,
+        [from, to]: [f64; 2],
+        tolerance: f64,
+        floor: Option<f64>,
+    ) -> impl Iterator<Item = f64> {
+        let valid = is_ray(ray.origin, ray.direction);
+        let parts = self.parts.list.iter().take_while(move |_| valid);
+        let from = from.max(0.0);
+        let length = to.max(from) - from;
+        parts.map(move |part| {
+            let mut local = part.local(ray);
+            local.origin += local.direction * from;
+            (part.solid).lowest(local, length, tolerance.max(1e-9), floor)
         })
     }
 }
 
-/// The first hit along one ray. Make a [`Reference`] once for many rays.
-///
-/// # Errors
-/// The errors of [`Reference::new`].
-pub fn trace(scene: &Scene, ray: Ray) -> Result<Trace> {
-    Ok(Reference::new(scene)?.trace(ray))
-}
-
-/// The part of an interval of `t` that is ahead of the ray's start.
-fn within(part: [f64; 2]) -> [f64; 2] {
-    [part[0].max(0.0), part[1].max(part[0].max(0.0))]
+/// What `make` gives for a profile, once for all objects that share the profile.
+fn shared<T>(
+    known: &mut Vec<(*const Profile, Arc<T>)>,
+    profile: &Arc<Profile>,
+    make: impl FnOnce(&Profile) -> Result<T>,
+) -> Result<Arc<T>> {
+    let pointer = Arc::as_ptr(profile);
+    if let Some((_, found)) = known.iter().find(|(p, _)| *p == pointer) {
+        return Ok(found.clone());
+    }
+    let new = Arc::new(make(profile)?);
+    known.push((pointer, new.clone()));
+    Ok(new)
 }
 
 fn prepare(profile: &Profile) -> Result<Field> {

@@ -4,6 +4,7 @@
 use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
 use glam::DVec3;
+use revmap::error::Result;
 use revmap::scene::{Scene, Shadow};
 
 /// The colour and the shading normal of a hit.
@@ -18,70 +19,96 @@ pub(super) struct Shaded {
 /// distance from the eye. Nearer to it, the surface would shade itself.
 const LIFT: f64 = 1e-6;
 
-/// Shades a hit that is seen along `ray`; `None` if its object is not in the scene. A ray towards a
-/// light begins at least `least_lift` off the surface, world units.
-///
-/// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
-/// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
-/// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-/// away. A light adds the part of it that [`visible`] finds.
-pub(super) fn shade(
-    scene: &Scene,
-    reference: &Reference,
-    lengths: &Lengths,
-    hit: &Hit,
-    ray: Ray,
-    least_lift: f64,
-) -> Option<Shaded> {
-    let object = scene.objects.get(hit.object)?;
-    let arc = lengths.of(hit.object);
-    let uv = texture::coordinates(object, arc, hit.place);
-    let own = object.color.map(f64::from);
-    let albedo = texture::color(object, uv).unwrap_or(own);
+/// The colours of a scene.
+#[derive(Debug)]
+pub struct Colors<'a> {
+    scene: &'a Scene,
+    lengths: Lengths,
+}
 
-    let view = -ray.direction.normalize_or_zero();
-    let facing = if hit.normal.dot(view) < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
-    let smooth = facing * hit.normal;
-    let normal = bumped(scene, lengths, hit).map_or(smooth, |tilted| facing * tilted);
-    let point = ray.origin + ray.direction * hit.t;
-    let lift = (LIFT * hit.t * ray.direction.length()).max(least_lift);
-
-    let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
-    for light in &scene.lights {
-        let towards = -light.direction.normalize_or_zero();
-        let lambert = normal.dot(towards);
-        if lambert <= 0.0 {
-            continue;
-        }
-        let from = point + lift * smooth;
-        let visible = match scene.shadow {
-            Shadow::Off => 1.0,
-            Shadow::Hard => f64::from(u8::from(reaches(reference, from, smooth, towards))),
-            Shadow::Soft => visible(reference, from, smooth, towards, light.cap()),
-        };
-        if visible == 0.0 {
-            continue;
-        }
-        let half = (towards + view).normalize_or_zero();
-        let shine = f64::from(object.specular.strength)
-            * normal
-                .dot(half)
-                .max(0.0)
-                .powf(f64::from(object.specular.shininess));
-        for (c, sum) in color.iter_mut().enumerate() {
-            *sum += visible * f64::from(light.color[c]) * (albedo[c] * lambert + shine);
-        }
+impl<'a> Colors<'a> {
+    /// Prepares a scene.
+    ///
+    /// # Errors
+    /// The errors of [`ArcLength::new`](revmap::maps::ArcLength::new).
+    pub fn new(scene: &'a Scene) -> Result<Self> {
+        let lengths = Lengths::new(scene)?;
+        Ok(Self { scene, lengths })
     }
-    Some(Shaded {
-        color: [color[0] as f32, color[1] as f32, color[2] as f32, 1.0],
-        shading_normal: normal,
-        albedo: albedo.map(|v| v as f32),
-        uv,
-    })
+
+    /// The linear colour of the first hit along a ray; `None` without a hit. Rays towards the
+    /// lights begin at least `lift` off the surface, world units.
+    #[must_use]
+    pub fn along(&self, reference: &Reference, ray: Ray, lift: f64) -> Option<[f32; 4]> {
+        let hit = reference.trace(ray).hit?;
+        Some(self.shade(reference, &hit, ray, lift)?.color)
+    }
+
+    /// Shades a hit that is seen along `ray`; `None` if its object is not in the scene. A ray towards a
+    /// light begins at least `least_lift` off the surface, world units.
+    ///
+    /// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
+    /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
+    /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
+    /// away. A light adds the part of it that [`visible`] finds.
+    pub(super) fn shade(
+        &self,
+        reference: &Reference,
+        hit: &Hit,
+        ray: Ray,
+        least_lift: f64,
+    ) -> Option<Shaded> {
+        let Self { scene, lengths } = self;
+        let object = scene.objects.get(hit.object)?;
+        let arc = lengths.of(hit.object);
+        let uv = texture::coordinates(object, arc, hit.place);
+        let own = object.color.map(f64::from);
+        let albedo = texture::color(object, uv).unwrap_or(own);
+
+        let view = -ray.direction.normalize_or_zero();
+        let facing = if hit.normal.dot(view) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let smooth = facing * hit.normal;
+        let normal = bumped(scene, lengths, hit).map_or(smooth, |tilted| facing * tilted);
+        let point = ray.origin + ray.direction * hit.t;
+        let lift = (LIFT * hit.t * ray.direction.length()).max(least_lift);
+
+        let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
+        for light in &scene.lights {
+            let towards = -light.direction.normalize_or_zero();
+            let lambert = normal.dot(towards);
+            if lambert <= 0.0 {
+                continue;
+            }
+            let from = point + lift * smooth;
+            let visible = match scene.shadow {
+                Shadow::Off => 1.0,
+                Shadow::Hard => f64::from(u8::from(reaches(reference, from, smooth, towards))),
+                Shadow::Soft => visible(reference, from, smooth, towards, light.cap()),
+            };
+            if visible == 0.0 {
+                continue;
+            }
+            let half = (towards + view).normalize_or_zero();
+            let shine = f64::from(object.specular.strength)
+                * normal
+                    .dot(half)
+                    .max(0.0)
+                    .powf(f64::from(object.specular.shininess));
+            for (c, sum) in color.iter_mut().enumerate() {
+                *sum += visible * f64::from(light.color[c]) * (albedo[c] * lambert + shine);
+            }
+        }
+        Some(Shaded {
+            color: [color[0] as f32, color[1] as f32, color[2] as f32, 1.0],
+            shading_normal: normal,
+            albedo: albedo.map(|v| v as f32),
+            uv,
+        })
+    }
 }
 
 /// Rays towards a light's disc whose mean is its visible part, where they disagree.
@@ -92,14 +119,11 @@ const FIRST_RAYS: u32 = 64;
 /// True if nothing is between a point and a light. The surface itself hides what is below its
 /// horizon; `normal` points to the lit side.
 fn reaches(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3) -> bool {
-    normal.dot(towards) > 0.0
-        && reference
-            .trace(Ray {
-                origin: from,
-                direction: towards,
-            })
-            .hit
-            .is_none()
+    let ray = Ray {
+        origin: from,
+        direction: towards,
+    };
+    normal.dot(towards) > 0.0 && reference.trace(ray).hit.is_none()
 }
 
 /// The part of a light's disc that a point sees, 0 to 1: directions within the cone around
@@ -167,20 +191,20 @@ mod tests {
             origin: DVec3::ZERO,
             direction: direction.into(),
         };
-        let lengths = Lengths::new(&scene).unwrap();
-        shade(&scene, &reference, &lengths, &hit, ray, 0.0).unwrap()
+        let colors = Colors::new(&scene).unwrap();
+        colors.shade(&reference, &hit, ray, 0.0).unwrap()
     }
 
     #[track_caller]
     fn assert_color(shaded: &Shaded, expected: [f64; 3]) {
-        for (c, e) in shaded.color.iter().zip(expected) {
+        let found = shaded.color;
+        for (c, e) in found.iter().zip(expected) {
             assert!(
                 (f64::from(*c) - e).abs() < 1e-6,
-                "{:?} is not {expected:?}",
-                shaded.color
+                "{found:?} is not {expected:?}"
             );
         }
-        assert_eq!(shaded.color[3], 1.0);
+        assert_eq!(found[3], 1.0);
     }
 
     /// A wide plate whose edge crosses the light's disc hides a segment of a circle.
@@ -214,26 +238,20 @@ mod tests {
         // Albedo 0.8 0.6 0.4, ambient 0.1, strength 0.3, shininess 40. Light, normal and viewer in
         // one line give the full value.
         let full = [0.8 * 1.1 + 0.3, 0.6 * 1.1 + 0.3, 0.4 * 1.1 + 0.3];
-        assert_color(
-            &look([0.0, 0.0, 1.0], [0.0, 0.0, -5.0], [0.0, 0.0, -2.0]),
-            full,
-        );
+        let straight = look([0.0, 0.0, 1.0], [0.0, 0.0, -5.0], [0.0, 0.0, -2.0]);
+        assert_color(&straight, full);
         // Seen from behind the surface, the normal is turned, and the light on that side counts.
         let back = look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
         assert_color(&back, full);
         assert_eq!(back.shading_normal, DVec3::NEG_Z);
         // A surface lit from behind has only ambient light.
-        assert_color(
-            &look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]),
-            [0.08, 0.06, 0.04],
-        );
+        let dark = look([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
+        assert_color(&dark, [0.08, 0.06, 0.04]);
         // Light from 45 degrees and the viewer above give half the angle for the highlight.
         let shine = 0.3 * (std::f64::consts::FRAC_PI_8.cos()).powi(40);
         let slant = look([0.0, 0.0, 1.0], [-1.0, 0.0, -1.0], [0.0, 0.0, -1.0]);
-        assert_color(
-            &slant,
-            [0.8, 0.6, 0.4].map(|a| a * (0.1 + FRAC_1_SQRT_2) + shine),
-        );
+        let lit = [0.8, 0.6, 0.4].map(|a| a * (0.1 + FRAC_1_SQRT_2) + shine);
+        assert_color(&slant, lit);
     }
 
     #[test]

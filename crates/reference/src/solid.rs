@@ -2,8 +2,8 @@
 //! box.
 
 use super::bracket::{Search, first_zero};
-use super::field::{Field, Nearest};
-use super::is_ray;
+use super::field::Field;
+use super::{Hit, Ray, Trace, is_ray};
 use glam::{DVec2, DVec3};
 use revmap::scene::{Growth, Object, Offset};
 use std::sync::Arc;
@@ -16,28 +16,6 @@ pub enum Surface {
     /// The cut at a face of the shape box, or at the border of a replica's cell, perpendicular to
     /// this axis (0 x, 1 y, 2 z).
     Cut(usize),
-}
-
-/// A hit of ray and solid in the object's own space.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LocalHit {
-    pub t: f64,
-    /// Outward normal, not of unit length.
-    pub normal: DVec3,
-    pub surface: Surface,
-    /// The point in the replica's cell, about its axis: x, y from the axis, z from the cell's
-    /// floor.
-    pub place: DVec3,
-    /// Cell units per object unit; negative for a mirrored replica.
-    pub cell: DVec3,
-}
-
-/// The result of a ray with one solid.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LocalTrace {
-    pub hit: Option<LocalHit>,
-    pub grazes: bool,
-    pub evaluations: u32,
 }
 
 /// A solid of revolution, prepared for rays.
@@ -83,13 +61,14 @@ impl Solid {
         ]
     }
 
-    /// The first hit at `t >= 0` of the ray `origin + t direction`, object space.
+    /// The first hit at `t >= 0` of a ray in object space. The object and the instance of the hit
+    /// are 0, and its normal is not of unit length.
     ///
     /// The boundary of the solid is where the ray's state (in or out) changes: within a cell at a
     /// zero of `F`, at a cell's border by the states of the two sides. All points outside the box
     /// are out.
-    pub fn trace(&self, origin: DVec3, direction: DVec3) -> LocalTrace {
-        let mut trace = LocalTrace::default();
+    pub fn trace(&self, Ray { origin, direction }: Ray) -> Trace {
+        let mut trace = Trace::default();
         // A ray's numbers may overflow in the space of a very large or very small solid.
         if !is_ray(origin, direction) {
             return trace;
@@ -119,58 +98,35 @@ impl Solid {
             if solid_before.is_some_and(|before| before != solid) {
                 trace.evaluations += count;
                 let side = if solid { -1.0 } else { 1.0 };
-                return trace.with(self.cut(start, direction, (low, clip.t[0]), axis, side));
+                trace.hit = Some(self.cut(start, direction, (low, clip.t[0]), axis, side));
+                return trace;
             }
             let Search { zero, grazes } = first_zero(&mut f, a, b, fa, cell.lipschitz());
             trace.evaluations += count;
             trace.grazes |= grazes;
             if let Some(t) = zero {
-                let place = cell.at(t);
-                let normal = cell.normal(place);
+                let normal = cell.normal(cell.at(t));
                 trace.grazes |= normal.dot(cell.direction).abs()
                     < FLAT * normal.length() * cell.direction.length();
-                return trace.with(LocalHit {
-                    t: clip.t[0] + t,
-                    normal: normal * cell.factor,
-                    surface: Surface::Turned,
-                    place,
-                    cell: cell.factor,
-                });
+                let normal = normal * cell.factor;
+                trace.hit = Some(cell.hit((t, clip.t[0]), normal, Surface::Turned));
+                return trace;
             }
             solid_before = Some(solid);
         }
         if solid_before == Some(true) {
             let (t, axis) = cuts[cuts.len() - 1];
-            return trace.with(self.cut(start, direction, (t, clip.t[0]), axis, 1.0));
+            trace.hit = Some(self.cut(start, direction, (t, clip.t[0]), axis, 1.0));
         }
         trace
     }
 
     /// The least value of `max(F, g)` for `t` from 0 to `last`, to within `tolerance`. `g` is the
-    /// distance to the faces of box and cell.
-    pub fn clearance(&self, origin: DVec3, direction: DVec3, last: f64, tolerance: f64) -> f64 {
-        self.lowest(origin, direction, last, tolerance, None)
-    }
-
-    /// Returns true if [`clearance`](Self::clearance) is below `floor`; ends at the first point
-    /// that is.
-    pub fn is_below(
+    /// distance to the faces of box and cell. Values above `floor` count as `floor`, and the first
+    /// below it ends the search.
+    pub fn lowest(
         &self,
-        origin: DVec3,
-        direction: DVec3,
-        last: f64,
-        tolerance: f64,
-        floor: f64,
-    ) -> bool {
-        self.lowest(origin, direction, last, tolerance, Some(floor)) < floor
-    }
-
-    /// The least value; values above `floor` count as `floor`, and the first below it ends the
-    /// search.
-    fn lowest(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
+        Ray { origin, direction }: Ray,
         last: f64,
         tolerance: f64,
         floor: Option<f64>,
@@ -230,17 +186,20 @@ impl Solid {
         (t, base): (f64, f64),
         axis: usize,
         side: f64,
-    ) -> LocalHit {
+    ) -> Hit {
         let mut normal = DVec3::ZERO;
         normal[axis] = side * direction[axis].signum();
         // The cell on the solid's side.
         let cell = Cell::new(self, start, direction, t - side * 1e-9 / direction.length());
-        LocalHit {
-            t: base + t,
-            normal,
-            surface: Surface::Cut(axis),
-            place: cell.at(t),
-            cell: cell.factor,
+        cell.hit((t, base), normal, Surface::Cut(axis))
+    }
+
+    /// The lowest coordinate of the profile's box along an axis, and its size.
+    fn side(&self, axis: usize) -> (f64, f64) {
+        if axis < 2 {
+            (-self.radius, 2.0 * self.radius)
+        } else {
+            (0.0, 1.0)
         }
     }
 
@@ -251,11 +210,7 @@ impl Solid {
         let mut cuts = vec![(0.0, clip.axis[0])];
         for axis in 0..3 {
             let n = self.repeat[axis];
-            let (low, size) = if axis < 2 {
-                (-self.radius, 2.0 * self.radius)
-            } else {
-                (0.0, 1.0)
-            };
+            let (low, size) = self.side(axis);
             cuts.extend((1..n).filter_map(|k| {
                 let t = (low + size * f64::from(k) / f64::from(n) - start[axis]) / direction[axis];
                 (t > 0.0 && t < length).then_some((t, axis))
@@ -264,13 +219,6 @@ impl Solid {
         cuts[1..].sort_by(|p, q| p.0.total_cmp(&q.0));
         cuts.push((length, clip.axis[1]));
         cuts
-    }
-}
-
-impl LocalTrace {
-    fn with(mut self, hit: LocalHit) -> Self {
-        self.hit = Some(hit);
-        self
     }
 }
 
@@ -325,13 +273,8 @@ impl Clip {
                 }
                 continue;
             }
-            let mut t = [
-                (low[axis] - origin[axis]) / direction[axis],
-                (high[axis] - origin[axis]) / direction[axis],
-            ];
-            if t[0] > t[1] {
-                t.swap(0, 1);
-            }
+            let [a, b] = [low, high].map(|face| (face[axis] - origin[axis]) / direction[axis]);
+            let t = [a.min(b), a.max(b)];
             if t[0] > clip.t[0] {
                 (clip.t[0], clip.axis[0]) = (t[0], axis);
             }
@@ -365,8 +308,7 @@ impl<'a> Cell<'a> {
         let mut origin = DVec3::ZERO;
         for axis in 0..3 {
             let n = f64::from(solid.repeat[axis]);
-            let size = if axis < 2 { 2.0 * solid.radius } else { 1.0 };
-            let low = if axis < 2 { -solid.radius } else { 0.0 };
+            let (low, size) = solid.side(axis);
             let place = |x: f64| (x - low) / size * n;
             let index = place(start[axis] + direction[axis] * t)
                 .floor()
@@ -382,6 +324,19 @@ impl<'a> Cell<'a> {
             origin,
             direction: direction * factor,
             factor,
+        }
+    }
+
+    /// The hit at `t` after the ray's start in the box, which is at `base`.
+    fn hit(&self, (t, base): (f64, f64), normal: DVec3, surface: Surface) -> Hit {
+        Hit {
+            t: base + t,
+            object: 0,
+            instance: 0,
+            normal,
+            surface,
+            place: self.at(t),
+            cell: self.factor,
         }
     }
 
@@ -409,8 +364,8 @@ impl<'a> Cell<'a> {
     fn normal(&self, p: DVec3) -> DVec3 {
         let r = p.x.hypot(p.y);
         let q = DVec2::new(r, p.z);
-        let nearest: Nearest = self.solid.field.nearest(q, 0);
-        let g = self.solid.field.gradient(q, nearest);
+        let field = &self.solid.field;
+        let g = field.gradient(q, field.nearest(q, 0));
         let offset = &self.solid.offset;
         let slope = if 1.0 - p.z < offset.chamfer {
             -offset.bevel

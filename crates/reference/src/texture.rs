@@ -2,11 +2,11 @@
 //! of each projection, and the colour and slope at them. Gradients of the coordinates are
 //! differences of the formulas, so that nothing here repeats the derivations used in shaders.
 
+use super::shared;
 use glam::DVec3;
 use revmap::error::Result;
 use revmap::frame::linear_from_srgb;
 use revmap::maps::{ArcLength, Level, Projection};
-use revmap::profile::Profile;
 use revmap::scene::{BumpForm, Object, Scene};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -17,25 +17,15 @@ pub(super) struct Lengths(Vec<Option<Arc<ArcLength>>>);
 
 impl Lengths {
     pub fn new(scene: &Scene) -> Result<Self> {
-        let mut known: Vec<(*const Profile, Arc<ArcLength>)> = Vec::new();
-        let mut lengths = Vec::new();
-        for object in &scene.objects {
-            if object.texturing.projection != Projection::Arc {
-                lengths.push(None);
-                continue;
-            }
-            let pointer = Arc::as_ptr(&object.profile);
-            let found = match known.iter().find(|(p, _)| *p == pointer) {
-                Some((_, found)) => found.clone(),
-                None => {
-                    let new = Arc::new(ArcLength::new(&object.profile)?);
-                    known.push((pointer, new.clone()));
-                    new
-                }
-            };
-            lengths.push(Some(found));
-        }
-        Ok(Self(lengths))
+        let mut known = Vec::new();
+        let length = |object: &Object| {
+            let wanted = object.texturing.projection == Projection::Arc;
+            let length = wanted.then(|| shared(&mut known, &object.profile, ArcLength::new));
+            length.transpose()
+        };
+        Ok(Self(
+            scene.objects.iter().map(length).collect::<Result<_>>()?,
+        ))
     }
 
     pub fn of(&self, object: usize) -> Option<&ArcLength> {

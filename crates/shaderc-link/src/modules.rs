@@ -23,8 +23,10 @@ pub struct Module {
     pub macros: Vec<(&'static str, &'static str)>,
     /// An included file, and the file that is read in its place.
     pub hook: Option<(&'static str, &'static str)>,
-    /// Whether it is kept for tests alone, with its names, which optimised words do not hold.
-    pub named: bool,
+    /// Whether its words are optimised, which leaves out names.
+    pub optimized: bool,
+    /// Whether it is kept for tests alone.
+    pub for_tests: bool,
 }
 
 /// Modules, and where their GLSL is. Of two folders that hold a file the first is read.
@@ -62,12 +64,12 @@ impl Modules<'_> {
             let hashes = format!("{hash:#018x}\n{compiler:#018x}\n");
             fs::write(Path::new(self.kept).join("sources.fnv"), hashes)?;
         }
-        let named = self.all.iter().map(|module| module.named);
+        let for_tests = self.all.iter().map(|module| module.for_tests);
         let packed: Vec<_> = self
             .packed()?
             .into_iter()
-            .zip(named)
-            .filter_map(|(bytes, named)| (!named).then_some(bytes))
+            .zip(for_tests)
+            .filter_map(|(bytes, for_tests)| (!for_tests).then_some(bytes))
             .collect();
         let sizes: Vec<usize> = packed.iter().map(Vec::len).collect();
         let out = PathBuf::from(std::env::var("OUT_DIR")?);
@@ -160,10 +162,10 @@ impl Modules<'_> {
             Some((included, file)) if included == wanted => read(self.includes, file),
             _ => read(self.includes, wanted),
         };
-        let level = if module.named {
-            crate::OptimizationLevel::Zero
-        } else {
+        let level = if module.optimized {
             crate::OptimizationLevel::Performance
+        } else {
+            crate::OptimizationLevel::Zero
         };
         let made = crate::spirv(compiler, (&path, &text), &module.macros, level, include)?;
         Ok(made.as_binary().to_vec())

@@ -50,6 +50,9 @@ pub(crate) struct Target {
     /// The fragment path's attachments, or the compute path's storage images. Empty if compute
     /// draws only colour.
     pub images: Vec<Image>,
+    /// What fragments are drawn into before it is resolved into the images, if a pixel has several
+    /// samples.
+    sampled: Vec<Image>,
     depth: Option<Image>,
     framebuffer: vk::Framebuffer,
     /// The depths of all pixels, then their second words (see `pixel_words.glsl`). `None` if
@@ -95,6 +98,7 @@ impl Target {
         stage: DrawStage,
         planes: Planes,
         keeps_depths: bool,
+        samples: u32,
         (width, height): (u32, u32),
     ) -> Result<Self> {
         let needs_words = stage == DrawStage::Compute || planes == Planes::All;
@@ -105,6 +109,7 @@ impl Target {
             stage,
             planes,
             images: Vec::new(),
+            sampled: Vec::new(),
             depth: None,
             framebuffer: vk::Framebuffer::null(),
             words: None,
@@ -112,12 +117,15 @@ impl Target {
             host: None,
             device: device.clone(),
         };
-        let image = |name, format, usage| {
+        let one = vk::SampleCountFlags::TYPE_1;
+        let samples = vk::SampleCountFlags::from_raw(samples);
+        let image = |name, format, samples, usage| {
             let kind = ImageKind {
                 format,
                 width,
                 height,
                 mips: 1,
+                samples,
                 usage,
             };
             Image::new(device, name, kind)
@@ -129,7 +137,7 @@ impl Target {
         };
         if stage != DrawStage::Compute || planes == Planes::All {
             for format in color_formats(planes) {
-                target.images.push(image("plane", *format, usage)?);
+                target.images.push(image("plane", *format, one, usage)?);
             }
         }
         if stage != DrawStage::Compute {
@@ -139,23 +147,15 @@ impl Target {
                 U::empty()
             };
             let usage = U::DEPTH_STENCIL_ATTACHMENT | copied;
-            let depth = image("depth", DEPTH_FORMAT, usage)?;
-            let views: Vec<_> = target
-                .images
-                .iter()
-                .chain([&depth])
-                .map(|i| i.view)
-                .collect();
+            let depth = image("depth", DEPTH_FORMAT, samples, usage)?;
+            if samples != one {
+                for format in color_formats(planes) {
+                    let samples = image("samples", *format, samples, U::COLOR_ATTACHMENT)?;
+                    target.sampled.push(samples);
+                }
+            }
+            target.framebuffer = target.framebuffer(render_pass, &depth)?;
             target.depth = Some(depth);
-            let info = vk::FramebufferCreateInfo::default()
-                .render_pass(render_pass)
-                .attachments(&views)
-                .width(width)
-                .height(height)
-                .layers(1);
-            // SAFETY: the views live as long as the framebuffer.
-            target.framebuffer = unsafe { device.raw.create_framebuffer(&info, None) }
-                .call("vkCreateFramebuffer")?;
         }
         if needs_words {
             use vk::BufferUsageFlags as B;
@@ -164,6 +164,21 @@ impl Target {
             target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
         }
         Ok(target)
+    }
+
+    /// The attachments of the fragment path, in the order of `render_pass`.
+    fn framebuffer(&self, pass: vk::RenderPass, depth: &Image) -> Result<vk::Framebuffer> {
+        let attached = self.sampled.iter().chain(&self.images);
+        let mut views: Vec<_> = attached.map(|image| image.view).collect();
+        views.insert(color_formats(self.planes).len(), depth.view);
+        let info = vk::FramebufferCreateInfo::default()
+            .render_pass(pass)
+            .attachments(&views)
+            .width(self.width)
+            .height(self.height)
+            .layers(1);
+        // SAFETY: the views live as long as the framebuffer.
+        unsafe { self.device.raw.create_framebuffer(&info, None) }.call("vkCreateFramebuffer")
     }
 
     /// The memory that shaders write to besides attachments.

@@ -120,6 +120,7 @@ pub(crate) struct ImageKind {
     pub width: u32,
     pub height: u32,
     pub mips: u32,
+    pub samples: vk::SampleCountFlags,
     pub usage: vk::ImageUsageFlags,
 }
 
@@ -160,7 +161,7 @@ impl Image {
             })
             .mip_levels(kind.mips)
             .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(kind.samples)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(kind.usage);
         // SAFETY: a plain creation; the handle is destroyed in Drop.

@@ -59,6 +59,7 @@ impl Uploads {
             width,
             height,
             mips: u32::try_from(levels.len()).unwrap_or(1),
+            samples: vk::SampleCountFlags::TYPE_1,
             usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
         };
         let image = Arc::new(Image::new(device, name, kind)?);

@@ -189,7 +189,7 @@ impl PipelineCompiler {
             DrawStage::Compute => Output::Compute(planes),
             DrawStage::Fragment => Output::Pass(PassFormats {
                 begun: PassKind::RenderPass {
-                    pass: self.pipelines.own_pass(planes, false)?,
+                    pass: self.pipelines.own_pass(planes, false, 1)?,
                     subpass: 0,
                 },
                 samples: 1,

@@ -57,7 +57,7 @@ pub(crate) struct Pipelines {
     compiled: AtomicU64,
     owners: AtomicU64,
     /// The passes of off-screen frames. A pass lives as long as the pipelines that are keyed by it.
-    passes: Mutex<HashMap<(Planes, bool), vk::RenderPass>>,
+    passes: Mutex<HashMap<(Planes, bool, u32), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
     /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
@@ -201,16 +201,23 @@ impl Pipelines {
     }
 
     /// Returns the render pass of off-screen frames, made now if it is new.
-    pub fn own_pass(&self, planes: Planes, keeps_depths: bool) -> Result<vk::RenderPass> {
+    pub fn own_pass(
+        &self,
+        planes: Planes,
+        keeps_depths: bool,
+        samples: u32,
+    ) -> Result<vk::RenderPass> {
         let mut passes = self
             .passes
             .lock()
             .map_err(|_| Error::new(ErrorKind::Other, "the render passes' lock is poisoned"))?;
-        if let Some(known) = passes.get(&(planes, keeps_depths)) {
+        let key = (planes, keeps_depths, samples);
+        if let Some(known) = passes.get(&key) {
             return Ok(*known);
         }
-        let made = render_pass(&self.raw, planes, keeps_depths)?;
-        passes.insert((planes, keeps_depths), made);
+        let count = vk::SampleCountFlags::from_raw(samples);
+        let made = render_pass(&self.raw, planes, keeps_depths, count)?;
+        passes.insert(key, made);
         Ok(made)
     }
 

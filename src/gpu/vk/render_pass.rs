@@ -51,58 +51,63 @@ fn dependencies(keeps_depths: bool) -> [vk::SubpassDependency; 2] {
     ]
 }
 
-/// Makes a render pass that clears its attachments at its start. At the end, colours and kept
-/// depths are ready to be copied from.
+/// Makes a render pass of so many samples a pixel that clears its attachments at its start. At the
+/// end, colours and kept depths are ready to be copied from. Several samples of a colour are
+/// resolved into an attachment behind the others.
 pub(crate) fn render_pass(
     raw: &ash::Device,
     planes: Planes,
     keeps_depths: bool,
+    samples: vk::SampleCountFlags,
 ) -> Result<vk::RenderPass> {
-    let mut attachments: Vec<_> = color_formats(planes)
-        .iter()
-        .map(|format| {
-            vk::AttachmentDescription::default()
-                .format(*format)
-                .samples(vk::SampleCountFlags::TYPE_1)
-                .load_op(vk::AttachmentLoadOp::CLEAR)
-                .store_op(vk::AttachmentStoreOp::STORE)
-                .final_layout(vk::ImageLayout::TRANSFER_SRC_OPTIMAL)
-        })
-        .collect();
-    let colors: Vec<_> = (0u32..)
-        .take(attachments.len())
-        .map(|n| {
-            vk::AttachmentReference::default()
-                .attachment(n)
-                .layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-        })
-        .collect();
-    let depth = vk::AttachmentReference::default()
-        .attachment(u32::try_from(colors.len()).unwrap_or(0))
-        .layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-    let (store, layout) = if keeps_depths {
-        (
-            vk::AttachmentStoreOp::STORE,
-            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-        )
-    } else {
-        (
-            vk::AttachmentStoreOp::DONT_CARE,
-            vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-        )
-    };
-    attachments.push(
+    use vk::AttachmentLoadOp as Load;
+    use vk::AttachmentStoreOp as Store;
+    use vk::ImageLayout as Layout;
+    let attachment = |format, samples, load, store, layout| {
         vk::AttachmentDescription::default()
-            .format(DEPTH_FORMAT)
-            .samples(vk::SampleCountFlags::TYPE_1)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .format(format)
+            .samples(samples)
+            .load_op(load)
             .store_op(store)
-            .final_layout(layout),
+            .final_layout(layout)
+    };
+    let one = vk::SampleCountFlags::TYPE_1;
+    let resolves = samples != one;
+    let (color, copied) = (
+        Layout::COLOR_ATTACHMENT_OPTIMAL,
+        Layout::TRANSFER_SRC_OPTIMAL,
     );
-    let subpasses = [vk::SubpassDescription::default()
+    let depth = Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    let written = |format| match resolves {
+        true => attachment(format, samples, Load::CLEAR, Store::DONT_CARE, color),
+        false => attachment(format, one, Load::CLEAR, Store::STORE, copied),
+    };
+    let formats = color_formats(planes);
+    let mut attachments: Vec<_> = formats.iter().map(|format| written(*format)).collect();
+    attachments.push(match keeps_depths {
+        true => attachment(DEPTH_FORMAT, samples, Load::CLEAR, Store::STORE, copied),
+        false => attachment(DEPTH_FORMAT, samples, Load::CLEAR, Store::DONT_CARE, depth),
+    });
+    let resolved = |format| attachment(format, one, Load::DONT_CARE, Store::STORE, copied);
+    attachments.extend(formats.iter().map(|format| resolved(*format)));
+    attachments.truncate(1 + formats.len() * if resolves { 2 } else { 1 });
+    let refer = |number: usize, layout| {
+        vk::AttachmentReference::default()
+            .attachment(u32::try_from(number).unwrap_or(0))
+            .layout(layout)
+    };
+    let count = formats.len();
+    let colors: Vec<_> = (0..count).map(|n| refer(n, color)).collect();
+    let means: Vec<_> = (0..count).map(|n| refer(count + 1 + n, color)).collect();
+    let depth = refer(count, depth);
+    let mut subpass = vk::SubpassDescription::default()
         .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
         .color_attachments(&colors)
-        .depth_stencil_attachment(&depth)];
+        .depth_stencil_attachment(&depth);
+    if resolves {
+        subpass = subpass.resolve_attachments(&means);
+    }
+    let subpasses = [subpass];
     let dependencies = dependencies(keeps_depths);
     let info = vk::RenderPassCreateInfo::default()
         .attachments(&attachments)

@@ -2,9 +2,8 @@
 //!
 //! After Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, *FLIP: A Difference
 //! Evaluator for Alternating Images*, Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020 (the LDR
-//! form), written from the article. The bindings to its authors' program need a C++ compiler at
-//! build time, which a plain build of this crate does without; a test holds this code to that
-//! program's figures.
+//! form), written from the article. The bindings to its authors' program take colours in 8 bits,
+//! which hide small errors; a test holds this code to that program's figures.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;

@@ -39,13 +39,7 @@ impl Heat {
     /// Its name in options and captions.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Wrong => "wrong",
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Silhouette => "silhouette",
-            Self::Flip => "flip",
-        }
+        ["wrong", "depth", "normal", "silhouette", "flip"][self as usize]
     }
 }
 
@@ -102,11 +96,10 @@ pub fn heat_map(
     kind: Heat,
 ) -> Result<Picture> {
     check(reference, frame, options)?;
+    let depth = |k| depth_error(reference, frame, k, options.texel);
     let paint: Box<dyn Fn(usize) -> [u8; 3]> = match kind {
         Heat::Wrong => Box::new(|_| BOTH),
-        Heat::Depth => {
-            Box::new(|k| Scale::DEPTH.color(depth_error(reference, frame, k, options.texel)))
-        }
+        Heat::Depth => Box::new(|k| Scale::DEPTH.color(depth(k))),
         Heat::Normal => Box::new(|k| Scale::NORMAL.color(normal_error(reference, frame, k))),
         Heat::Silhouette => Box::new(rims(reference, frame)),
         Heat::Flip => {
@@ -258,30 +251,24 @@ mod tests {
         assert_eq!(at(Heat::Depth, |f| f.distance[43] = 2.1, 3, 1), ramp(1.0));
         assert_eq!(at(Heat::Depth, |f| f.distance[43] = 2.001, 3, 1), ramp(0.5));
         assert_eq!(at(Heat::Depth, |_| {}, 3, 1), ramp(0.0));
-        let tilt =
-            |f: &mut Frame| f.normal[43] = [1f32.to_radians().sin(), 0.0, 1f32.to_radians().cos()];
+        let (s, c) = 1f32.to_radians().sin_cos();
+        let tilt = |f: &mut Frame| f.normal[43] = [s, 0.0, c];
+        let none = |f: &mut Frame| f.normal[43] = [f32::NAN; 3];
         assert_eq!(at(Heat::Normal, tilt, 3, 1), ramp(0.5));
-        assert_eq!(
-            at(Heat::Normal, |f| f.normal[43] = [f32::NAN; 3], 3, 1),
-            ramp(1.0)
-        );
+        assert_eq!(at(Heat::Normal, none, 3, 1), ramp(1.0));
         // A ghost four pixels from the edge is its own silhouette.
         let spot = |f: &mut Frame| f.distance[10 * 40 + 23] = 1.0;
         assert_eq!(at(Heat::Silhouette, spot, 23, 10), ramp(0.5));
         assert_eq!(at(Heat::Silhouette, spot, 19, 10), ramp(0.0));
         let blot = |f: &mut Frame| f.color[43] = [0.0, 1.0, 0.0, 1.0];
-        assert!(
-            brightness(at(Heat::Flip, blot, 3, 1)) > brightness(at(Heat::Flip, blot, 15, 15)) + 100
-        );
+        let [near, far] = [(3, 1), (15, 15)].map(|(x, y)| brightness(at(Heat::Flip, blot, x, y)));
+        assert!(near > far + 100);
     }
 
     #[test]
     fn the_ramp_grows_brighter() {
-        for k in 0..100 {
-            assert!(
-                brightness(ramp(f64::from(k) / 100.0)) < brightness(ramp(f64::from(k + 1) / 100.0))
-            );
-        }
+        let at = |k: u32| brightness(ramp(f64::from(k) / 100.0));
+        assert!((0..100).all(|k| at(k) < at(k + 1)));
         assert_eq!((ramp(-1.0), ramp(7.0)), (ramp(0.0), ramp(1.0)));
     }
 

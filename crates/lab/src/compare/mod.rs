@@ -110,11 +110,8 @@ impl std::fmt::Display for Comparison {
         let heights = "h/512 (height h = 1 world unit)";
         writeln!(f, "            {}", spread(self.depth_h512(), heights))?;
         writeln!(f, "normal      {}", spread(self.normal, "degrees"))?;
-        writeln!(
-            f,
-            "silhouette  {:.3} pixels (Hausdorff)",
-            self.silhouette_hausdorff
-        )?;
+        let apart = self.silhouette_hausdorff;
+        writeln!(f, "silhouette  {apart:.3} pixels (Hausdorff)")?;
         match self.flip {
             Some(flip) => write!(f, "flip        {flip:.6}"),
             None => write!(f, "flip        not computed"),
@@ -177,40 +174,26 @@ impl<'a> Reference<'a> {
     /// # Errors
     /// [`ErrorKind::Content`] when the frames differ in size.
     pub fn compare(&self, frame: &Frame) -> Result<Comparison> {
-        check(self.frame, frame, &self.options)?;
-        Ok(measured(
-            self.frame,
-            frame,
-            &self.options,
-            self.eye.as_ref(),
-        ))
-    }
-}
-
-fn measured(
-    reference: &Frame,
-    frame: &Frame,
-    options: &CompareOptions,
-    eye: Option<&flip::Eye>,
-) -> Comparison {
-    let count = |f: &(dyn Fn(usize) -> bool + Sync)| {
-        (0..reference.pixels())
-            .into_par_iter()
-            .filter(|&k| f(k))
-            .count()
-    };
-    Comparison {
-        pixels: reference.pixels(),
-        hits: count(&|k| reference.hits(k)),
-        missed: count(&|k| reference.hits(k) && !frame.hits(k)),
-        ghost: count(&|k| !reference.hits(k) && frame.hits(k)),
-        depth: spread(reference, frame, |k| {
-            depth_error(reference, frame, k, options.texel)
-        }),
-        texel: options.texel,
-        normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
-        silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
-        flip: eye.map(|eye| flip::mean(&eye.flip(frame))),
+        let (reference, texel) = (self.frame, self.options.texel);
+        check(reference, frame, &self.options)?;
+        let pixels = 0..reference.pixels();
+        let count = |of: [bool; 2]| {
+            let is = |k: &usize| [reference.hits(*k), frame.hits(*k)] == of;
+            pixels.clone().into_par_iter().filter(is).count()
+        };
+        let (missed, ghost) = (count([true, false]), count([false, true]));
+        let depth = |k| depth_error(reference, frame, k, texel);
+        Ok(Comparison {
+            pixels: pixels.len(),
+            hits: count([true, true]) + missed,
+            missed,
+            ghost,
+            depth: spread(reference, frame, depth),
+            texel,
+            normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
+            silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
+            flip: (self.eye.as_ref()).map(|eye| flip::mean(&eye.flip(frame))),
+        })
     }
 }
 
@@ -224,13 +207,8 @@ pub(super) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) 
         );
         return wrong(ErrorKind::Content, message);
     }
-    for (name, value) in [
-        ("texel", options.texel),
-        (
-            "pixels per degree",
-            options.pixels_per_degree.unwrap_or(1.0),
-        ),
-    ] {
+    let resolution = options.pixels_per_degree.unwrap_or(1.0);
+    for (name, value) in [("texel", options.texel), ("pixels per degree", resolution)] {
         if !(value.is_finite() && value > 0.0) {
             let message = format!("{name} is {value}; give a positive number");
             return wrong(ErrorKind::Usage, message);
@@ -302,11 +280,9 @@ mod tests {
     }
 
     fn erase(frame: &mut Frame, k: usize) {
-        frame.set_pixel(k, {
-            let mut v = [0.0; 17];
-            v[4] = f32::INFINITY;
-            v
-        });
+        let mut empty = [0.0; 17];
+        empty[4] = f32::INFINITY;
+        frame.set_pixel(k, empty);
     }
 
     fn against(change: impl FnOnce(&mut Frame, &[usize])) -> Comparison {
@@ -314,15 +290,11 @@ mod tests {
         let solid: Vec<usize> = (0..base.pixels()).filter(|&k| base.hits(k)).collect();
         let mut other = base.clone();
         change(&mut other, &solid);
-        compare(
-            &base,
-            &other,
-            &CompareOptions {
-                texel: 0.01,
-                ..CompareOptions::default()
-            },
-        )
-        .unwrap()
+        let options = CompareOptions {
+            texel: 0.01,
+            ..CompareOptions::default()
+        };
+        compare(&base, &other, &options).unwrap()
     }
 
     #[test]
@@ -358,39 +330,28 @@ mod tests {
         // 0.25 world units are 25 texels, on every pixel: all three figures.
         let c = against(|f, solid| solid.iter().for_each(|&k| f.distance[k] += 0.25));
         let d = c.depth.unwrap();
-        assert!(
-            [d.rms, d.p99, d.max]
-                .iter()
-                .all(|e| (e - 25.0).abs() < 1e-9),
-            "{d:?}"
-        );
+        let is_planted = |e: &f64| (e - 25.0).abs() < 1e-9;
+        assert!([d.rms, d.p99, d.max].iter().all(is_planted), "{d:?}");
         // The same in h/512: 0.25 units are 128 of them.
         let h512 = c.depth_h512().unwrap();
         assert!((h512.p99 - 128.0).abs() < 1e-9, "{h512:?}");
         let text = c.to_string();
         let depth: Vec<&str> = text.lines().skip(3).take(2).collect();
-        assert!(
-            depth[0].contains("p99 25.000000")
-                && depth[0].ends_with("texels of 0.010000 world units"),
-            "{text}"
-        );
-        assert!(
-            depth[1].contains("p99 128.000000")
-                && depth[1].ends_with("h/512 (height h = 1 world unit)"),
-            "{text}"
-        );
+        let ends = [
+            ("p99 25.000000", "texels of 0.010000 world units"),
+            ("p99 128.000000", "h/512 (height h = 1 world unit)"),
+        ];
+        for (line, (p99, unit)) in depth.iter().zip(ends) {
+            assert!(line.contains(p99) && line.ends_with(unit), "{text}");
+        }
         // On exactly 1 % of the pixels: the percentile does not see it, on one more it does.
         for (extra, p99) in [(0, 0.0), (1, 25.0)] {
-            let d = against(|f, solid| {
+            let c = against(|f, solid| {
                 let n = solid.len() / 100 + extra;
                 solid[..n].iter().for_each(|&k| f.distance[k] -= 0.25);
-            })
-            .depth
-            .unwrap();
-            assert!(
-                (d.p99 - p99).abs() < 1e-9 && (d.max - 25.0).abs() < 1e-9,
-                "{d:?}"
-            );
+            });
+            let d = c.depth.unwrap();
+            assert!((d.p99 - p99).abs() < 1e-9 && is_planted(&d.max), "{d:?}");
             assert!((d.rms - 2.5).abs() < 0.1, "{d:?}");
         }
     }
@@ -400,15 +361,13 @@ mod tests {
         for degrees in [1e-3f64, 0.5, 3.0, 90.0, 180.0] {
             let c = against(|f, solid| {
                 let (s, c) = degrees.to_radians().sin_cos();
-                solid
-                    .iter()
-                    .for_each(|&k| f.normal[k] = [s as f32, 0.0, c as f32]);
+                let turned = [s as f32, 0.0, c as f32];
+                solid.iter().for_each(|&k| f.normal[k] = turned);
             });
             let n = c.normal.unwrap();
+            let is_planted = |e: &f64| (e / degrees - 1.0).abs() < 1e-4;
             assert!(
-                [n.rms, n.p99, n.max]
-                    .iter()
-                    .all(|e| (e / degrees - 1.0).abs() < 1e-4),
+                [n.rms, n.p99, n.max].iter().all(is_planted),
                 "{degrees}: {n:?}"
             );
         }

@@ -79,13 +79,11 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
     let mut all: Vec<f64> = errors.iter().map(|e| e.0).collect();
     all.sort_unstable_by(f64::total_cmp);
     let moved = || errors.iter().filter(|e| e.1);
+    let rank = (all.len() * 999).div_ceil(1000).checked_sub(1);
     Ok(PixelErrors {
         pixels: all.len(),
         moved: moved().count(),
-        p999: (all.len() * 999)
-            .div_ceil(1000)
-            .checked_sub(1)
-            .map_or(0.0, |rank| all[rank]),
+        p999: rank.map_or(0.0, |rank| all[rank]),
         contour_max: moved().map(|e| e.0).fold(0.0, f64::max),
     })
 }
@@ -105,11 +103,7 @@ fn way_to(shows: impl Fn(f64, f64) -> bool) -> f64 {
     let mut near = 0.5 * far;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (near + far);
-        if around(middle) {
-            far = middle;
-        } else {
-            near = middle;
-        }
+        *(if around(middle) { &mut far } else { &mut near }) = middle;
     }
     far
 }
@@ -169,10 +163,9 @@ mod tests {
         // A pixel of this view at depth 4: 8 tan(20 degrees) / 150.
         let pixel = 8.0 * 20f64.to_radians().tan() / 150.0;
         let mut deeper = truth.clone();
-        deeper
-            .distance
-            .iter_mut()
-            .for_each(|d| *d *= 1.0 + 0.01 * pixel as f32);
+        for distance in &mut deeper.distance {
+            *distance *= 1.0 + 0.01 * pixel as f32;
+        }
         let found = pixel_errors(&scene, &truth, &deeper).unwrap();
         assert_eq!(found.moved, 0);
         assert!((found.p999 - 0.04).abs() < 0.004, "{found:?}");

@@ -84,7 +84,7 @@ pub(super) struct ObjectBlock {
 
 impl ObjectBlock {
     /// `first` is the instance of an object that has one.
-    pub fn new(object: &Object, growth: &Growth, first: InstanceBlock) -> Self {
+    pub fn new(object: &Object, growth: &Growth, first: Option<&InstanceBlock>) -> Self {
         let [x, y] = object.axis_offset();
         let [red, green, blue] = object.color;
         let axis = DVec3::new(x, y, 0.0).as_vec3();
@@ -98,7 +98,7 @@ impl ObjectBlock {
                 growth.low as f32,
                 (2.0 * (object.profile.radius * growth.height() - growth.side)) as f32,
             ],
-            single: first,
+            single: first.copied().unwrap_or_default(),
         }
     }
 }

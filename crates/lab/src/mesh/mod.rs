@@ -10,15 +10,13 @@
 
 mod blocks;
 mod drawer;
+mod layer;
 mod meridian;
-mod multisampled;
-mod offscreen;
 mod placed;
 mod tessellation;
 #[cfg(test)]
 mod tests;
 
-pub use drawer::MeshPipelines;
-pub use multisampled::Multisampled;
-pub use offscreen::MeshOffscreen;
+pub(crate) use drawer::MeshPipelines;
+pub(crate) use layer::MeshLayer;
 pub use tessellation::{BAND, Mesh, Vertex};

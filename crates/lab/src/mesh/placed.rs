@@ -35,7 +35,8 @@ pub(super) struct SceneMeshes {
     /// Profiles in boxes that have grown with offsets.
     grown: GrownProfiles,
     made: Vec<Made>,
-    made_count: u64,
+    /// How many meshes were made so far.
+    pub made_count: u64,
 }
 
 #[derive(Clone)]
@@ -58,11 +59,6 @@ impl SceneMeshes {
             made: Vec::new(),
             made_count: 0,
         }
-    }
-
-    /// How many meshes were made so far.
-    pub fn made_count(&self) -> u64 {
-        self.made_count
     }
 
     /// The meshes of a checked scene, the nearest first. Only those whose profile or offset is new
@@ -133,14 +129,11 @@ impl SceneMeshes {
             return Ok(made.clone());
         }
         let known = |(profile, _): &(Arc<Profile>, _)| Arc::ptr_eq(profile, &object.profile);
-        let place = match self.sources.iter().position(known) {
-            Some(place) => place,
-            None => {
-                let source = ContourSource::new(&object.profile.outline)?;
-                self.sources.push((object.profile.clone(), source));
-                self.sources.len() - 1
-            }
-        };
+        if !self.sources.iter().any(known) {
+            let source = ContourSource::new(&object.profile.outline)?;
+            self.sources.insert(0, (object.profile.clone(), source));
+        }
+        let place = self.sources.iter().position(known).unwrap_or_default();
         let contour = self.sources[place].1.contour(&object.offset)?;
         let (segments, rings, _) = self.levels[level];
         let made = Made {
@@ -201,11 +194,7 @@ fn place(
         _ => 0,
     };
     PlacedMesh {
-        block: ObjectBlock::new(
-            object,
-            growth,
-            instances.first().copied().unwrap_or_default(),
-        ),
+        block: ObjectBlock::new(object, growth, instances.first()),
         instances,
         projection: object.texturing.projection,
         both_sides: eyes.iter().any(|eye| may_hold(&mesh, *eye)),
@@ -228,21 +217,23 @@ fn refused(what: &str) -> Error {
 /// Refuses what the baseline does not draw.
 fn check_object(object: &Object) -> std::result::Result<(), KeyError> {
     let texturing = &object.texturing;
-    let refuse = |key, what| Err((key, refused(what)));
-    if object.repeat != [1; 3] {
-        return refuse("repeat", "draws one cell; give [1, 1, 1], and instances");
-    }
-    if texturing.color_map.is_some() {
-        return refuse("color_map", "draws no colour map; give a color");
-    }
-    if texturing.displacement_map.is_some() && texturing.bump != 0.0 {
-        return refuse("height_map", "draws no height map; leave it out");
-    }
-    if texturing.projection == Projection::Arc {
-        let what = "has no coordinates along the profile; give \"cylindrical\"";
-        return refuse("projection", what);
-    }
-    Ok(())
+    let bumps = texturing.displacement_map.is_some() && texturing.bump != 0.0;
+    let arc = texturing.projection == Projection::Arc;
+    let (key, what) = if object.repeat != [1; 3] {
+        ("repeat", "draws one cell; give [1, 1, 1], and instances")
+    } else if texturing.color_map.is_some() {
+        ("color_map", "draws no colour map; give a color")
+    } else if bumps {
+        ("height_map", "draws no height map; leave it out")
+    } else if arc {
+        (
+            "projection",
+            "has no coordinates along the profile; give \"cylindrical\"",
+        )
+    } else {
+        return Ok(());
+    };
+    Err((key, refused(what)))
 }
 
 /// Refuses a mesh that leaves its box, because the box does not cut it. `widest` is the contour's
@@ -253,17 +244,16 @@ fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> 
     if widest + off[0].max(off[1]) <= radius * (1.0 + 1e-9) {
         return Ok(());
     }
-    let reaches = |remedy: &str| format!("is not cut by its box, past which it reaches; {remedy}");
     let (key, what) = if off != [0.0; 2] {
-        let what = "is not cut by its box, past which the axis moves it; give [0.5, 0.5]";
-        ("axis", what.to_owned())
+        ("axis", "the axis moves it; give [0.5, 0.5]")
     } else if object.offset.extend > 0.0 {
-        ("extend", reaches("give less"))
+        ("extend", "it reaches; give less")
     } else if object.offset.bevel > 0.0 {
-        ("bevel", reaches("give less"))
+        ("bevel", "it reaches; give less")
     } else {
-        ("radius", reaches("give more"))
+        ("radius", "it reaches; give more")
     };
+    let what = format!("is not cut by its box, past which {what}");
     Err((key, refused(&what)))
 }
 

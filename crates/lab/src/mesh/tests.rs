@@ -1,14 +1,14 @@
 #![allow(clippy::unwrap_used)]
-use super::blocks::FrameBlock;
-use super::drawer::{DrawnPass, MeshDrawer, MeshPipelines};
-use super::placed::SceneMeshes;
+use super::drawer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
+use super::{MeshLayer, MeshPipelines};
 use crate::compare::{CompareOptions, compare};
-use ash::vk;
+use crate::method::{Method, MethodSettings};
 use glam::{DVec3, Vec3};
 use revmap::gpu::{Device, Offscreen};
 use revmap::profile::Profile;
-use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene};
+use revmap::scene::{Camera, Object, Offset, Placement, Scene};
+use revmap::search::unpacked;
 use revmap::settings::Settings;
 use revmap::surface::{Contour, ContourSource};
 use std::collections::HashMap;
@@ -201,31 +201,23 @@ fn meshes_and_searches_hide_each_other() {
     let mut theirs = all.clone();
     theirs.objects = vec![meshed];
 
-    let settings = Settings {
+    let settings = MethodSettings {
         width: 240,
         height: 180,
-        ..Settings::exact()
+        method: Method::mesh(256, 512).unwrap(),
+        ..MethodSettings::default()
     };
-    let frame = CameraFrame::new(&camera, settings.width, settings.height).unwrap();
-    let mut offscreen = Offscreen::new(&device, &ours, &settings).unwrap();
+    let own = Settings::from(&settings);
+    let mut offscreen = Offscreen::new(&device, &ours, &own).unwrap();
     let pipelines = MeshPipelines::new(&device).unwrap();
-    let pass = DrawnPass {
-        raw: offscreen.render_pass(),
-        samples: vk::SampleCountFlags::TYPE_1,
-        planes: settings.planes,
-    };
-    let mut drawer = MeshDrawer::new(&pipelines, pass).unwrap();
-    let placed = SceneMeshes::new(vec![(256, 512, 0.0)], (64, 64))
-        .place(&theirs, &frame)
-        .unwrap();
-    let block = FrameBlock::new(offscreen.view(), &frame, &all.lighting());
-    drawer.update(&block, all.lights.len(), &placed).unwrap();
+    let mut meshes = MeshLayer::new(&pipelines, &offscreen, &settings, 1).unwrap();
+    meshes.update(&theirs, || Ok(*offscreen.view())).unwrap();
 
-    let truth = revmap_reference::draw(&all, &settings, &|_, _| {}).unwrap();
+    let truth = revmap_reference::draw(&all, &own, &|_, _| {}).unwrap();
     let options = CompareOptions::default();
     offscreen.draw().unwrap();
     let alone = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
-    offscreen.draw_with(Some(&drawer)).unwrap();
+    offscreen.draw_with(Some(meshes.guest())).unwrap();
     let both = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
     assert!(both.wrong() < 2e-3, "{both}");
     assert!(both.depth.unwrap().p99 < 0.3, "{both}");
@@ -233,6 +225,26 @@ fn meshes_and_searches_hide_each_other() {
         alone.wrong() > 0.1 && alone.depth.unwrap().p99 > 10.0,
         "{alone}"
     );
-    drop((drawer, offscreen));
+    drop((meshes, offscreen));
     device.check().unwrap();
+}
+
+/// Stored SPIR-V was made from today's sources, and is equal word for word if the same compiler is
+/// used here.
+#[test]
+fn kept_spirv_is_what_the_sources_give() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/spirv");
+    let kept = |name: &str| std::fs::read(format!("{folder}/{name}")).unwrap();
+    let hashes = String::from_utf8(kept("sources.fnv")).unwrap();
+    let [sources, compiler] = [g::SOURCES_HASH, g::COMPILER_HASH].map(|h| format!("{h:#018x}"));
+    let hashes: Vec<&str> = hashes.lines().collect();
+    assert_eq!(hashes[0], sources, "renew it as build.rs says");
+    let names = ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"];
+    for (n, name) in names.into_iter().enumerate() {
+        let words = unpacked(&kept(&format!("{name}.spv.z")));
+        assert!(
+            words == shader(n) || hashes[1] != compiler,
+            "{name} differs"
+        );
+    }
 }

@@ -3,7 +3,6 @@
 use super::measure::{Bench, TimedRenderer};
 use super::row::Sample;
 use super::view::View;
-use crate::mesh::Multisampled;
 use crate::method::{Edges, MethodSettings};
 use crate::renderer::{MethodDevice, MethodRenderer};
 use crate::samples::averaged;
@@ -34,8 +33,6 @@ enum Drawer {
     Rays(MethodRenderer, u32),
     /// A frame whose silhouettes are smoothed when it is read, and one without.
     Smoothed([MethodRenderer; 2]),
-    /// A pass of four samples.
-    Multisampled(Box<Multisampled>),
 }
 
 struct Ready {
@@ -64,10 +61,6 @@ impl TimedRenderer for Ready {
                 frame_ms += (read_ms(smoothed)? - usual).max(0.0);
                 gpu_ms = None;
             }
-            Drawer::Multisampled(multisampled) => {
-                let times = multisampled.draw()?;
-                (gpu_ms, frame_ms) = (times.gpu_ms, times.frame_ms);
-            }
         }
         let gpu_ms = gpu_ms.filter(|_| self.own_clock);
         Ok(Sample { gpu_ms, frame_ms })
@@ -89,11 +82,8 @@ impl Bench for DeviceBench {
     ) -> Result<Box<dyn TimedRenderer>> {
         let scene = &view.scene;
         let drawer = match settings.edges {
-            Edges::OneRay => Drawer::Rays(self.device.renderer(scene, settings)?, 1),
+            Edges::OneRay | Edges::Msaa => Drawer::Rays(self.device.renderer(scene, settings)?, 1),
             Edges::Rays(count) => Drawer::Rays(self.device.renderer(scene, settings)?, count),
-            Edges::Msaa => {
-                Drawer::Multisampled(Box::new(self.device.multisampled(scene, settings)?))
-            }
             Edges::Silhouettes => {
                 let plain = MethodSettings {
                     edges: Edges::OneRay,
@@ -108,20 +98,25 @@ impl Bench for DeviceBench {
     }
 
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)> {
-        if settings.edges == Edges::Msaa {
-            let mut multisampled = self.device.multisampled(&view.scene, settings)?;
-            return Ok((multisampled.picture()?, 0));
-        }
         let count = match settings.edges {
             Edges::Rays(count) => count,
             _ => 1,
         };
         let mut renderer = self.device.renderer(&view.scene, settings)?;
-        let frame = averaged(count, &view.scene, |scene| {
+        let mut frame = averaged(count, &view.scene, |scene| {
             renderer.update(scene)?;
             renderer.draw()?;
             renderer.read()
         })?;
+        if settings.edges == Edges::Msaa {
+            // Means of distances and normals mean nothing.
+            let (width, height) = (frame.width, frame.height);
+            let empty = Frame::new(width, height, view.scene.background)?;
+            frame = Frame {
+                color: frame.color,
+                ..empty
+            };
+        }
         Ok((frame, renderer.map_bytes().iter().sum()))
     }
 

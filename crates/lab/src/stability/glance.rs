@@ -37,26 +37,24 @@ impl Spot {
             .collect();
         // Parts that overlap by four fifths.
         let corners = |all: usize, part: usize| (0..=all.saturating_sub(part)).step_by(part / 5);
-        let mut worst = Self {
+        let rows = corners(height, PART[1]);
+        let parts = rows.flat_map(|y| corners(width, PART[0]).map(move |x| [x, y]));
+        let [x, y] =
+            [(width, PART[0]), (height, PART[1])].map(|(all, part)| all.saturating_sub(part) / 2);
+        let middle = Self {
             seen: 0,
-            corner: [
-                width.saturating_sub(PART[0]) / 2,
-                height.saturating_sub(PART[1]) / 2,
-            ],
+            corner: [x, y],
         };
-        for y in corners(height, PART[1]) {
-            for x in corners(width, PART[0]) {
-                let row = |j: usize| off[j * width + x..].iter().take(PART[0].min(width - x));
-                let seen = (y..(y + PART[1]).min(height)).flat_map(row).sum();
-                if seen > worst.seen {
-                    worst = Self {
-                        seen,
-                        corner: [x, y],
-                    };
-                }
+        parts.fold(middle, |worst, [x, y]| {
+            let row = |j: usize| off[j * width + x..].iter().take(PART[0].min(width - x));
+            let seen = (y..(y + PART[1]).min(height)).flat_map(row).sum();
+            let corner = [x, y];
+            if seen > worst.seen {
+                Self { seen, corner }
+            } else {
+                worst
             }
-        }
-        worst
+        })
     }
 
     /// The whole picture with the part framed, and the part as drawn, as the reference has it, and
@@ -71,16 +69,10 @@ impl Spot {
             if x >= panel[0] {
                 return [255; 4];
             }
+            let [left, top] = self.corner;
             match number {
                 0 => self.whole(drawn, x, y, panel),
-                n => {
-                    let picture = [drawn, truth, heat][n - 1];
-                    at(
-                        picture,
-                        self.corner[0] + x / ZOOM,
-                        self.corner[1] + y / ZOOM,
-                    )
-                }
+                n => at([drawn, truth, heat][n - 1], left + x / ZOOM, top + y / ZOOM),
             }
         };
         Picture {

@@ -22,12 +22,14 @@
 //! that the reference has for rays moved aside by the tolerance, and for ways to the lights that
 //! begin that far off the surface: an edge rounded by less than a texel shows any of its normals.
 
-use crate::compare::{CompareOptions, compare};
+use super::case::Step;
+use crate::compare::{CompareOptions, Heat, compare, heat_map};
 use glam::DVec3;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::{CHANNELS, Frame};
 use revmap::scene::{CameraFrame, Scene, Shadow};
+use revmap_files::Picture;
 use revmap_reference::{Colors, Ray, Reference};
 
 /// A texel of 512 rows, object units.
@@ -114,33 +116,29 @@ impl Judged {
         Some(self.flicker? as f64 / self.hits.max(1) as f64)
     }
 
-    /// Whether the picture passes.
+    /// Whether the picture passes with at most so many faults.
     #[must_use]
-    pub fn passes(&self, limits: &Limits) -> bool {
-        self.not_finite == 0
-            && self.faults() <= limits.faults
-            && self.flicker.is_none_or(|count| count <= limits.faults)
+    pub fn passes(&self, limit: usize) -> bool {
+        let flickers = self.flicker.unwrap_or(0) > limit;
+        self.not_finite == 0 && self.faults() <= limit && !flickers
     }
 }
 
-/// What a picture may have and still pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Faults of the whole picture.
-    pub faults: usize,
-}
-
-impl Limits {
-    /// For a picture of so many pixels: 1 in 10,000, and at least 2.
-    ///
-    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is
-    /// decided by one rounding; both happen on lines. A picture of `n` pixels has of the order of
-    /// `sqrt(n)` pixels on a line, and one of those in about a hundred is decided that way.
-    #[must_use]
-    pub fn of(pixels: usize) -> Self {
-        Self {
-            faults: (pixels / 10_000).max(2),
-        }
+impl std::fmt::Display for Judged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{} wrong ({} missed, {} ghost), {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, {} that flicker, of {} hit",
+            self.wrong,
+            self.missed,
+            self.ghost,
+            self.not_finite,
+            self.exhausted,
+            self.color,
+            self.stages,
+            self.flicker.unwrap_or(0),
+            self.hits
+        )
     }
 }
 
@@ -148,6 +146,12 @@ impl Limits {
 pub struct Truth<'a> {
     /// The reference's frame.
     pub frame: Frame,
+    /// Faults that a frame may have and still pass: 1 in 10,000 pixels, and at least 2.
+    ///
+    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is
+    /// decided by one rounding; both happen on lines. A picture of `n` pixels has of the order of
+    /// `sqrt(n)` pixels on a line, and one of those in about a hundred is decided that way.
+    pub limit: usize,
     reference: Reference,
     painter: Colors<'a>,
     camera: CameraFrame,
@@ -163,19 +167,14 @@ pub struct Truth<'a> {
 }
 
 impl<'a> Truth<'a> {
-    /// Draws the reference.
+    /// Draws the reference of a step's scene.
     ///
     /// # Errors
     /// As [`revmap_reference::draw`].
-    pub fn new(scene: &'a Scene, size: (u32, u32)) -> Result<Self> {
-        let settings = revmap::settings::Settings {
-            width: size.0,
-            height: size.1,
-            ..Default::default()
-        };
-        let frame = revmap_reference::draw(scene, &settings, &|_, _| {})?;
+    pub fn new(scene: &'a Scene, step: &Step) -> Result<Self> {
+        let frame = revmap_reference::draw(scene, &step.settings, &|_, _| {})?;
         let reference = Reference::new(scene)?;
-        let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
+        let camera = CameraFrame::new(&scene.camera, frame.width, frame.height)?;
         let eye = scene.camera.eye;
         let here = Ray {
             origin: eye,
@@ -199,6 +198,7 @@ impl<'a> Truth<'a> {
         let silhouette = 0.1 * TEXEL + 8.0 * ROUNDING * extent;
         Ok(Self {
             inside: reference.clearance_within(here, [0.0, 0.0], 1e-9) < 0.0,
+            limit: (frame.pixels() / 10_000).max(2),
             frame,
             painter: Colors::new(scene)?,
             reference,
@@ -210,30 +210,29 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// World length of a texel of 512 rows of the smallest object.
-    #[must_use]
-    pub fn texel(&self) -> f64 {
-        self.texel
-    }
-
-    /// Judges a frame; `other` is the same picture by the other stage.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
-    pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<Judged> {
-        Ok(self.judge_pixels(frame, other)?.0)
-    }
-
-    /// The same, with the faults of each pixel.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
-    pub fn judge_pixels(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
-        let options = CompareOptions {
+    /// Errors in texels of 512 rows of the smallest object, without FLIP.
+    fn options(&self) -> CompareOptions {
+        CompareOptions {
             texel: self.texel,
             pixels_per_degree: None,
-        };
-        let errors = compare(&self.frame, frame, &options)?;
+        }
+    }
+
+    /// Where a frame's depths are wrong.
+    ///
+    /// # Errors
+    /// When the frames differ in size.
+    pub fn heat(&self, frame: &Frame) -> Result<Picture> {
+        heat_map(&self.frame, frame, &self.options(), Heat::Depth)
+    }
+
+    /// Judges a frame, with the faults of each pixel; `other` is the same picture by the other
+    /// stage.
+    ///
+    /// # Errors
+    /// When the frames differ in size.
+    pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
+        let errors = compare(&self.frame, frame, &self.options())?;
         let wrong: Vec<bool> = (0..frame.pixels())
             .into_par_iter()
             .map(|k| self.is_wrong(frame, k))
@@ -243,11 +242,7 @@ impl<'a> Truth<'a> {
                 .filter(|&k| !wrong[k] && is_strange(truth, frame, k, colors_about(truth, k)))
                 .count()
         };
-        let strange = if self.colors {
-            self.strange(frame, &wrong)
-        } else {
-            vec![false; wrong.len()]
-        };
+        let strange = self.strange(frame, &wrong);
         let error = |k: usize| {
             let off = f64::from(frame.distance[k]) - f64::from(self.frame.distance[k]);
             (wrong[k] || strange[k]).then_some(if strange[k] { 0.0 } else { off })
@@ -276,7 +271,7 @@ impl<'a> Truth<'a> {
     fn strange(&self, frame: &Frame, wrong: &[bool]) -> Vec<bool> {
         let is = |k: usize| {
             let mut range = colors_about(&self.frame, k);
-            if wrong[k] || !is_strange(&self.frame, frame, k, range) {
+            if !self.colors || wrong[k] || !is_strange(&self.frame, frame, k, range) {
                 return false;
             }
             let Ray { origin, direction } = self.ray(k);

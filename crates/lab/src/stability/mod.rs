@@ -11,7 +11,7 @@
 //! | [`glance`] | a failure as the naked eye sees it: the part of a picture that differs most, enlarged |
 //! | [`random`] | random scenes held to the same limits; a failing one is reduced to the smallest that still fails |
 //!
-//! A case passes when no pixel is wrong beyond its limits ([`judge::Limits`]), no number of the
+//! A case passes when no pixel is wrong beyond its limits ([`judge::Truth::limit`]), no number of the
 //! frame is NaN or infinite, no ray runs out of steps, and both stages show one picture.
 
 pub mod case;

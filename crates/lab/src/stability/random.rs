@@ -2,8 +2,8 @@
 //! fails.
 
 use super::case::Step;
-use super::judge::{Judged, Limits, Truth};
-use super::run::{STAGES, draw};
+use super::judge::Truth;
+use super::run::both_stages;
 use crate::report::folder::write_text;
 use revmap::error::Result;
 use revmap::gpu::Device;
@@ -65,6 +65,15 @@ impl Random {
     /// True once in so many times.
     fn once_in(&mut self, times: f64) -> bool {
         self.next() * times < 1.0
+    }
+
+    /// What `other` gives, once in so many times.
+    fn maybe<T>(&mut self, times: f64, usual: T, other: impl FnOnce(&mut Self) -> T) -> T {
+        if self.once_in(times) {
+            other(self)
+        } else {
+            usual
+        }
     }
 
     /// Evenly among the logarithms.
@@ -132,26 +141,12 @@ impl Random {
     fn object(&mut self, scale: f64, at: [f64; 3]) -> DraftObject {
         let mut keys = Vec::new();
         let mut copies = Vec::new();
-        let sides = [(); 3].map(|()| {
-            scale
-                * if self.once_in(3.0) {
-                    self.log(0.25, 4.0)
-                } else {
-                    1.0
-                }
-        });
-        let turn = if self.once_in(3.0) {
-            self.rotation()
-        } else {
-            [0.0, 0.0, 0.0, 1.0]
-        };
+        let sides = [(); 3].map(|()| scale * self.maybe(3.0, 1.0, |r| r.log(0.25, 4.0)));
+        let turn = self.maybe(3.0, [0.0, 0.0, 0.0, 1.0], Self::rotation);
         keys.push(format!("position = {at:?}"));
         keys.push(format!("scale = {sides:?}"));
         keys.push(format!("rotation = {turn:?}"));
-        keys.push(format!(
-            "color = {:?}",
-            [self.next(), self.next(), self.next()]
-        ));
+        keys.push(format!("color = {:?}", [(); 3].map(|()| self.next())));
         if self.once_in(3.0) {
             keys.push(format!("extend = {:?}", self.within(-0.05, 0.1)));
         }
@@ -165,10 +160,8 @@ impl Random {
         if self.once_in(6.0) {
             let n = [(); 3].map(|()| 1 + (3.0 * self.next()) as u32);
             keys.push(format!("repeat = {n:?}"));
-            keys.push(format!(
-                "mirror = {:?}",
-                [(); 3].map(|()| self.once_in(2.0))
-            ));
+            let mirror = [(); 3].map(|()| self.once_in(2.0));
+            keys.push(format!("mirror = {mirror:?}"));
         }
         if self.once_in(6.0) {
             for _ in 0..3 {
@@ -192,17 +185,11 @@ impl Draft {
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
         let r = &mut random;
-        let scale = if r.once_in(3.0) {
-            r.log(1e-4, 1e4)
-        } else {
-            1.0
-        };
-        let middle = if r.once_in(4.0) {
+        let scale = r.maybe(3.0, 1.0, |r| r.log(1e-4, 1e4));
+        let middle = r.maybe(4.0, [0.0; 3], |r| {
             let far = r.log(1.0, 1e5);
             r.direction().map(|d| far * d)
-        } else {
-            [0.0; 3]
-        };
+        });
         let count = 1 + (2.0 * r.next() * r.next() * 2.0) as usize;
         let objects = (0..count)
             .map(|k| {
@@ -224,10 +211,7 @@ impl Draft {
         let camera = format!(
             "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
         );
-        let mut lines = Vec::new();
-        if r.once_in(6.0) {
-            lines.push("shadow = \"hard\"".to_owned());
-        }
+        let lines = r.maybe(6.0, Vec::new(), |_| vec!["shadow = \"hard\"".to_owned()]);
         let lights = (0..1 + (2.0 * r.next()) as usize)
             .map(|_| r.direction())
             .collect();
@@ -267,57 +251,36 @@ impl Draft {
         out
     }
 
-    /// Writes the files that the text names.
-    fn write(&self, folder: &Path) -> Result<()> {
-        for (k, object) in self.objects.iter().enumerate() {
-            if object.copies.is_empty() {
-                continue;
-            }
-            let mut rows = String::new();
-            for row in &object.copies {
-                let row: Vec<String> = row.iter().map(|v| format!("{v:?}")).collect();
-                let _ = writeln!(rows, "{}", row.join(","));
-            }
-            write_text(&folder.join(self.file(k)), &rows)?;
-        }
-        Ok(())
+    /// The files that the text names, and what they hold.
+    fn instance_files(&self) -> impl Iterator<Item = (String, String)> {
+        let objects = self.objects.iter().enumerate();
+        let row = |row: &[f64; 10]| row.map(|v| format!("{v:?}")).join(",") + "\n";
+        let with_copies = objects.filter(|(_, object)| !object.copies.is_empty());
+        with_copies.map(move |(k, object)| (self.file(k), object.copies.iter().map(row).collect()))
     }
 
     /// The same with one part less, in every way there is.
     fn smaller(&self) -> Vec<Self> {
         let mut all = Vec::new();
-        let mut with = |change: &dyn Fn(&mut Self)| {
-            let mut one = self.clone();
-            change(&mut one);
-            all.push(one);
+        let mut without = |count: usize, remove: &dyn Fn(&mut Self, usize)| {
+            for k in 0..count {
+                let mut one = self.clone();
+                remove(&mut one, k);
+                all.push(one);
+            }
         };
-        for k in 0..self.objects.len() {
-            if self.objects.len() > 1 {
-                with(&|d| drop(d.objects.remove(k)));
-            }
+        if self.objects.len() > 1 {
+            without(self.objects.len(), &|d, k| drop(d.objects.remove(k)));
         }
-        for k in 0..self.lines.len() {
-            with(&|d| drop(d.lines.remove(k)));
-        }
-        for k in 0..self.lights.len() {
-            with(&|d| {
-                d.lights.remove(k);
-            });
-        }
-        for (k, object) in self.objects.iter().enumerate() {
-            for n in 0..object.keys.len() {
-                with(&|d| drop(d.objects[k].keys.remove(n)));
-            }
-            for n in 0..object.copies.len() {
-                with(&|d| {
-                    d.objects[k].copies.remove(n);
-                });
-            }
-            for n in 0..object.polygon.len() {
-                with(&|d| {
-                    d.objects[k].polygon.remove(n);
-                });
-            }
+        without(self.lines.len(), &|d, k| drop(d.lines.remove(k)));
+        without(self.lights.len(), &|d, k| _ = d.lights.remove(k));
+        for (n, object) in self.objects.iter().enumerate() {
+            let keys = |d: &mut Self, k| drop(d.objects[n].keys.remove(k));
+            without(object.keys.len(), &keys);
+            let copies = |d: &mut Self, k| _ = d.objects[n].copies.remove(k);
+            without(object.copies.len(), &copies);
+            let corners = |d: &mut Self, k| _ = d.objects[n].polygon.remove(k);
+            without(object.polygon.len(), &corners);
         }
         all
     }
@@ -328,30 +291,27 @@ impl Draft {
     /// # Errors
     /// Of files, and of the device's validation.
     pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
-        self.write(folder)?;
-        let step = Step::new(0.0, self.text()).sized(SIZE.0, SIZE.1);
+        for (name, rows) in self.instance_files() {
+            write_text(&folder.join(name), &rows)?;
+        }
+        let step = Step::new(self.text()).sized(SIZE.0, SIZE.1);
         // A part less may be a scene that is refused, as a polygon of two points.
         let Ok(scene) = step.read(folder) else {
             return Ok(None);
         };
-        let Ok(truth) = Truth::new(&scene, SIZE) else {
+        let Ok(truth) = Truth::new(&scene, &step) else {
             return Ok(None);
         };
-        let limits = Limits::of((SIZE.0 * SIZE.1) as usize);
-        let mut first = None;
-        for stage in STAGES {
-            let frame = match draw(device, &step, &scene, Solver::DEFAULT, stage) {
-                Ok(frame) => frame,
+        for one in both_stages(device, &step, &scene, &truth, Solver::DEFAULT)? {
+            let what = match one.result {
+                Ok((.., judged)) if judged.passes(truth.limit) => continue,
+                Ok((.., judged)) => judged.to_string(),
                 Err(error) => {
                     device.check()?;
-                    return Ok(Some(format!("{stage:?}: {error}")));
+                    error.to_string()
                 }
             };
-            let judged = truth.judge(&frame, first.as_ref())?;
-            if !judged.passes(&limits) {
-                return Ok(Some(format!("{stage:?}: {}", told(&judged))));
-            }
-            first.get_or_insert(frame);
+            return Ok(Some(format!("{:?}: {what}", one.stage)));
         }
         Ok(None)
     }
@@ -374,13 +334,6 @@ impl Draft {
     }
 }
 
-fn told(j: &Judged) -> String {
-    format!(
-        "{} wrong ({} missed, {} ghost), {} with a NaN, {} of another colour, {} unlike the other stage, of {} hit",
-        j.wrong, j.missed, j.ghost, j.not_finite, j.color, j.stages, j.hits
-    )
-}
-
 /// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
 /// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
 ///
@@ -399,7 +352,9 @@ pub fn run(
         }
         let draft = Draft::new(seed.wrapping_add(done));
         if draft.fails(device, folder)?.is_none() {
-            draft.clean(folder);
+            for file in draft.instance_files() {
+                let _ = std::fs::remove_file(folder.join(file.0));
+            }
             continue;
         }
         let least = draft.reduced(device, folder)?;
@@ -413,15 +368,4 @@ pub fn run(
         });
     }
     Ok(failures)
-}
-
-impl Draft {
-    /// Takes away the files of a scene that passed.
-    fn clean(&self, folder: &Path) {
-        for (k, object) in self.objects.iter().enumerate() {
-            if !object.copies.is_empty() {
-                let _ = std::fs::remove_file(folder.join(self.file(k)));
-            }
-        }
-    }
 }

@@ -2,13 +2,12 @@
 
 use super::case::Case;
 use super::judge::Judged;
-use super::run::{Glance, Outcome, Sheet, Trial, Verdict};
+use super::run::{Exhibit, Outcome, STAGES, Trial, Verdict};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
-use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::folder::png;
-use crate::report::folder::{keep_figure, make, write_bytes, write_text};
+use crate::report::chart::xy::{Point, Series, XyChart};
+use crate::report::folder::{keep_figure, make, png, write_bytes, write_text};
 use crate::report::machine::Machine;
 use crate::report::names::number;
 use crate::report::page::Page;
@@ -16,7 +15,7 @@ use crate::report::pictures::Shot;
 use crate::report::series_style;
 use crate::report::table::Table;
 use revmap::error::Result;
-use revmap::settings::Solver;
+use revmap::settings::{DrawStage, Solver};
 use revmap_files::Picture;
 use std::path::Path;
 
@@ -29,54 +28,47 @@ fn of(outcome: &Outcome, case: usize, solver: Solver) -> impl Iterator<Item = &T
     outcome.trials.iter().filter(own)
 }
 
-/// The worst of some trials: most faults first, then what its verdict says.
+/// The worst of some trials: by what its verdict says, then by its faults.
 fn worst<'a>(trials: impl Iterator<Item = &'a Trial>) -> Option<&'a Trial> {
-    let rank = |t: &Trial| {
-        let verdict = match t.verdict {
-            Verdict::Failed => 4.0,
-            Verdict::Known => 3.0,
-            Verdict::Healed => 2.0,
-            Verdict::Refused => 1.0,
-            Verdict::Passed => 0.0,
-        };
-        verdict * 1e3 + t.judged.as_ref().map_or(0.0, |j| j.share())
-    };
-    trials.max_by(|a, b| rank(a).total_cmp(&rank(b)))
+    let share = |t: &Trial| t.judged.as_ref().map_or(0.0, Judged::share);
+    trials.max_by(|a, b| {
+        let verdicts = a.verdict.cmp(&b.verdict);
+        verdicts.then(share(a).total_cmp(&share(b)))
+    })
 }
 
 /// A share of faults with its verdict.
-fn cell(trial: Option<&Trial>) -> String {
-    let Some(trial) = trial else {
-        return String::new();
+fn cell(trial: &Trial) -> String {
+    let Ok(judged) = &trial.judged else {
+        return trial.verdict.name().to_owned();
     };
-    match &trial.judged {
-        Err(_) => trial.verdict.name().to_owned(),
-        Ok(judged) => {
-            let mark = match trial.verdict {
-                Verdict::Passed => "",
-                Verdict::Failed => " FAILED",
-                Verdict::Known => " known",
-                Verdict::Healed => " healed",
-                Verdict::Refused => " refused",
-            };
-            format!("{} %{mark}", number(100.0 * judged.share(), 2))
-        }
+    let share = number(100.0 * judged.share(), 2);
+    match trial.verdict {
+        Verdict::Passed => format!("{share} %"),
+        Verdict::Failed => format!("{share} % FAILED"),
+        other => format!("{share} % {}", other.name()),
     }
+}
+
+/// Which cases were drawn.
+fn drawn(cases: &[Case], outcome: &Outcome) -> Vec<usize> {
+    let is_drawn = |k: &usize| outcome.trials.iter().any(|t| t.case == *k);
+    (0..cases.len()).filter(is_drawn).collect()
 }
 
 /// The table of cases and searches: the worst share of faults in each, and the verdict.
 #[must_use]
 pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
-    let names = solvers.iter().map(|s| s.name());
-    let drawn = |k: &usize| outcome.trials.iter().any(|t| t.case == *k);
+    let header = ["case", "swept over"].into_iter();
     let record = |k: usize| {
-        let cells = solvers.iter().map(|&s| cell(worst(of(outcome, k, s))));
-        let named = [cases[k].name.to_owned(), cases[k].parameter.to_owned()];
+        let named = [cases[k].name.clone(), cases[k].parameter.clone()];
+        let cells = solvers.iter().map(|&s| worst(of(outcome, k, s)));
+        let cells = cells.map(|trial| trial.map(cell).unwrap_or_default());
         named.into_iter().chain(cells).collect()
     };
     Table::new(
-        ["case", "swept over"].into_iter().chain(names),
-        (0..cases.len()).filter(drawn).map(record).collect(),
+        header.chain(solvers.iter().map(|s| s.name())),
+        drawn(cases, outcome).into_iter().map(record).collect(),
     )
 }
 
@@ -84,211 +76,143 @@ pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
 /// frame to the next, percent of the hit pixels. None where no motion was drawn.
 #[must_use]
 pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<Table> {
-    let names = solvers.iter().map(|s| s.name());
     let share = |k: usize, solver: Solver| {
         let judged = of(outcome, k, solver).filter_map(|t| t.judged.as_ref().ok());
-        judged.filter_map(Judged::flicker_share).reduce(f64::max)
+        let share = judged.filter_map(Judged::flicker_share).reduce(f64::max);
+        share.map_or(String::new(), |s| format!("{} %", number(100.0 * s, 2)))
     };
     let record = |k: usize| {
-        let shares = solvers.iter().map(|&s| share(k, s));
-        let cells =
-            shares.map(|s| s.map_or(String::new(), |s| format!("{} %", number(100.0 * s, 2))));
-        std::iter::once(cases[k].name.to_owned())
-            .chain(cells)
-            .collect()
+        let name = std::iter::once(cases[k].name.clone());
+        name.chain(solvers.iter().map(|&s| share(k, s))).collect()
     };
-    let drawn = |k: &usize| cases[*k].motion && outcome.trials.iter().any(|t| t.case == *k);
-    let records: Vec<_> = (0..cases.len()).filter(drawn).map(record).collect();
-    let header = std::iter::once("flicker").chain(names);
+    let motions = drawn(cases, outcome).into_iter();
+    let records: Vec<_> = (motions.filter(|k| cases[*k].motion).map(record)).collect();
+    let header = std::iter::once("flicker").chain(solvers.iter().map(|s| s.name()));
     (!records.is_empty()).then(|| Table::new(header, records))
 }
 
 /// What the default fails, a line for each.
 #[must_use]
 pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
-    let told = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
+    let is_failure = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
     let line = |t: &Trial| {
-        let case = &cases[t.case];
-        let what = match &t.judged {
-            Err(message) => message.clone(),
-            Ok(j) => format!(
-                "{} wrong, {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, {} that flicker, of {} hit",
-                j.wrong,
-                j.not_finite,
-                j.exhausted,
-                j.color,
-                j.stages,
-                j.flicker.unwrap_or(0),
-                j.hits
-            ),
-        };
-        format!(
-            "{} at {}, {}: {what}",
-            case.name,
-            number(case.steps[t.step].value, 6),
-            t.stage.name()
-        )
+        let (name, value) = (&cases[t.case].name, number(t.value, 6));
+        let what = t
+            .judged
+            .as_ref()
+            .map_or_else(Clone::clone, Judged::to_string);
+        format!("{name} at {value}, {}: {what}", t.stage.name())
     };
-    outcome.trials.iter().filter(told).map(line).collect()
+    outcome.trials.iter().filter(is_failure).map(line).collect()
+}
+
+type Text = fn(&Judged) -> String;
+
+/// The columns of `results.csv` that a judged picture fills.
+const JUDGED: [(&str, Text); 11] = [
+    ("hits", |j| j.hits.to_string()),
+    ("missed", |j| j.missed.to_string()),
+    ("ghost", |j| j.ghost.to_string()),
+    ("wrong", |j| j.wrong.to_string()),
+    ("depth_p99_texels", |j| optional(j.depth_p99)),
+    ("normal_rms_degrees", |j| optional(j.normal_rms)),
+    ("not_finite", |j| j.not_finite.to_string()),
+    ("exhausted", |j| j.exhausted.to_string()),
+    ("color_faults", |j| j.color.to_string()),
+    ("stage_faults", |j| j.stages.to_string()),
+    ("flicker", |j| optional(j.flicker_share())),
+];
+
+fn optional(value: Option<f64>) -> String {
+    value.map(|v| number(v, 5)).unwrap_or_default()
 }
 
 /// `results.csv`: a record for each trial.
 #[must_use]
 pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
-    let header = [
-        "case",
-        "parameter",
-        "value",
-        "solver",
-        "stage",
-        "verdict",
-        "hits",
-        "missed",
-        "ghost",
-        "wrong",
-        "depth_p99_texels",
-        "normal_rms_degrees",
-        "not_finite",
-        "exhausted",
-        "color_faults",
-        "stage_faults",
-        "flicker",
-        "limit",
-        "ms",
-        "error",
-        "device",
-        "driver",
-    ];
-    let mut table = Table::new(header, Vec::new());
-    for trial in &outcome.trials {
+    let about = ["case", "parameter", "value", "solver", "stage", "verdict"];
+    let rest = ["limit", "ms", "error", "device", "driver"];
+    let record = |trial: &Trial| {
         let case = &cases[trial.case];
-        let mut record = vec![
-            case.name.to_owned(),
-            case.parameter.to_owned(),
-            number(case.steps[trial.step].value, 6),
+        let about = [
+            case.name.clone(),
+            case.parameter.clone(),
+            number(trial.value, 6),
             trial.solver.name().to_owned(),
             trial.stage.name().to_owned(),
             trial.verdict.name().to_owned(),
         ];
-        let optional = |v: Option<f64>| v.map(|v| number(v, 5)).unwrap_or_default();
-        match &trial.judged {
-            Ok(j) => record.extend([
-                j.hits.to_string(),
-                j.missed.to_string(),
-                j.ghost.to_string(),
-                j.wrong.to_string(),
-                optional(j.depth_p99),
-                optional(j.normal_rms),
-                j.not_finite.to_string(),
-                j.exhausted.to_string(),
-                j.color.to_string(),
-                j.stages.to_string(),
-                optional(j.flicker_share()),
-            ]),
-            Err(_) => record.extend(std::iter::repeat_n(String::new(), 11)),
-        }
-        record.extend([
-            trial.limits.faults.to_string(),
+        let judged = trial.judged.as_ref();
+        let found = JUDGED.map(|(_, text)| judged.map(text).unwrap_or_default());
+        let rest = [
+            trial.limit.to_string(),
             number(trial.ms, 4),
-            trial.judged.as_ref().err().cloned().unwrap_or_default(),
+            judged.err().cloned().unwrap_or_default(),
             machine.device.clone(),
             machine.driver.clone(),
-        ]);
-        table.records.push(record);
-    }
-    table
+        ];
+        about.into_iter().chain(found).chain(rest).collect()
+    };
+    let header = about.into_iter().chain(JUDGED.map(|(name, _)| name));
+    Table::new(
+        header.chain(rest),
+        outcome.trials.iter().map(record).collect(),
+    )
 }
 
 /// Share of faults over the case's parameter, a line for each search and stage.
 fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -> Figure {
-    let mut series = Vec::new();
-    let values = || case.steps.iter().map(|s| s.value);
-    let log = values().all(|v| v > 0.0)
-        && values().fold(0.0, f64::max) > 20.0 * values().fold(f64::INFINITY, f64::min);
-    for &solver in solvers {
-        for each in super::run::STAGES {
-            let settings = MethodSettings {
-                method: Method::Search(solver),
-                stage: each,
-                ..MethodSettings::default()
-            };
-            let points: Vec<Point> = of(outcome, number_of, solver)
-                .filter(|t| t.stage == each)
-                .filter_map(|t| {
-                    let judged = t.judged.as_ref().ok()?;
-                    Some(Point {
-                        x: case.steps[t.step].value,
-                        y: (100.0 * judged.share()).max(FLOOR),
-                        ..Point::default()
-                    })
-                })
-                .collect();
-            if !points.is_empty() {
-                series.push(Series {
-                    name: solver.name().to_owned(),
-                    style: series_style::style(&settings),
-                    points,
-                    joined: true,
-                });
-            }
-        }
-    }
-    let x = if log {
-        Axis::log(case.parameter)
+    let least = case.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = case.values.iter().copied().fold(0.0, f64::max);
+    let x = if least > 0.0 && most > 20.0 * least {
+        Axis::log(&case.parameter)
     } else {
-        Axis::linear(case.parameter)
+        Axis::linear(&case.parameter)
     };
+    let line = |(solver, stage): (Solver, DrawStage)| {
+        let settings = MethodSettings {
+            method: Method::Search(solver),
+            stage,
+            ..MethodSettings::default()
+        };
+        let point = |t: &Trial| {
+            Some(Point {
+                x: t.value,
+                y: (100.0 * t.judged.as_ref().ok()?.share()).max(FLOOR),
+                ..Point::default()
+            })
+        };
+        let own = of(outcome, number_of, solver).filter(|t| t.stage == stage);
+        Series {
+            name: solver.name().to_owned(),
+            style: series_style::style(&settings),
+            points: own.filter_map(point).collect(),
+            joined: true,
+        }
+    };
+    let ways = solvers.iter().flat_map(|&s| STAGES.map(|stage| (s, stage)));
     XyChart {
-        title: case.name.to_owned(),
+        title: case.name.clone(),
         x,
         y: Axis::log("faults (% of hit pixels)").from(FLOOR).with(1.0),
-        series,
-        guides: Vec::<Guide>::new(),
+        series: ways.map(line).filter(|s| !s.points.is_empty()).collect(),
+        guides: Vec::new(),
     }
     .figure()
 }
 
-fn shot(case: usize, picture: &Picture, caption: String) -> Result<Shot> {
-    Ok(Shot {
-        view: case,
-        caption,
-        small: png(picture)?,
-        size: (picture.width, picture.height),
-    })
-}
-
-/// Which search drew a picture, and of which scene.
-fn told(glance: &Glance) -> String {
-    let (solver, each) = glance.method;
-    let nothing = if glance.seen == 0 {
-        ", nothing is seen"
-    } else {
-        ""
+fn show(page: &mut Page, exhibit: &Exhibit) -> Result<()> {
+    let shot = |(picture, caption): &(Picture, String)| {
+        Ok(Shot {
+            view: exhibit.case,
+            caption: caption.clone(),
+            small: png(picture)?,
+            size: (picture.width, picture.height),
+        })
     };
-    format!(
-        "{solver}, {}, at {}{nothing}",
-        each.name(),
-        number(glance.value, 6)
-    )
-}
-
-fn shots(sheet: &Sheet) -> Result<Vec<Shot>> {
-    let [drawn, truth, heat] = &sheet.own;
-    let default = Solver::DEFAULT.name();
-    let mut all = vec![
-        shot(sheet.case, truth, "the reference".to_owned())?,
-        shot(
-            sheet.case,
-            drawn,
-            format!("{default}, {}", sheet.stage.name()),
-        )?,
-        shot(sheet.case, heat, format!("{default}: difference"))?,
-    ];
-    if let Some((solver, [drawn, heat])) = &sheet.other {
-        all.push(shot(sheet.case, drawn, solver.name().to_owned())?);
-        all.push(shot(sheet.case, heat, format!("{solver}: difference"))?);
-    }
-    Ok(all)
+    let shots: Vec<Shot> = exhibit.shots.iter().map(shot).collect::<Result<_>>()?;
+    page.shots(&shots.iter().collect::<Vec<_>>());
+    Ok(())
 }
 
 /// Writes `results.csv`, `report.html`, the charts and the pictures.
@@ -302,10 +226,8 @@ pub fn write(
     outcome: &Outcome,
     machine: &Machine,
 ) -> Result<()> {
-    write_text(
-        &folder.join("results.csv"),
-        &results(cases, outcome, machine).csv(),
-    )?;
+    let csv = results(cases, outcome, machine).csv();
+    write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
     page.facts(&machine.lines());
     page.text(
@@ -325,38 +247,37 @@ pub fn write(
     let pictures = folder.join("pictures");
     make(&pictures)?;
     let mut captions = Table::new(["case", "picture"], Vec::new());
-    let drawn = |k: usize| outcome.trials.iter().any(|t| t.case == k);
-    for (k, case) in cases.iter().enumerate().filter(|(k, _)| drawn(*k)) {
-        page.chapter(case.name);
-        page.text(case.why);
+    for k in drawn(cases, outcome) {
+        let case = &cases[k];
+        page.chapter(&case.name);
+        page.text(&case.why);
         page.text(&format!("Cure: {}", case.cure));
         for known in &case.known {
             page.note(&format!("The default fails here: {}", known.reason));
         }
         if let Some(sheet) = outcome.sheets.iter().find(|s| s.case == k) {
             page.text(&format!("At {}:", number(sheet.value, 6)));
-            let all = shots(sheet)?;
-            page.shots(&all.iter().collect::<Vec<_>>());
+            show(&mut page, sheet)?;
         }
         if let Some(glance) = outcome.glances.iter().find(|g| g.case == k) {
-            let caption = told(glance);
             page.text("Where the failure is seen best: the whole picture, and a part of it as drawn, as the reference has it, and the difference.");
-            page.shots(&[&shot(k, &glance.strip, caption.clone())?]);
-            let file = pictures.join(format!("{}.png", case.name));
-            write_bytes(&file, &png(&glance.strip)?)?;
-            captions.records.push(vec![case.name.to_owned(), caption]);
+            show(&mut page, glance)?;
+            for (strip, caption) in &glance.shots {
+                let file = pictures.join(format!("{}.png", case.name));
+                write_bytes(&file, &png(strip)?)?;
+                let record = vec![case.name.clone(), caption.clone()];
+                captions.records.push(record);
+            }
         }
         let figure = chart(case, k, solvers, outcome);
-        keep_figure(folder, case.name, &figure)?;
+        keep_figure(folder, &case.name, &figure)?;
         page.figure(&figure, &format!("Faults against the {}. Filled markers: fragment, hollow: compute. No faults are drawn at {FLOOR} %.", case.parameter));
-        page.command(
-            "One of its scenes:",
-            &format!(
-                "revmap render scenes/{}-{}.toml -o frame.png",
-                case.name,
-                case.steps.last().map_or(0.0, |s| s.value)
-            ),
+        let last = case.values.last().copied().unwrap_or_default();
+        let command = format!(
+            "revmap render scenes/{}-{last}.toml -o frame.png",
+            case.name
         );
+        page.command("One of its scenes:", &command);
     }
     write_text(&pictures.join("captions.csv"), &captions.csv())?;
     write_text(&folder.join("report.html"), &page.html())

@@ -2,12 +2,13 @@
 
 use super::case::{Case, Step};
 use super::glance::Spot;
-use super::judge::{Faults, Judged, Limits, Truth};
-use crate::compare::{CompareOptions, Heat, heat_map};
+use super::judge::{Faults, Judged, Truth};
 use crate::report::folder::write_text;
+use crate::report::names::number;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, Offscreen};
+use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_files::Picture;
 use std::collections::HashMap;
@@ -17,19 +18,19 @@ use std::time::Instant;
 /// Both stages; the second is compared with the first.
 pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
-/// How a trial came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a trial came out, from the best to the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// Within the limits.
     Passed,
-    /// Beyond them.
-    Failed,
-    /// Beyond them, as is known of the default.
-    Known,
-    /// Within them, though the default is known to fail: the entry is out of date.
-    Healed,
     /// Refused with an error, as some searches do.
     Refused,
+    /// Within the limits, though the default is known to fail: the entry is out of date.
+    Healed,
+    /// Beyond them, as is known of the default.
+    Known,
+    /// Beyond them.
+    Failed,
 }
 
 impl Verdict {
@@ -38,10 +39,10 @@ impl Verdict {
     pub fn name(self) -> &'static str {
         match self {
             Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Known => "known",
-            Self::Healed => "healed",
             Self::Refused => "refused",
+            Self::Healed => "healed",
+            Self::Known => "known",
+            Self::Failed => "failed",
         }
     }
 }
@@ -51,60 +52,45 @@ impl Verdict {
 pub struct Trial {
     /// Index of the case.
     pub case: usize,
-    /// Index of its scene.
-    pub step: usize,
+    /// The parameter's value.
+    pub value: f64,
     /// The search.
     pub solver: Solver,
     /// The stage.
     pub stage: DrawStage,
     /// What became of it; the message of an error where nothing was drawn.
     pub judged: std::result::Result<Judged, String>,
-    /// What it may have.
-    pub limits: Limits,
+    /// Faults that it may have.
+    pub limit: usize,
     /// Milliseconds of the first frame, pipelines included.
     pub ms: f64,
     /// The verdict.
     pub verdict: Verdict,
 }
 
-/// Pictures of a case's worst scene.
-pub struct Sheet {
+/// Pictures of one of a case's scenes, with captions.
+pub struct Exhibit {
     /// Index of the case.
     pub case: usize,
     /// The parameter's value.
     pub value: f64,
-    /// Drawn by the default, the reference, where the default is wrong.
-    pub own: [Picture; 3],
-    /// Which stage drew it.
-    pub stage: DrawStage,
-    /// The search that fails most, its picture and where that is wrong.
-    pub other: Option<(Solver, [Picture; 2])>,
+    /// How much of the case's failures it shows.
+    score: f64,
+    /// The pictures.
+    pub shots: Vec<(Picture, String)>,
 }
 
-/// The failure of a case that is seen best.
-pub struct Glance {
-    /// Index of the case.
-    pub case: usize,
-    /// The parameter's value.
-    pub value: f64,
-    /// Which search drew it, in which stage.
-    pub method: (Solver, DrawStage),
-    /// How much of it is seen; 0: nothing.
-    pub seen: u64,
-    /// The picture: the whole, and a part of it as drawn, as the reference has it, and the
-    /// difference.
-    pub strip: Picture,
-}
-
-/// All trials and a sheet for each case.
+/// All trials, and what is shown of each case.
 #[derive(Default)]
 pub struct Outcome {
     /// Every picture that was judged.
     pub trials: Vec<Trial>,
-    /// Pictures for the report.
-    pub sheets: Vec<Sheet>,
-    /// Of each case the failure that is seen best.
-    pub glances: Vec<Glance>,
+    /// The worst scene: the reference, the default, and the search that fails most, each with
+    /// where it is wrong.
+    pub sheets: Vec<Exhibit>,
+    /// The failure that is seen best: the whole picture, and a part of it as drawn, as the
+    /// reference has it, and the difference.
+    pub glances: Vec<Exhibit>,
 }
 
 /// What is drawn.
@@ -130,110 +116,129 @@ pub fn run(
     progress: &mut dyn FnMut(&str, usize, usize) -> bool,
 ) -> Result<Outcome> {
     super::cases::write_files(plan.folder)?;
-    let chosen = |case: &Case| -> Vec<usize> {
-        let count = case.steps.len();
-        if plan.quick && count > 2 {
-            vec![0, count - 1]
-        } else {
-            (0..count).collect()
-        }
+    let chosen = |case: &Case| match case.values[..] {
+        [first, .., last] if plan.quick => vec![first, last],
+        _ => case.values.clone(),
     };
     let total: usize = plan.cases.iter().map(|c| chosen(c).len()).sum();
     let mut done = 0;
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
-        let mut worst: Option<(f64, Sheet)> = None;
-        let mut seen: Option<Glance> = None;
+        let mut shown: [Option<Exhibit>; 2] = [None, None];
         // The faults of each search and stage in the frame before, where frames are those of a
         // motion.
         let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
-        for index in chosen(case) {
-            if !progress(case.name, done, total) {
+        for value in chosen(case) {
+            if !progress(&case.name, done, total) {
                 return Ok(outcome);
             }
             done += 1;
-            let step = &case.steps[index];
-            let file = format!("{}-{}.toml", case.name, step.value);
+            let step = (case.scene)(value);
+            let file = format!("{}-{value}.toml", case.name);
             write_text(&plan.folder.join(file), &step.scene)?;
             let scene = step.read(plan.folder)?;
-            let truth = Truth::new(&scene, step.size)?;
+            let truth = Truth::new(&scene, &step)?;
             let mut drawn = Vec::new();
             for &solver in plan.solvers {
-                let mut first: Option<Frame> = None;
-                for stage in STAGES {
-                    let begun = Instant::now();
-                    let frame = draw(device, step, &scene, solver, stage);
-                    let ms = begun.elapsed().as_secs_f64() * 1e3;
-                    let limits = Limits::of((step.size.0 * step.size.1) as usize);
-                    let judged = match &frame {
-                        Ok(frame) => {
-                            let (mut judged, faults) = truth.judge_pixels(frame, first.as_ref())?;
-                            if case.motion {
-                                let last = before.get(&(solver, stage));
-                                judged.flicker = last.map(|last| last.flicker(&faults));
-                                before.insert((solver, stage), faults);
-                            }
-                            Ok(judged)
-                        }
-                        Err(error) => Err(error.to_string()),
-                    };
-                    let known = case.known(stage, step.value);
-                    let verdict = verdict(&judged, &limits, solver, known.is_some());
+                for mut one in both_stages(device, &step, &scene, &truth, solver)? {
+                    if let (true, Ok((_, faults, judged))) = (case.motion, &mut one.result) {
+                        let last = before.insert((solver, one.stage), faults.clone());
+                        judged.flicker = last.map(|last| last.flicker(faults));
+                    }
+                    let judged = one.result.as_ref().map(|r| r.2.clone());
+                    let judged = judged.map_err(ToString::to_string);
+                    let known = case.is_known(value);
                     outcome.trials.push(Trial {
                         case: number,
-                        step: index,
+                        value,
                         solver,
-                        stage,
-                        judged: judged.clone(),
-                        limits,
-                        ms,
-                        verdict,
+                        stage: one.stage,
+                        limit: truth.limit,
+                        ms: one.ms,
+                        verdict: verdict(&judged, truth.limit, solver, known),
+                        judged,
                     });
-                    if let (Ok(frame), Ok(judged)) = (frame, judged) {
-                        drawn.push((solver, stage, judged.share(), frame.clone()));
-                        first.get_or_insert(frame);
+                    if let Ok((frame, _, judged)) = one.result {
+                        drawn.push(Drawn {
+                            value,
+                            method: (solver, one.stage),
+                            share: judged.share(),
+                            frame,
+                        });
                     }
                 }
             }
-            seen = glance(number, step.value, &truth, &drawn, seen)?;
-            // The scene in which the default fares worst, else the one in which any does.
-            let rank = |own: bool| {
-                let of = drawn.iter().filter(|d| (d.0 == Solver::DEFAULT) == own);
-                of.map(|d| d.2).fold(0.0, f64::max)
-            };
-            let score = 1e3 * rank(true) + rank(false).min(1.0);
-            if worst.as_ref().is_none_or(|(s, _)| score > *s) {
-                let sheet = sheet(number, step.value, &truth, &drawn)?;
-                worst = sheet.map(|sheet| (score, sheet)).or(worst);
+            let new = [sheet(&truth, &drawn)?, glance(&truth, &drawn)?];
+            for (kept, new) in shown.iter_mut().zip(new) {
+                if let Some((score, shots)) = new
+                    && kept.as_ref().is_none_or(|kept| score > kept.score)
+                {
+                    *kept = Some(Exhibit {
+                        case: number,
+                        value,
+                        score,
+                        shots,
+                    });
+                }
             }
         }
-        outcome.sheets.extend(worst.map(|(_, sheet)| sheet));
-        outcome.glances.extend(seen);
+        let [sheet, glance] = shown;
+        outcome.sheets.extend(sheet);
+        outcome.glances.extend(glance);
     }
     Ok(outcome)
 }
 
-/// One picture, as the catalogue draws it.
+/// A picture as one stage draws it.
+pub(super) struct Attempt {
+    pub stage: DrawStage,
+    /// Milliseconds.
+    ms: f64,
+    /// The frame, its faults, and what became of it.
+    pub result: Result<(Frame, Faults, Judged)>,
+}
+
+/// A scene by a search in both stages, each judged; the second is compared with the first.
 ///
 /// # Errors
-/// Of drawing.
-pub fn draw(
+/// As [`Truth::judge`]. Errors of drawing are part of what is returned.
+pub(super) fn both_stages(
     device: &Device,
     step: &Step,
-    scene: &revmap::scene::Scene,
+    scene: &Scene,
+    truth: &Truth,
+    solver: Solver,
+) -> Result<Vec<Attempt>> {
+    let mut all: Vec<Attempt> = Vec::new();
+    for stage in STAGES {
+        let begun = Instant::now();
+        let frame = draw(device, step, scene, solver, stage);
+        let ms = begun.elapsed().as_secs_f64() * 1e3;
+        let other = all.iter().find_map(|one| one.result.as_ref().ok());
+        let result = match frame {
+            Ok(frame) => {
+                let (judged, faults) = truth.judge(&frame, other.map(|(frame, ..)| frame))?;
+                Ok((frame, faults, judged))
+            }
+            Err(error) => Err(error),
+        };
+        all.push(Attempt { stage, ms, result });
+    }
+    Ok(all)
+}
+
+/// One picture, as the catalogue draws it.
+fn draw(
+    device: &Device,
+    step: &Step,
+    scene: &Scene,
     solver: Solver,
     stage: DrawStage,
 ) -> Result<Frame> {
     let settings = Settings {
-        width: step.size.0,
-        height: step.size.1,
         stage,
         solver,
-        max_steps: step.max_steps,
-        map_rows: step.map_rows,
-        map_source: step.map_source,
-        map_format: step.map_format,
-        ..Settings::exact()
+        ..step.settings
     };
     let mut offscreen = Offscreen::new(device, scene, &settings)?;
     for _ in 0..step.frame {
@@ -247,89 +252,79 @@ pub fn draw(
 
 fn verdict(
     judged: &std::result::Result<Judged, String>,
-    limits: &Limits,
+    limit: usize,
     solver: Solver,
     known: bool,
 ) -> Verdict {
-    let known = known && solver == Solver::DEFAULT;
-    match judged {
-        Err(_) if solver == Solver::DEFAULT => {
-            if known {
-                Verdict::Known
-            } else {
-                Verdict::Failed
-            }
-        }
-        Err(_) => Verdict::Refused,
-        Ok(judged) => match (judged.passes(limits), known) {
-            (true, false) => Verdict::Passed,
-            (true, true) => Verdict::Healed,
-            (false, true) => Verdict::Known,
-            (false, false) => Verdict::Failed,
-        },
+    let is_default = solver == Solver::DEFAULT;
+    let passed = judged.as_ref().is_ok_and(|judged| judged.passes(limit));
+    match (passed, known && is_default) {
+        (true, false) => Verdict::Passed,
+        (true, true) => Verdict::Healed,
+        (false, true) => Verdict::Known,
+        (false, false) if judged.is_err() && !is_default => Verdict::Refused,
+        (false, false) => Verdict::Failed,
     }
 }
 
-type Drawn = (Solver, DrawStage, f64, Frame);
-
-/// Which of the pictures drawn shows the failure best, or the one `before`.
-fn glance(
-    case: usize,
+struct Drawn {
+    /// The parameter's value.
     value: f64,
-    truth: &Truth,
-    drawn: &[Drawn],
-    before: Option<Glance>,
-) -> Result<Option<Glance>> {
-    let reference = Picture::of(&truth.frame);
-    let spots = drawn.iter().map(|(solver, stage, _, frame)| {
-        let picture = Picture::of(frame);
-        let spot = Spot::worst(&picture, &reference);
-        (spot, picture, (*solver, *stage), frame)
-    });
-    let Some((spot, picture, method, frame)) = spots.max_by_key(|(spot, ..)| spot.seen) else {
-        return Ok(before);
-    };
-    if before.as_ref().is_some_and(|b| b.seen >= spot.seen) {
-        return Ok(before);
-    }
-    let options = CompareOptions {
-        texel: truth.texel(),
-        pixels_per_degree: None,
-    };
-    let heat = heat_map(&truth.frame, frame, &options, Heat::Depth)?;
-    Ok(Some(Glance {
-        case,
-        value,
-        method,
-        seen: spot.seen,
-        strip: spot.strip(&picture, &reference, &heat),
-    }))
+    method: (Solver, DrawStage),
+    /// Faults as a part of the pixels that the reference hits.
+    share: f64,
+    frame: Frame,
 }
 
-fn sheet(case: usize, value: f64, truth: &Truth, drawn: &[Drawn]) -> Result<Option<Sheet>> {
-    let options = CompareOptions {
-        texel: truth.texel(),
-        pixels_per_degree: None,
-    };
-    let worst = |own: bool| {
-        drawn
-            .iter()
-            .filter(|d| (d.0 == Solver::DEFAULT) == own)
-            .max_by(|a, b| a.2.total_cmp(&b.2))
-    };
-    let heat = |frame: &Frame| heat_map(&truth.frame, frame, &options, Heat::Depth);
-    let Some((_, stage, _, frame)) = worst(true).or_else(|| worst(false)) else {
+/// The picture with the most faults: by the default, or by the others.
+fn most_faults(drawn: &[Drawn], own: bool) -> Option<&Drawn> {
+    let of = drawn.iter();
+    let of = of.filter(|d| (d.method.0 == Solver::DEFAULT) == own);
+    of.max_by(|a, b| a.share.total_cmp(&b.share))
+}
+
+/// A score, and pictures with captions.
+type Scored = Option<(f64, Vec<(Picture, String)>)>;
+
+/// The pictures of a scene: scenes in which the default fares worst come first, then those in which
+/// any does.
+fn sheet(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
+    let (own, others) = (most_faults(drawn, true), most_faults(drawn, false));
+    let Some(first) = own.or(others) else {
         return Ok(None);
     };
-    let other = match worst(false).filter(|d| d.2 > 0.0) {
-        Some((solver, _, _, frame)) => Some((*solver, [Picture::of(frame), heat(frame)?])),
-        None => None,
+    let share = |drawn: Option<&Drawn>| drawn.map_or(0.0, |d| d.share);
+    let (default, stage) = (Solver::DEFAULT.name(), first.method.1.name());
+    let mut shots = vec![
+        (Picture::of(&truth.frame), "the reference".to_owned()),
+        (Picture::of(&first.frame), format!("{default}, {stage}")),
+        (truth.heat(&first.frame)?, format!("{default}: difference")),
+    ];
+    if let Some(other) = others.filter(|d| d.share > 0.0) {
+        let solver = other.method.0;
+        shots.push((Picture::of(&other.frame), solver.name().to_owned()));
+        shots.push((truth.heat(&other.frame)?, format!("{solver}: difference")));
+    }
+    Ok(Some((1e3 * share(own) + share(others).min(1.0), shots)))
+}
+
+/// The picture that shows a failure best, with its part that differs most.
+fn glance(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
+    let reference = Picture::of(&truth.frame);
+    let spots = drawn.iter().map(|drawn| {
+        let picture = Picture::of(&drawn.frame);
+        (Spot::worst(&picture, &reference), picture, drawn)
+    });
+    let Some((spot, picture, drawn)) = spots.max_by_key(|(spot, ..)| spot.seen) else {
+        return Ok(None);
     };
-    Ok(Some(Sheet {
-        case,
-        value,
-        own: [Picture::of(frame), Picture::of(&truth.frame), heat(frame)?],
-        stage: *stage,
-        other,
-    }))
+    let strip = spot.strip(&picture, &reference, &truth.heat(&drawn.frame)?);
+    let nothing = if spot.seen == 0 {
+        ", nothing is seen"
+    } else {
+        ""
+    };
+    let ((solver, stage), value) = (drawn.method, number(drawn.value, 6));
+    let caption = format!("{solver}, {}, at {value}{nothing}", stage.name());
+    Ok(Some((spot.seen as f64, vec![(strip, caption)])))
 }

@@ -13,7 +13,6 @@ mod floor;
 mod mesh;
 #[cfg(feature = "mesh")]
 mod mesh_levels;
-mod mesh_shaders;
 #[cfg(feature = "mesh")]
 mod mesh_shading;
 #[cfg(feature = "report")]

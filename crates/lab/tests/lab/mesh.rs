@@ -4,30 +4,31 @@
 use crate::mesh_shading::wrong_planes;
 use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
-use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{Projection, SlopeFilter};
 use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::compare::Comparison;
-use revmap_lab::mesh::{MeshOffscreen, MeshPipelines};
 use revmap_lab::method::{Method, MethodSettings};
-use std::path::Path;
+use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use std::sync::{Arc, OnceLock};
 
 /// Depths are said in texels of a map of so many.
 pub const ROWS: u32 = 512;
 
-/// The device of these tests, and its pipelines. Without a device or without the layers, tests
-/// fail.
-fn pipelines() -> &'static Arc<MeshPipelines> {
-    static PIPELINES: OnceLock<Arc<MeshPipelines>> = OnceLock::new();
-    PIPELINES.get_or_init(|| {
+/// The device of these tests. Without a device or without the layers, tests fail.
+fn device() -> &'static (Device, MethodDevice) {
+    static DEVICE: OnceLock<(Device, MethodDevice)> = OnceLock::new();
+    DEVICE.get_or_init(|| {
         let device = Device::open_validated(None).unwrap();
-        MeshPipelines::new(&device).unwrap()
+        (device.clone(), MethodDevice::new(device).unwrap())
     })
+}
+
+fn renderer(scene: &Scene, settings: &MethodSettings) -> revmap::Result<MethodRenderer> {
+    device().1.renderer(scene, settings)
 }
 
 pub fn settings(segments: u32, rings: u32) -> MethodSettings {
@@ -41,33 +42,25 @@ pub fn settings(segments: u32, rings: u32) -> MethodSettings {
 
 /// Draws meshes; any message of the layers is a failure.
 pub fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
-    let mut mesh = MeshOffscreen::new(pipelines(), scene, settings).unwrap();
-    mesh.draw().unwrap();
-    let frame = mesh.read().unwrap();
-    drop(mesh);
-    pipelines().device().check().unwrap();
-    frame
+    device().1.draw(scene, settings).unwrap().frame
 }
 
 /// Draws by the exact search.
 pub fn searched(scene: &Scene, settings: &MethodSettings) -> Frame {
-    let settings = Settings {
-        solver: Solver::Quadric,
-        ..Settings::from(settings)
-    };
-    let drawn = revmap::gpu::draw(pipelines().device(), scene, &settings);
-    drawn.unwrap().frame
+    let method = Method::Search(Solver::Quadric);
+    draw(
+        scene,
+        &MethodSettings {
+            method,
+            ..*settings
+        },
+    )
 }
 
 pub fn reference(scene: &Scene, settings: &MethodSettings) -> Frame {
     revmap_reference::draw(scene, &settings.into(), &|_, _| {}).unwrap()
 }
 
-const PLAIN: Offset = Offset {
-    extend: 0.0,
-    bevel: 0.0,
-    chamfer: 1.0,
-};
 pub const BEVELED: Offset = Offset {
     extend: -0.01,
     bevel: 0.3,
@@ -84,7 +77,7 @@ fn errors_fall_with_the_square_of_the_steps() {
         ("sphere", shapes::sphere()),
     ];
     for (name, profile) in solids {
-        for offset in [PLAIN, BEVELED] {
+        for offset in [Offset::default(), BEVELED] {
             let mut scene = scene_of(profile.clone(), eye(28.0, 2.0));
             scene.objects[0].offset = offset;
             let truth = reference(&scene, &settings(3, 2));
@@ -92,10 +85,8 @@ fn errors_fall_with_the_square_of_the_steps() {
                 .map(|n| errors(&truth, &draw(&scene, &settings(n, 2 * n)), ROWS))
                 .to_vec();
             let p99 = |c: &Comparison| c.depth.unwrap().p99;
-            let said: Vec<_> = found
-                .iter()
-                .map(|c| (c.missed + c.ghost, p99(c), c.normal.unwrap().rms))
-                .collect();
+            let said = |c: &Comparison| (c.missed + c.ghost, p99(c), c.normal.unwrap().rms);
+            let said: Vec<_> = found.iter().map(said).collect();
             println!("{name} {offset:?}: {said:.4?}");
             for pair in found.windows(2) {
                 assert!(p99(&pair[1]) < 0.5 * p99(&pair[0]), "{name}: {said:?}");
@@ -116,30 +107,14 @@ fn errors_fall_with_the_square_of_the_steps() {
 fn eyes_may_be_inside() {
     // In the vase's solid; in the glass's hollow; through the torus's hole; just above a lid.
     let cases = [
-        (
-            shapes::vase(),
-            DVec3::new(0.1, 0.05, 0.6),
-            DVec3::new(0.3, 0.3, 0.2),
-        ),
-        (
-            shapes::glass(),
-            DVec3::new(0.05, 0.0, 0.8),
-            DVec3::new(-0.2, 0.1, 0.4),
-        ),
-        (
-            shapes::torus(),
-            DVec3::new(0.02, 0.0, 0.5),
-            DVec3::new(0.6, 0.1, 0.55),
-        ),
-        (
-            shapes::vase(),
-            DVec3::new(0.05, 0.0, 0.953),
-            DVec3::new(0.2, 0.1, 0.8),
-        ),
+        (shapes::vase(), [0.1, 0.05, 0.6], [0.3, 0.3, 0.2]),
+        (shapes::glass(), [0.05, 0.0, 0.8], [-0.2, 0.1, 0.4]),
+        (shapes::torus(), [0.02, 0.0, 0.5], [0.6, 0.1, 0.55]),
+        (shapes::vase(), [0.05, 0.0, 0.953], [0.2, 0.1, 0.8]),
     ];
     for (n, (profile, eye, target)) in cases.into_iter().enumerate() {
-        let mut scene = scene_of(profile, eye);
-        scene.camera.target = target;
+        let mut scene = scene_of(profile, eye.into());
+        scene.camera.target = target.into();
         scene.camera.fov_y = 70.0;
         let settings = settings(256, 512);
         let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
@@ -158,14 +133,13 @@ fn a_shift_moves_the_picture() {
     shifted.camera.shift = [3.0, -2.0];
     let mesh = settings(256, 512);
     let search = |stage| {
-        let settings = Settings {
+        let method = Method::DEFAULT;
+        let settings = MethodSettings {
             stage,
-            ..Settings::from(&mesh)
+            method,
+            ..mesh
         };
-        move |scene: &Scene| {
-            let drawn = revmap::gpu::draw(pipelines().device(), scene, &settings);
-            drawn.unwrap().frame
-        }
+        move |scene: &Scene| draw(scene, &settings)
     };
     type Draw<'a> = &'a dyn Fn(&Scene) -> Frame;
     let by: [(&str, Draw); 4] = [
@@ -231,9 +205,12 @@ fn updates_leave_nothing_behind() {
             ..settings(48, 96)
         };
         let mut scene = crowd();
-        let mut mesh = MeshOffscreen::new(pipelines(), &scene, &settings).unwrap();
+        let mut mesh = renderer(&scene, &settings).unwrap();
         mesh.draw().unwrap();
-        for (n, offset) in [BEVELED, PLAIN, BEVELED].into_iter().enumerate() {
+        for (n, offset) in [BEVELED, Offset::default(), BEVELED]
+            .into_iter()
+            .enumerate()
+        {
             scene.objects[0].offset = offset;
             scene.camera.eye = eye(40.0 + 20.0 * n as f64, 2.5);
             match n {
@@ -258,10 +235,10 @@ fn updates_leave_nothing_behind() {
         assert!(mesh.update(&spoilt).is_err());
         mesh.draw().unwrap();
         assert!(mesh.read().unwrap().color == before.color);
-        let bytes = mesh.mesh_bytes();
+        let bytes = mesh.map_bytes()[0];
         assert!(bytes > 2 * 16 * 48 && bytes < 10_000_000, "{bytes}");
         drop(mesh);
-        pipelines().device().check().unwrap();
+        device().0.check().unwrap();
     }
 }
 
@@ -274,64 +251,51 @@ fn nothing_is_a_mesh_too() {
     assert!((0..frame.pixels()).all(|k| !frame.hits(k)));
 }
 
-fn asset(name: &str) -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../assets")
-        .join(name)
+fn asset(name: &str) -> String {
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/").to_owned() + name
 }
 
 #[test]
 fn what_a_mesh_cannot_draw_is_refused() {
     #[track_caller]
     fn refused(kind: ErrorKind, key: &str, spoil: impl Fn(&mut Scene, &mut MethodSettings)) {
-        let mut scene = crowd();
-        let mut settings = settings(16, 32);
+        let (mut scene, mut settings) = (crowd(), settings(16, 32));
         spoil(&mut scene, &mut settings);
-        let made = MeshOffscreen::new(pipelines(), &scene, &settings);
-        let error = made.err().unwrap();
-        assert_eq!(
-            (error.kind, error.key.as_deref()),
-            (kind, Some(key).filter(|k| !k.is_empty())),
-            "{error}"
-        );
-        pipelines().device().check().unwrap();
+        let error = renderer(&scene, &settings).err().unwrap();
+        let found = error.key.as_deref().unwrap_or_default();
+        assert_eq!((error.kind, found), (kind, key), "{error}");
+        device().0.check().unwrap();
     }
-    refused(ErrorKind::Usage, "solver", |_, s| {
-        s.stage = DrawStage::Compute
+    let changed = |key: &str, change: &dyn Fn(&mut [Object])| {
+        refused(ErrorKind::Content, key, |s, _| change(&mut s.objects));
+    };
+    let color_map = Arc::new(revmap_files::color_map(asset("colors/natural-earth.png")).unwrap());
+    let heights =
+        revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default()).unwrap();
+    let heights = Arc::new(heights);
+    changed("object.1.repeat", &|o| o[1].repeat = [2, 1, 1]);
+    changed("object.2.color_map", &|o| {
+        o[2].texturing.color_map = Some(color_map.clone());
+    });
+    changed("object.0.height_map", &|o| {
+        o[0].texturing.displacement_map = Some(heights.clone());
+    });
+    changed("object.0.projection", &|o| {
+        o[0].texturing.projection = Projection::Arc;
+    });
+    changed("object.2.axis", &|o| o[2].axis = [0.9, 0.5]);
+    changed("object.0.extend", &|o| {
+        (o[0].offset.extend, o[0].clip) = (0.3, Clip::Box);
+    });
+    changed("object.0.bevel", &|o| {
+        (o[0].offset.bevel, o[0].clip) = (0.8, Clip::Box);
     });
     refused(ErrorKind::Content, "shadow", |s, _| s.shadow = Shadow::Hard);
-    refused(ErrorKind::Content, "object.1.repeat", |s, _| {
-        s.objects[1].repeat = [2, 1, 1]
-    });
-    refused(ErrorKind::Content, "object.2.color_map", |s, _| {
-        let file = asset("colors/natural-earth.png");
-        s.objects[2].texturing.color_map = Some(Arc::new(revmap_files::color_map(file).unwrap()));
-    });
-    refused(ErrorKind::Content, "object.0.height_map", |s, _| {
-        let map =
-            revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default())
-                .unwrap();
-        s.objects[0].texturing.displacement_map = Some(Arc::new(map));
-    });
-    refused(ErrorKind::Content, "object.0.projection", |s, _| {
-        s.objects[0].texturing.projection = Projection::Arc
-    });
-    refused(ErrorKind::Usage, "solver", |_, s| {
-        s.method = Method::DEFAULT
-    });
-    refused(ErrorKind::Content, "object.2.axis", |s, _| {
-        s.objects[2].axis = [0.9, 0.5]
-    });
-    refused(ErrorKind::Content, "object.0.extend", |s, _| {
-        (s.objects[0].offset.extend, s.objects[0].clip) = (0.3, Clip::Box);
-    });
-    refused(ErrorKind::Content, "object.0.bevel", |s, _| {
-        (s.objects[0].offset.bevel, s.objects[0].clip) = (0.8, Clip::Box);
-    });
+    let compute = |_: &mut Scene, s: &mut MethodSettings| s.stage = DrawStage::Compute;
+    refused(ErrorKind::Usage, "solver", compute);
     for (segments, rings) in [(2, 1), (0, 0), (99_999_999, 9), (u32::MAX, u32::MAX)] {
-        refused(ErrorKind::Usage, "", |_, s| {
-            s.method = Method::Mesh { segments, rings }
-        });
+        let method = Method::Mesh { segments, rings };
+        refused(ErrorKind::Usage, "", |_, s| s.method = method);
     }
 }
 
@@ -341,13 +305,8 @@ fn an_axis_may_stand_off_the_middle() {
     let mut scene = scene_of(shapes::vase(), eye(30.0, 2.0));
     scene.objects[0].axis = [0.6, 0.45];
     let settings = settings(128, 256);
-    let found = errors(
-        &reference(&scene, &settings),
-        &draw(&scene, &settings),
-        ROWS,
-    );
-    assert!(
-        found.wrong() < 2e-3 && found.depth.unwrap().p99 < 0.3,
-        "{found}"
-    );
+    let (truth, frame) = (reference(&scene, &settings), draw(&scene, &settings));
+    let found = errors(&truth, &frame, ROWS);
+    let exact = found.wrong() < 2e-3 && found.depth.unwrap().p99 < 0.3;
+    assert!(exact, "{found}");
 }

@@ -5,8 +5,8 @@ use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::settings::Solver;
-use revmap_lab::stability::case::{Step, Text};
-use revmap_lab::stability::judge::{Limits, Truth};
+use revmap_lab::stability::case::Step;
+use revmap_lab::stability::judge::Truth;
 use revmap_lab::stability::run::{Plan, Verdict, run};
 use revmap_lab::stability::{cases, random, report};
 use revmap_searches::CIRCLE;
@@ -36,7 +36,7 @@ fn the_default_fails_what_is_known_and_nothing_else() {
     let failures = report::failures(&all, &outcome);
     assert!(failures.is_empty(), "{failures:#?}");
     for trial in &outcome.trials {
-        let case = all[trial.case].name;
+        let case = &all[trial.case].name;
         assert_ne!(
             trial.verdict,
             Verdict::Healed,
@@ -54,12 +54,7 @@ fn the_default_fails_what_is_known_and_nothing_else() {
 }
 
 fn step() -> Step {
-    Step::new(
-        0.0,
-        Text::seen([2.0, 0.3, 0.9], [0.0, 0.0, 0.5])
-            .object(BALL)
-            .done(),
-    )
+    Step::seen([2.0, 0.3, 0.9], [0.0, 0.0, 0.5]).object(BALL)
 }
 
 /// Faults that are planted in the reference's own frame, one kind at a time.
@@ -67,8 +62,8 @@ fn step() -> Step {
 fn planted_faults_fail() {
     let step = step();
     let scene = step.read(std::path::Path::new("")).unwrap();
-    let truth = Truth::new(&scene, step.size).unwrap();
-    let limits = Limits::of((step.size.0 * step.size.1) as usize);
+    let truth = Truth::new(&scene, &step).unwrap();
+    let limit = truth.limit;
     let hit: Vec<usize> = (0..truth.frame.pixels())
         .filter(|&k| truth.frame.hits(k))
         .collect();
@@ -77,27 +72,27 @@ fn planted_faults_fail() {
     let judged = |change: &dyn Fn(&mut Frame, usize)| {
         let mut frame = truth.frame.clone();
         spots.iter().for_each(|&k| change(&mut frame, k));
-        truth.judge(&frame, None).unwrap()
+        truth.judge(&frame, None).unwrap().0
     };
     let same = judged(&|_, _| {});
-    assert_eq!((same.faults(), same.passes(&limits)), (0, true));
+    assert_eq!((same.faults(), same.passes(limit)), (0, true));
     let missed = judged(&|f, k| f.distance[k] = f32::INFINITY);
-    assert_eq!((missed.wrong, missed.passes(&limits)), (5, false));
+    assert_eq!((missed.wrong, missed.passes(limit)), (5, false));
     let behind = judged(&|f, k| f.distance[k] += 0.01);
-    assert_eq!((behind.wrong, behind.passes(&limits)), (5, false));
+    assert_eq!((behind.wrong, behind.passes(limit)), (5, false));
     let before = judged(&|f, k| f.distance[k] -= 0.01);
-    assert_eq!((before.wrong, before.passes(&limits)), (5, false));
+    assert_eq!((before.wrong, before.passes(limit)), (5, false));
     let rounded = judged(&|f, k| f.distance[k] *= 1.0 + 1e-6);
     assert_eq!(rounded.wrong, 0);
     let dark = judged(&|f, k| f.color[k] = [0.0, 0.0, 0.0, 1.0]);
-    assert_eq!((dark.color, dark.passes(&limits)), (5, false));
+    assert_eq!((dark.color, dark.passes(limit)), (5, false));
     let nan = judged(&|f, k| f.normal[k][1] = f32::NAN);
-    assert_eq!((nan.not_finite, nan.passes(&limits)), (5, false));
+    assert_eq!((nan.not_finite, nan.passes(limit)), (5, false));
     let mut other = truth.frame.clone();
     spots
         .iter()
         .for_each(|&k| other.color[k] = [1.0, 0.0, 1.0, 1.0]);
-    let stages = truth.judge(&other, Some(&truth.frame)).unwrap();
+    let (stages, _) = truth.judge(&other, Some(&truth.frame)).unwrap();
     assert_eq!(stages.stages, 5);
 }
 
@@ -106,14 +101,14 @@ fn planted_faults_fail() {
 fn planted_flicker_is_counted() {
     let step = step();
     let scene = step.read(std::path::Path::new("")).unwrap();
-    let truth = Truth::new(&scene, step.size).unwrap();
+    let truth = Truth::new(&scene, &step).unwrap();
     let hit: Vec<usize> = (0..truth.frame.pixels())
         .filter(|&k| truth.frame.hits(k))
         .collect();
     let faults = |spots: &[usize], change: &dyn Fn(&mut Frame, usize)| {
         let mut frame = truth.frame.clone();
         spots.iter().for_each(|&k| change(&mut frame, hit[k]));
-        truth.judge_pixels(&frame, None).unwrap().1
+        truth.judge(&frame, None).unwrap().1
     };
     let none = faults(&[], &|_, _| {});
     let spots = [1000, 1010, 1020];
@@ -164,7 +159,7 @@ fn random_scenes_are_scenes() {
         if draft.text().contains("instances") {
             continue;
         }
-        let scene = Step::new(0.0, draft.text()).read(folder.path());
+        let scene = Step::new(draft.text()).read(folder.path());
         let Ok(scene) = scene else { continue };
         assert!(scene.camera.eye.is_finite() && scene.camera.eye != DVec3::ZERO);
         read += 1;
@@ -205,20 +200,16 @@ fn random_scenes_that_once_failed() {
 fn a_solid_seen_from_within_is_judged_in_its_units() {
     for scale in [1e-3, 1.0, 1e3] {
         let at = |p: [f64; 3]| p.map(|x| scale * x);
-        let text = Text::through(at([0.0, 0.0, 0.5]), at([1.0, 0.3, 0.6]), 80.0);
-        let step = Step::new(
-            0.0,
-            text.object(&format!("{BALL}\nscale = {:?}", [scale; 3]))
-                .done(),
-        );
+        let empty = Step::through(at([0.0, 0.0, 0.5]), at([1.0, 0.3, 0.6]), 80.0);
+        let step = empty.object(&format!("{BALL}\nscale = {:?}", [scale; 3]));
         let scene = step.read(std::path::Path::new("")).unwrap();
-        let truth = Truth::new(&scene, step.size).unwrap();
+        let truth = Truth::new(&scene, &step).unwrap();
         let moved = |by: f64| {
             let mut frame = truth.frame.clone();
             for z in &mut frame.distance {
                 *z = (f64::from(*z) + by * scale) as f32;
             }
-            truth.judge(&frame, None).unwrap().wrong
+            truth.judge(&frame, None).unwrap().0.wrong
         };
         let pixels = truth.frame.pixels();
         assert_eq!(moved(1e-5), 0, "{scale}");

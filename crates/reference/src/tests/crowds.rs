@@ -55,11 +55,8 @@ fn assert_same(a: &Reference, b: &Reference, rays: impl Iterator<Item = Ray>) {
 fn singles(object: &Object) -> Vec<Object> {
     let mut list = Vec::new();
     let n = object.repeat.map(f64::from);
-    let size = DVec3::new(
-        2.0 * object.profile.radius,
-        2.0 * object.profile.radius,
-        1.0,
-    );
+    let side = 2.0 * object.profile.radius;
+    let size = DVec3::new(side, side, 1.0);
     for k in 0..object.repeat.iter().product::<u32>() {
         let index = [
             k % object.repeat[0],
@@ -131,13 +128,11 @@ fn replicas_that_touch_are_one_solid() {
     let mut o = object(samples::cylinder(0.4, 0.0, 1.0), 0.5);
     o.repeat = [1, 1, 4];
     // The far end is seen from inside, not the joints.
-    let found = shoot(o.clone(), [0.1, 0.0, 0.1], [0.0, 0.0, 1.0]);
+    let found = shoot(&o, [0.1, 0.0, 0.1], [0.0, 0.0, 1.0]);
     assert!((found.hit.unwrap().t - 0.9).abs() < 1e-9);
     // A cone's base touches the next cone's tip: the joint is surface if only one side is solid.
     o.profile = Arc::new(Profile::new(samples::cone(0.4, 0.0, 1.0), 0.5));
-    let found = shoot(o.clone(), [0.2, 0.1, 0.2], [0.0, 0.0, 1.0])
-        .hit
-        .unwrap();
+    let found = shoot(&o, [0.2, 0.1, 0.2], [0.0, 0.0, 1.0]).hit.unwrap();
     assert!(
         (found.t - 0.05).abs() < 1e-9 && (found.normal + DVec3::Z).length() < 1e-9,
         "{found:?}"
@@ -145,7 +140,7 @@ fn replicas_that_touch_are_one_solid() {
     // With mirroring, base meets base: the side of the upper cone is seen from within the lower
     // one.
     o.mirror[2] = true;
-    let found = shoot(o, [0.2, 0.1, 0.45], [0.0, 0.0, 1.0]).hit.unwrap();
+    let found = shoot(&o, [0.2, 0.1, 0.45], [0.0, 0.0, 1.0]).hit.unwrap();
     let z = 0.75 - 0.25 * 0.05f64.sqrt() / 0.4;
     assert!(
         (found.t - (z - 0.45)).abs() < 1e-9 && found.normal.z > 0.0,
@@ -208,18 +203,9 @@ fn a_picture_is_its_outline() {
     let o = object(revmap_files::trace(image).unwrap().outline, 0.5);
     // Eleven columns and three quarters of one.
     let r = 11.75 / 64.0;
-    assert_hit(
-        shoot(o.clone(), [2.0, 0.0, 0.5], [-1.0, 0.0, 0.0]),
-        2.0 - r,
-        [1.0, 0.0, 0.0],
-        Surface::Turned,
-    );
-    assert_hit(
-        shoot(o, [0.01, 0.02, 3.0], [0.0, 0.0, -1.0]),
-        2.0 + 12.0 / 64.0,
-        [0.0, 0.0, 1.0],
-        Surface::Turned,
-    );
+    assert_hits(&o, &format!("2 0 0.5  -1 0 0  {}  1 0 0  turned", 2.0 - r));
+    let t = 2.0 + 12.0 / 64.0;
+    assert_hits(&o, &format!("0.01 0.02 3  0 0 -1  {t}  0 0 1  turned"));
 }
 
 #[test]
@@ -234,12 +220,7 @@ fn cameras_within_see_boundaries_everywhere() {
             o.offset.extend = extend;
             let mut s = scene(vec![o]);
             (s.camera.eye, s.camera.target, s.camera.fov_y) = (eye, target, 100.0);
-            let settings = Settings {
-                width: 41,
-                height: 31,
-                ..Settings::exact()
-            };
-            let frame = super::super::draw(&s, &settings, &|_, _| {}).unwrap();
+            let frame = draw(&s, &settings(41, 31), &|_, _| {}).unwrap();
             for k in 0..frame.pixels() {
                 assert!(
                     frame.hits(k) && frame.pixel(k).iter().all(|v| v.is_finite()),
@@ -261,9 +242,8 @@ fn clearance_is_how_deep_or_how_far() {
             origin: DVec3::new(2.0, y, z),
             direction: DVec3::new(-3.0, 0.0, 0.0),
         };
-        Reference::new(&scene(vec![o]))
-            .unwrap()
-            .clearance(ray, 1e-4)
+        let reference = Reference::new(&scene(vec![o])).unwrap();
+        reference.clearance_within(ray, [0.0, f64::INFINITY], 1e-4)
     };
     for y in [0.0, 0.1, 0.25, 0.299, 0.301, 0.35, 0.45] {
         let found = at(ball(), y, 0.5);

@@ -75,13 +75,11 @@ impl Surface {
         let borders = crossings(contour, rows, 0.0);
         let odd = |both: &[Vec<f64>; 2]| both.iter().any(|c| c.len() > 1);
         if let Some(i) = borders.windows(2).position(|w| odd(&w[0]) && odd(&w[1])) {
-            return Err(Error::new(
-                ErrorKind::Content,
-                format!(
-                    "is not single-valued in z: at z = {:.3} the solid begins off the axis or is left twice, which cone maps cannot hold; take the solver quadric",
-                    i as f64 / n
-                ),
-            ));
+            let z = i as f64 / n;
+            let message = format!(
+                "is not single-valued in z: at z = {z:.3} the solid begins off the axis or is left twice, which cone maps cannot hold; take the solver quadric"
+            );
+            return Err(Error::new(ErrorKind::Content, message));
         }
         let widest = |crossings: &[f64]| crossings.iter().fold(0.0f64, |m, &r| m.max(r));
         let fine: Vec<f64> = crossings(contour, rows * FINE, 0.5)
@@ -192,12 +190,8 @@ fn levels(contour: &Contour, rows: usize) -> Vec<Option<f64>> {
             continue;
         }
         let row = |z: f64| ((z * n).floor().max(0.0) as usize).min(rows - 1);
-        for (i, sum) in sums
-            .iter_mut()
-            .enumerate()
-            .take(row(high.y) + 1)
-            .skip(row(low.y))
-        {
+        let within = row(low.y)..=row(high.y);
+        for (i, sum) in within.clone().zip(&mut sums[within]) {
             // The part of the side within the row.
             let (from, to) = (low.y.max(i as f64 / n), high.y.min((i + 1) as f64 / n));
             let share = if height > 0.0 {

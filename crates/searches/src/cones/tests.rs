@@ -5,8 +5,13 @@ use revmap::profile::{Outline, Profile};
 use revmap::scene::Offset;
 use revmap::surface::ContourSource;
 
-fn contour(points: &[[f64; 2]], extend: f64) -> Contour {
-    let profile = Profile::polygon(points, 0.5).unwrap();
+/// The contour of a polygon, `r` and `z` of its points.
+fn contour(points: &str, extend: f64) -> Contour {
+    let numbers: Vec<f64> = points
+        .split_whitespace()
+        .map(|n| n.parse().unwrap())
+        .collect();
+    let profile = Profile::polygon(numbers.as_chunks().0, 0.5).unwrap();
     let offset = Offset {
         extend,
         ..Offset::default()
@@ -19,7 +24,7 @@ fn contour(points: &[[f64; 2]], extend: f64) -> Contour {
 
 #[test]
 fn a_double_cone_by_hand() {
-    let spindle = contour(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.0);
+    let spindle = contour("0 0  0.4 0.5  0 1", 0.0);
     let cones = Cones::new(&spindle, 4).unwrap();
     let expected = [
         [0.0, 0.2, 0.8, 0.0],
@@ -36,61 +41,24 @@ fn a_double_cone_by_hand() {
 
 #[test]
 fn what_is_not_single_valued_is_refused() {
-    let ring = contour(&[[0.1, 0.2], [0.4, 0.2], [0.4, 0.7], [0.1, 0.7]], 0.0);
-    let error = Cones::new(&ring, 64).unwrap_err();
+    let cones = |points: &str, extend| Cones::new(&contour(points, extend), 64);
+    let error = cones("0.1 0.2  0.4 0.2  0.4 0.7  0.1 0.7", 0.0).unwrap_err();
     assert!(error.to_string().contains("z = 0.203"), "{error}");
-    let cup = contour(
-        &[
-            [0.0, 0.1],
-            [0.3, 0.1],
-            [0.3, 0.9],
-            [0.25, 0.9],
-            [0.25, 0.2],
-            [0.0, 0.2],
-        ],
-        0.0,
-    );
-    assert!(Cones::new(&cup, 64).is_err());
+    let cup = "0 0.1  0.3 0.1  0.3 0.9  0.25 0.9  0.25 0.2  0 0.2";
+    assert!(cones(cup, 0.0).is_err());
     // A cavity that is lower than a row is missed.
-    let scratched = [
-        [0.0, 0.1],
-        [0.3, 0.1],
-        [0.2, 0.105],
-        [0.3, 0.11],
-        [0.3, 0.9],
-        [0.0, 0.9],
-    ];
-    assert!(Cones::new(&contour(&scratched, 0.0), 64).is_ok());
+    let scratched = "0 0.1  0.3 0.1  0.2 0.105  0.3 0.11  0.3 0.9  0 0.9";
+    assert!(cones(scratched, 0.0).is_ok());
     // The column is single-valued with every extension.
-    let column = [
-        [0.0, 0.1],
-        [0.1, 0.1],
-        [0.3, 0.2],
-        [0.1, 0.6],
-        [0.2, 0.9],
-        [0.0, 0.9],
-    ];
+    let column = "0 0.1  0.1 0.1  0.3 0.2  0.1 0.6  0.2 0.9  0 0.9";
     for extend in [0.0, 0.05, -0.03] {
-        assert!(
-            Cones::new(&contour(&column, extend), 64).is_ok(),
-            "{extend}"
-        );
+        assert!(cones(column, extend).is_ok(), "{extend}");
     }
 }
 
 #[test]
 fn level_faces_keep_their_height() {
-    let drum = contour(
-        &[
-            [0.0, 0.19],
-            [0.3, 0.19],
-            [0.3, 0.5],
-            [0.2, 0.5],
-            [0.2, 0.92],
-            [0.0, 0.92],
-        ],
-        0.0,
-    );
+    let drum = contour("0 0.19  0.3 0.19  0.3 0.5  0.2 0.5  0.2 0.92  0 0.92", 0.0);
     let cones = Cones::new(&drum, 10).unwrap();
     let expected = [
         [0.0, 0.0, 0.3 / 0.09, 0.0],                        // of its upper end

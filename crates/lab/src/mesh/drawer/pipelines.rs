@@ -2,27 +2,38 @@
 
 use super::super::blocks::ObjectBlock;
 use super::super::tessellation::Vertex;
-use super::multisampled;
+use super::DrawnPass;
 use ash::vk;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::{Device, vulkan_error as vulkan};
 use revmap::maps::Projection;
+use revmap::search::unpacked;
 use revmap::settings::Planes;
 use std::collections::HashMap;
 use std::mem::offset_of;
 use std::sync::{Arc, Mutex};
 
-/// SPIR-V of `shaders/`; a test compares it with the sources.
-const VERTEX: &[u8] = include_bytes!("../../../shaders/spirv/mesh.vert.spv");
-const COLOR: &[u8] = include_bytes!("../../../shaders/spirv/mesh_color.frag.spv");
-const PLANES: &[u8] = include_bytes!("../../../shaders/spirv/mesh_planes.frag.spv");
+/// Sizes and hashes of the shaders, from `build.rs`.
+#[allow(clippy::unreadable_literal, dead_code)]
+pub(in super::super) mod generated {
+    include!(concat!(env!("OUT_DIR"), "/mesh.rs"));
+}
+
+/// The words of shader `n` of `build.rs`.
+pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
+    let packed = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
+    let start = generated::MODULE_BYTES.iter().take(n).sum();
+    unpacked(
+        packed
+            .get(start..)?
+            .get(..*generated::MODULE_BYTES.get(n)?)?,
+    )
+}
 
 /// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct PipelineKey {
-    pub pass: vk::RenderPass,
-    pub samples: vk::SampleCountFlags,
-    pub planes: Planes,
+    pub pass: DrawnPass,
     pub lights: u32,
     /// Whether the object is one instance, which its block holds.
     pub single: bool,
@@ -35,23 +46,20 @@ pub(in super::super) struct PipelineKey {
 pub struct MeshPipelines {
     pub(super) set_layout: vk::DescriptorSetLayout,
     pub(super) layout: vk::PipelineLayout,
+    /// The shaders of `build.rs`: vertices, pixels of colour alone, pixels of all planes.
+    modules: [vk::ShaderModule; 3],
     made: Mutex<HashMap<PipelineKey, vk::Pipeline>>,
-    /// Multisampled passes, by the format of their colours.
-    passes: Mutex<HashMap<vk::Format, vk::RenderPass>>,
     device: Device,
 }
 
 impl MeshPipelines {
     /// Pipelines on this device; none is compiled yet.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn new(device: &Device) -> Result<Arc<Self>> {
         let mut all = Self {
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
+            modules: [vk::ShaderModule::null(); 3],
             made: Mutex::default(),
-            passes: Mutex::default(),
             device: device.clone(),
         };
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
@@ -80,35 +88,32 @@ impl MeshPipelines {
         // SAFETY: as above.
         all.layout = unsafe { device.raw().create_pipeline_layout(&info, None) }
             .map_err(|code| vulkan("vkCreatePipelineLayout", code))?;
+        for (n, module) in all.modules.iter_mut().enumerate() {
+            let broken = || Error::new(ErrorKind::Other, "the mesh shaders are broken");
+            let words = shader(n).ok_or_else(broken)?;
+            let info = vk::ShaderModuleCreateInfo::default().code(&words);
+            // SAFETY: the words are SPIR-V made by build.rs.
+            *module = unsafe { device.raw().create_shader_module(&info, None) }
+                .map_err(|code| vulkan("vkCreateShaderModule", code))?;
+        }
         Ok(Arc::new(all))
     }
 
     /// The device.
-    #[must_use]
     pub fn device(&self) -> &Device {
         &self.device
     }
 
     /// The pipeline of a key, compiled now if it is new.
     pub(super) fn get(&self, key: PipelineKey) -> Result<vk::Pipeline> {
-        let mut made = self.made.lock().map_err(|_| gone())?;
+        let gone = |_| Error::new(ErrorKind::Other, "the mesh pipelines' lock is poisoned");
+        let mut made = self.made.lock().map_err(gone)?;
         if let Some(pipeline) = made.get(&key) {
             return Ok(*pipeline);
         }
         let pipeline = self.make(key)?;
         made.insert(key, pipeline);
         Ok(pipeline)
-    }
-
-    /// The pass of four samples for colours in a format.
-    pub(super) fn multisampled_pass(&self, format: vk::Format) -> Result<vk::RenderPass> {
-        let mut passes = self.passes.lock().map_err(|_| gone())?;
-        if let Some(pass) = passes.get(&format) {
-            return Ok(*pass);
-        }
-        let pass = multisampled::pass(&self.device, format)?;
-        passes.insert(format, pass);
-        Ok(pass)
     }
 
     fn make(&self, key: PipelineKey) -> Result<vk::Pipeline> {
@@ -128,16 +133,31 @@ impl MeshPipelines {
         let constants = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
-        let (fragment, attachments) = match key.planes {
-            Planes::All => (PLANES, 4),
+        let (fragment, attachments) = match key.pass.planes {
+            Planes::All => (2, 4),
             // An off-screen frame has at least colour.
-            Planes::Color | Planes::Depth { .. } => (COLOR, 1),
+            Planes::Color | Planes::Depth { .. } => (1, 1),
         };
-        let (vertex, fragment) = (self.module(VERTEX)?, self.module(fragment)?);
+        let stage = |stage, module: usize| {
+            vk::PipelineShaderStageCreateInfo::default()
+                .stage(stage)
+                .module(self.modules[module])
+                .name(c"main")
+                .specialization_info(&constants)
+        };
         let stages = [
-            vertex.stage(vk::ShaderStageFlags::VERTEX, &constants),
-            fragment.stage(vk::ShaderStageFlags::FRAGMENT, &constants),
+            stage(vk::ShaderStageFlags::VERTEX, 0),
+            stage(vk::ShaderStageFlags::FRAGMENT, fragment),
         ];
+        self.compile(key, &stages, attachments)
+    }
+
+    fn compile(
+        &self,
+        key: PipelineKey,
+        stages: &[vk::PipelineShaderStageCreateInfo<'_>],
+        attachments: usize,
+    ) -> Result<vk::Pipeline> {
         let bindings = [vk::VertexInputBindingDescription::default()
             .stride(const { size_of::<Vertex>() as u32 })];
         let attribute = |location, format, offset| {
@@ -169,8 +189,8 @@ impl MeshPipelines {
             })
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
-        let samples =
-            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(key.samples);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(key.pass.samples);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
@@ -182,7 +202,7 @@ impl MeshPipelines {
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
         let info = vk::GraphicsPipelineCreateInfo::default()
-            .stages(&stages)
+            .stages(stages)
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
             .viewport_state(&viewport)
@@ -192,7 +212,7 @@ impl MeshPipelines {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(self.layout)
-            .render_pass(key.pass);
+            .render_pass(key.pass.raw);
         let none = vk::PipelineCache::null();
         // SAFETY: `info` and all it points to live until the call returns; the pass lives as long
         // as the device, which `self` holds.
@@ -200,75 +220,23 @@ impl MeshPipelines {
         made.map(|all| all.first().copied().unwrap_or_default())
             .map_err(|(_, code)| vulkan("vkCreateGraphicsPipelines", code))
     }
-
-    fn module(&self, spirv: &[u8]) -> Result<Module<'_>> {
-        let broken = |e| {
-            Error::new(
-                ErrorKind::Other,
-                format!("the mesh shaders are broken: {e}"),
-            )
-        };
-        let words = ash::util::read_spv(&mut std::io::Cursor::new(spirv)).map_err(broken)?;
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are SPIR-V that the repository keeps.
-        let raw = unsafe { self.device.raw().create_shader_module(&info, None) }
-            .map_err(|code| vulkan("vkCreateShaderModule", code))?;
-        Ok(Module {
-            raw,
-            device: &self.device,
-        })
-    }
 }
 
 impl Drop for MeshPipelines {
     fn drop(&mut self) {
         let raw = self.device.raw();
         let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
-        let passes = (self.passes.get_mut()).map_or_else(|_| HashMap::new(), std::mem::take);
         // SAFETY: all that draws with them holds `self` and waits for its frames; null handles may
         // be destroyed.
         unsafe {
             for pipeline in made.values() {
                 raw.destroy_pipeline(*pipeline, None);
             }
-            for pass in passes.values() {
-                raw.destroy_render_pass(*pass, None);
+            for module in self.modules {
+                raw.destroy_shader_module(module, None);
             }
             raw.destroy_pipeline_layout(self.layout, None);
             raw.destroy_descriptor_set_layout(self.set_layout, None);
         }
-    }
-}
-
-fn gone() -> Error {
-    Error::new(
-        ErrorKind::Other,
-        "the mesh pipelines are gone after a panic",
-    )
-}
-
-struct Module<'a> {
-    raw: vk::ShaderModule,
-    device: &'a Device,
-}
-
-impl Module<'_> {
-    fn stage<'i>(
-        &self,
-        stage: vk::ShaderStageFlags,
-        constants: &'i vk::SpecializationInfo<'i>,
-    ) -> vk::PipelineShaderStageCreateInfo<'i> {
-        vk::PipelineShaderStageCreateInfo::default()
-            .stage(stage)
-            .module(self.raw)
-            .name(c"main")
-            .specialization_info(constants)
-    }
-}
-
-impl Drop for Module<'_> {
-    fn drop(&mut self) {
-        // SAFETY: pipelines made of a module do not need it afterwards.
-        unsafe { self.device.raw().destroy_shader_module(self.raw, None) };
     }
 }

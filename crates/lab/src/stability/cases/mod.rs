@@ -7,60 +7,50 @@ mod placement;
 mod rays;
 mod shapes;
 
-use super::case::Case;
-use crate::report::folder::png;
-use crate::report::folder::{make, write_bytes};
+use super::case::{Case, Step};
+use crate::report::folder::{make, png, write_bytes};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
 use std::path::Path;
 
-/// Every case, in the order of the table.
-#[must_use]
-pub fn all() -> Vec<Case> {
-    let mut all = placement::cases();
-    all.extend(shapes::cases());
-    all.extend(rays::cases());
-    all.extend(boxes::cases());
-    all.extend(light::cases());
-    all.extend(maps::cases());
-    all
-}
+/// The scene of a case at a value of its parameter.
+type Scene = (&'static str, fn(f64) -> Step);
 
-/// The cases of these names; all where none is named.
+/// The cases of these names, in the order of the table; all where none is named.
 ///
 /// # Errors
 /// [`ErrorKind::Usage`] for a name that no case has.
 pub fn named(names: &[String]) -> Result<Vec<Case>> {
-    let all = all();
-    for name in names {
-        if !all.iter().any(|case| case.name == name) {
-            let known: Vec<_> = all.iter().map(|case| case.name).collect();
-            return Err(Error::new(
-                ErrorKind::Usage,
-                format!("{name:?} is no case; give some of {}", known.join(", ")),
-            ));
-        }
+    #[derive(serde::Deserialize)]
+    struct Catalogue {
+        case: Vec<Case>,
     }
-    let wanted = |case: &Case| names.is_empty() || names.iter().any(|n| n == case.name);
-    Ok(all.into_iter().filter(wanted).collect())
-}
-
-/// A case without scenes.
-fn case(
-    name: &'static str,
-    parameter: &'static str,
-    why: &'static str,
-    cure: &'static str,
-) -> Case {
-    Case {
-        name,
-        parameter,
-        why,
-        cure,
-        steps: Vec::new(),
-        known: Vec::new(),
-        motion: false,
+    let broken =
+        |why: &dyn std::fmt::Display| Error::new(ErrorKind::Other, format!("cases.toml: {why}"));
+    let catalogue = toml::from_str(include_str!("../cases.toml"));
+    let Catalogue { case: mut all } = catalogue.map_err(|error| broken(&error))?;
+    let groups = [
+        placement::SCENES,
+        shapes::SCENES,
+        rays::SCENES,
+        boxes::SCENES,
+        light::SCENES,
+        maps::SCENES,
+    ];
+    for case in &mut all {
+        let scene = groups.iter().copied().flatten().find(|s| s.0 == case.name);
+        case.scene = scene
+            .ok_or_else(|| broken(&format!("{} has no scene", case.name)))?
+            .1;
     }
+    let is_known = |name: &&String| all.iter().any(|case| case.name == **name);
+    if let Some(name) = names.iter().find(|name| !is_known(name)) {
+        let known: Vec<_> = all.iter().map(|case| case.name.as_str()).collect();
+        let message = format!("{name:?} is no case; give some of {}", known.join(", "));
+        return Err(Error::new(ErrorKind::Usage, message));
+    }
+    all.retain(|case| names.is_empty() || names.contains(&case.name));
+    Ok(all)
 }
 
 /// Writes the pictures that cases name into `folder`.
@@ -70,11 +60,9 @@ fn case(
 pub fn write_files(folder: &Path) -> Result<()> {
     make(folder)?;
     for side in shapes::PICTURE_ROWS {
-        let name = format!("border-{side}.png");
-        let picture = shapes::bordered(side);
-        write_bytes(&folder.join(name), &png(&picture)?)?;
-        let name = format!("ball-{side}.png");
-        write_bytes(&folder.join(name), &png(&shapes::binary_ball(side))?)?;
+        let (border, ball) = (shapes::bordered(side), shapes::binary_ball(side));
+        write_bytes(&folder.join(format!("border-{side}.png")), &png(&border)?)?;
+        write_bytes(&folder.join(format!("ball-{side}.png")), &png(&ball)?)?;
     }
     write_bytes(&folder.join("waves.png"), &png(&maps::waves())?)
 }
@@ -148,3 +136,8 @@ pub(super) fn eye(elevation: f64, distance: f64) -> [f64; 3] {
 
 /// The middle of a box at the origin.
 pub(super) const MIDDLE: [f64; 3] = [0.0, 0.0, 0.5];
+
+/// A spindle from `elevation` degrees up and a distance; `keys` are further lines of the object.
+pub(super) fn spindle(elevation: f64, distance: f64, keys: &str) -> Step {
+    Step::seen(eye(elevation, distance), MIDDLE).solid(&SPINDLE, keys)
+}

@@ -2,13 +2,9 @@
 //! `unsafe`.
 #![allow(unsafe_code)]
 
-mod multisampled;
-mod pipelines;
-mod search;
+pub(super) mod pipelines;
 
-pub(super) use multisampled::{MultisampledTarget, SAMPLES, Within};
 pub use pipelines::MeshPipelines;
-pub(super) use search::SearchGuest;
 
 use super::blocks::{FrameBlock, InstanceBlock, MAX_LIGHTS, ObjectBlock};
 use super::placed::PlacedMesh;
@@ -25,7 +21,8 @@ use std::sync::Arc;
 /// Meshes and what is drawn of them. Every frame is waited for before the next call.
 pub(super) struct MeshDrawer {
     objects: Vec<DrawnObject>,
-    meshes: Vec<DeviceMesh>,
+    /// Meshes that the next frame copies from buffers of vertices, then indices.
+    staged: Vec<(Arc<DeviceMesh>, Buffer)>,
     frame: Buffer,
     instances: Buffer,
     pool: vk::DescriptorPool,
@@ -35,7 +32,7 @@ pub(super) struct MeshDrawer {
 }
 
 /// A pass that meshes are drawn in; it lives as long as the device's pipelines.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct DrawnPass {
     pub raw: vk::RenderPass,
     pub samples: vk::SampleCountFlags,
@@ -43,8 +40,7 @@ pub(super) struct DrawnPass {
 }
 
 struct DrawnObject {
-    /// Index of its mesh.
-    mesh: usize,
+    mesh: Arc<DeviceMesh>,
     pipeline: vk::Pipeline,
     block: ObjectBlock,
     instances: Range<u32>,
@@ -57,7 +53,7 @@ impl MeshDrawer {
         let device = pipelines.device();
         let mut drawer = Self {
             objects: Vec::new(),
-            meshes: Vec::new(),
+            staged: Vec::new(),
             frame: device.buffer(
                 "mesh frame",
                 size_of::<FrameBlock>() as u64,
@@ -106,23 +102,23 @@ impl MeshDrawer {
         placed: &[PlacedMesh],
     ) -> Result<()> {
         let device = self.pipelines.device().clone();
-        let mut new: Vec<DeviceMesh> = Vec::new();
+        let mut staged: Vec<(Arc<DeviceMesh>, Buffer)> = Vec::new();
         let mut objects = Vec::new();
         let mut instances: Vec<InstanceBlock> = Vec::new();
         for one in placed {
-            let same = |mesh: &DeviceMesh| Arc::ptr_eq(&mesh.mesh, &one.mesh);
-            let known = self.meshes.iter().chain(&new).position(same);
-            let mesh = match known {
-                Some(mesh) => mesh,
+            let before = self.objects.iter().map(|object| &object.mesh);
+            let mut known = before.chain(staged.iter().map(|(mesh, _)| mesh));
+            let mesh = match known.find(|known| Arc::ptr_eq(&known.mesh, &one.mesh)) {
+                Some(mesh) => mesh.clone(),
                 None => {
-                    new.push(DeviceMesh::new(&device, &one.mesh)?);
-                    self.meshes.len() + new.len() - 1
+                    let (mesh, staging) = DeviceMesh::new(&device, &one.mesh)?;
+                    let mesh = Arc::new(mesh);
+                    staged.push((mesh.clone(), staging));
+                    mesh
                 }
             };
             let key = PipelineKey {
-                pass: self.pass.raw,
-                samples: self.pass.samples,
-                planes: self.pass.planes,
+                pass: self.pass,
                 lights: lights.min(MAX_LIGHTS) as u32,
                 single: one.instances.len() == 1,
                 projection: one.projection,
@@ -148,41 +144,27 @@ impl MeshDrawer {
             write(&mut self.instances, bytes)?;
         }
         write(&mut self.frame, bytemuck::bytes_of(frame))?;
-        self.meshes.append(&mut new);
         self.objects = objects;
-        self.drop_unused();
+        // Some may have been staged for a frame that was never drawn.
+        self.staged.append(&mut staged);
+        self.staged.retain(|(mesh, _)| Arc::strong_count(mesh) > 1);
         Ok(())
-    }
-
-    /// Drops meshes that no object has any more.
-    fn drop_unused(&mut self) {
-        let objects = &mut self.objects;
-        let mut kept = 0;
-        let mut place = 0;
-        self.meshes.retain(|_| {
-            let used = objects.iter().any(|o| o.mesh == place);
-            if used {
-                for object in objects.iter_mut().filter(|o| o.mesh == place) {
-                    object.mesh = kept;
-                }
-                kept += 1;
-            }
-            place += 1;
-            used
-        });
     }
 
     /// Drops what meshes were copied from, once a frame was drawn.
     pub fn drop_staging(&mut self) {
-        for mesh in &mut self.meshes {
-            mesh.staging = None;
-        }
+        self.staged.clear();
     }
 
     /// Bytes of vertices and indices.
     pub fn mesh_bytes(&self) -> u64 {
-        let bytes = |mesh: &DeviceMesh| mesh.vertices.bytes + mesh.indices.bytes;
-        self.meshes.iter().map(bytes).sum()
+        let mut all: Vec<_> = self.objects.iter().map(|object| &object.mesh).collect();
+        all.sort_by_key(|mesh| Arc::as_ptr(mesh));
+        all.dedup_by_key(|mesh| Arc::as_ptr(mesh));
+        let bytes = all
+            .iter()
+            .map(|mesh| mesh.vertices.bytes + mesh.indices.bytes);
+        bytes.sum()
     }
 
     /// Points the set to the buffers.
@@ -213,12 +195,7 @@ impl MeshDrawer {
 impl Guest for MeshDrawer {
     unsafe fn prepare(&self, cmd: vk::CommandBuffer) {
         let raw = self.pipelines.device().raw();
-        let mut copied = false;
-        for mesh in &self.meshes {
-            let Some(staging) = &mesh.staging else {
-                continue;
-            };
-            copied = true;
+        for (mesh, staging) in &self.staged {
             let region = |from, size| [vk::BufferCopy::default().src_offset(from).size(size)];
             let (vertices, indices) = (mesh.vertices.bytes, mesh.indices.bytes);
             let (first, second) = (region(0, vertices), region(vertices, indices));
@@ -228,7 +205,7 @@ impl Guest for MeshDrawer {
                 raw.cmd_copy_buffer(cmd, staging.raw, mesh.indices.raw, &second);
             }
         }
-        if copied {
+        if !self.staged.is_empty() {
             use vk::PipelineStageFlags as Stages;
             let read = vk::AccessFlags::VERTEX_ATTRIBUTE_READ | vk::AccessFlags::INDEX_READ;
             let barriers = [vk::MemoryBarrier::default()
@@ -247,7 +224,7 @@ impl Guest for MeshDrawer {
         let point = vk::PipelineBindPoint::GRAPHICS;
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
         for object in &self.objects {
-            let mesh = &self.meshes[object.mesh];
+            let mesh = &object.mesh;
             let first = object.instances.start;
             let copies = object.instances.end - first;
             // SAFETY: `cmd` is recording in the pass that the pipeline was made for; what is bound
@@ -283,16 +260,14 @@ struct DeviceMesh {
     mesh: Arc<Mesh>,
     vertices: Buffer,
     indices: Buffer,
-    /// Vertices, then indices; until a frame was drawn.
-    staging: Option<Buffer>,
     count: u32,
     kind: vk::IndexType,
 }
 
 impl DeviceMesh {
-    /// Buffers for `mesh`; the next frame copies it into them. Indices have 16 bits where these
-    /// hold them.
-    fn new(device: &Device, mesh: &Arc<Mesh>) -> Result<Self> {
+    /// Buffers for `mesh`, and one of vertices, then indices, from which the next frame copies.
+    /// Indices have 16 bits where these hold them.
+    fn new(device: &Device, mesh: &Arc<Mesh>) -> Result<(Self, Buffer)> {
         let short: Option<Vec<u16>> = mesh.indices.iter().map(|i| (*i).try_into().ok()).collect();
         let (kind, indices): (_, &[u8]) = match &short {
             Some(short) => (vk::IndexType::UINT16, bytemuck::cast_slice(short)),
@@ -304,30 +279,24 @@ impl DeviceMesh {
             let bytes = bytes.len().next_multiple_of(16) as u64;
             device.buffer(name, bytes, usage, MemoryLocation::GpuOnly)
         };
-        let vertex_buffer = local(
-            "mesh vertices",
-            vertices,
-            vk::BufferUsageFlags::VERTEX_BUFFER,
-        )?;
-        let index_buffer = local("mesh indices", indices, vk::BufferUsageFlags::INDEX_BUFFER)?;
+        use vk::BufferUsageFlags as B;
+        let vertex_buffer = local("mesh vertices", vertices, B::VERTEX_BUFFER)?;
+        let index_buffer = local("mesh indices", indices, B::INDEX_BUFFER)?;
         let mut both = vertices.to_vec();
         both.resize(vertex_buffer.bytes as usize, 0);
         both.extend(indices);
-        let mut staging = device.buffer(
-            "mesh staging",
-            vertex_buffer.bytes + index_buffer.bytes,
-            vk::BufferUsageFlags::TRANSFER_SRC,
-            MemoryLocation::CpuToGpu,
-        )?;
+        let bytes = vertex_buffer.bytes + index_buffer.bytes;
+        let location = MemoryLocation::CpuToGpu;
+        let mut staging = device.buffer("mesh staging", bytes, B::TRANSFER_SRC, location)?;
         write(&mut staging, &both)?;
-        Ok(Self {
+        let mesh = Self {
             count: mesh.indices.len() as u32,
             kind,
             mesh: mesh.clone(),
             vertices: vertex_buffer,
             indices: index_buffer,
-            staging: Some(staging),
-        })
+        };
+        Ok((mesh, staging))
     }
 }
 
