@@ -137,10 +137,8 @@ fn still(bencher: Bencher) {
 fn all_move(bencher: Bencher) {
     frames(bencher, |crowd| {
         for (n, id) in crowd.ids.iter().enumerate() {
-            crowd
-                .renderer
-                .set_placement(*id, place(n, crowd.frame))
-                .unwrap();
+            let moved = crowd.renderer.set_placement(*id, place(n, crowd.frame));
+            moved.unwrap();
         }
     });
 }

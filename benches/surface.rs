@@ -14,7 +14,8 @@ use glam::{DVec2, DVec3};
 use revmap::profile::Outline;
 use revmap::scene::Offset;
 use revmap::surface::{
-    ContourSource, FitOptions, ProxyHull, ProxyHullOptions, ROWS, Tables, fit_patches,
+    Contour, ContourSource, FitOptions, ProxyHull, ProxyHullOptions, QuadricPatch, ROWS, Tables,
+    fit_patches,
 };
 use revmap_files::ProfileAxis;
 use walk::trace_patches;
@@ -39,30 +40,9 @@ fn outline(name: &str) -> Outline {
 }
 
 const OFFSETS: [(&str, Offset); 3] = [
-    (
-        "plain",
-        Offset {
-            extend: 0.0,
-            bevel: 0.0,
-            chamfer: 1.0,
-        },
-    ),
-    (
-        "extended",
-        Offset {
-            extend: 0.02,
-            bevel: 0.0,
-            chamfer: 1.0,
-        },
-    ),
-    (
-        "chamfered",
-        Offset {
-            extend: -0.01,
-            bevel: 0.1,
-            chamfer: 0.5,
-        },
-    ),
+    ("plain", shapes::offset(0.0, 0.0, 1.0)),
+    ("extended", shapes::offset(0.02, 0.0, 1.0)),
+    ("chamfered", shapes::offset(-0.01, 0.1, 0.5)),
 ];
 
 fn cases() -> Vec<(&'static str, &'static str)> {
@@ -74,6 +54,17 @@ fn cases() -> Vec<(&'static str, &'static str)> {
 
 fn offset(name: &str) -> Offset {
     OFFSETS.iter().find(|o| o.0 == name).unwrap().1
+}
+
+/// A solid's contour under an offset.
+fn contour_of(name: &str, technique: &str) -> Contour {
+    let source = ContourSource::new(&outline(name)).unwrap();
+    source.contour(&offset(technique)).unwrap()
+}
+
+/// A bare solid's patches.
+fn patches_of(name: &str) -> Vec<QuadricPatch> {
+    fit_patches(&contour_of(name, "plain"), &FitOptions::default())
 }
 
 /// What depends on the outline alone.
@@ -105,26 +96,21 @@ fn contour(bencher: Bencher, (name, technique): (&str, &str)) {
 
 #[divan::bench(args = cases())]
 fn patches(bencher: Bencher, (name, technique): (&str, &str)) {
-    let source = ContourSource::new(&outline(name)).unwrap();
-    let contour = source.contour(&offset(technique)).unwrap();
+    let contour = contour_of(name, technique);
     bencher.bench(|| fit_patches(black_box(&contour), &FitOptions::default()));
 }
 
 /// Dealing out to rows.
 #[divan::bench(args = [64, 128, ROWS])]
 fn rows(bencher: Bencher, rows: u32) {
-    let source = ContourSource::new(&outline("king")).unwrap();
-    let contour = source.contour(&offset("plain")).unwrap();
-    let patches = fit_patches(&contour, &FitOptions::default());
+    let patches = patches_of("king");
     bencher.bench(|| Tables::new(black_box(&patches), rows));
 }
 
 /// The shells of all cells.
 #[divan::bench(args = NAMES)]
 fn hull(bencher: Bencher, name: &str) {
-    let source = ContourSource::new(&outline(name)).unwrap();
-    let contour = source.contour(&offset("plain")).unwrap();
-    let patches = fit_patches(&contour, &FitOptions::default());
+    let patches = patches_of(name);
     bencher.bench(|| ProxyHull::new(black_box(&patches), &ProxyHullOptions::default()));
 }
 
@@ -138,9 +124,7 @@ fn picture(bencher: Bencher) {
 /// One ray.
 #[divan::bench(args = [64, 128, ROWS])]
 fn ray(bencher: Bencher, rows: u32) {
-    let source = ContourSource::new(&outline("king")).unwrap();
-    let contour = source.contour(&offset("plain")).unwrap();
-    let tables = Tables::new(&fit_patches(&contour, &FitOptions::default()), rows);
+    let tables = Tables::new(&patches_of("king"), rows);
     let mut k = 0u32;
     bencher.bench_local(|| {
         k += 1;

@@ -10,7 +10,7 @@
 #[path = "gallery/method.rs"]
 mod method;
 
-use image::{GrayImage, Luma, RgbaImage, imageops};
+use image::{RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::{self, Device};
@@ -29,19 +29,13 @@ fn main() -> Result<()> {
     let device = Device::open(None)?;
     println!("on {}", device.report().name);
     for scene in scenes(&root.join("assets/gallery"))? {
-        let name = scene
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = scene.file_stem().unwrap_or_default().to_string_lossy();
         if takes(&name) {
             let target = pictures.join(format!("{name}.png"));
-            let bytes = draw(&device, &scene, &target)?;
+            let [shapes, textures] = draw(&device, &scene, &target)?.map(|b| b as f64 / 1e6);
+            let target = target.display();
             println!(
-                "{}: shape maps {:.2} MB, colour and displacement maps {:.2} MB",
-                target.display(),
-                bytes[0] as f64 / 1e6,
-                bytes[1] as f64 / 1e6
+                "{target}: shape maps {shapes:.2} MB, colour and displacement maps {textures:.2} MB"
             );
         }
     }
@@ -56,6 +50,15 @@ fn main() -> Result<()> {
 
 fn fault(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Usage, message)
+}
+
+/// Writes a picture.
+fn save<P: image::PixelWithColorType<Subpixel = u8>>(
+    picture: &image::ImageBuffer<P, Vec<u8>>,
+    target: &Path,
+) -> Result<()> {
+    let saved = picture.save(target);
+    saved.map_err(|e| fault(e.to_string()).in_file(target))
 }
 
 fn scenes(folder: &Path) -> Result<Vec<PathBuf>> {
@@ -128,16 +131,13 @@ fn maps(root: &Path, target: &Path) -> Result<()> {
         reach: profile.radius,
     };
     let shape = ShapeMap::bake(&profile, &options)?.encode(MapFormat::Rgba8);
-    let shape =
-        RgbaImage::from_raw(shape.columns, shape.rows, shape.bytes).expect("four bytes a texel");
+    let shape = RgbaImage::from_raw(shape.columns, shape.rows, shape.bytes);
+    let shape = shape.expect("four bytes a texel");
     let brick = root.join("assets/heights/brick.png");
     let slopes = revmap_files::displacement_map(&brick, SlopeFilter::default())?;
     let level = &slopes.levels[1];
-    let largest = level
-        .texels
-        .iter()
-        .flatten()
-        .fold(0.0f32, |m, v| m.max(v.abs()));
+    let all = level.texels.iter().flatten();
+    let largest = all.fold(0.0f32, |m, v| m.max(v.abs()));
     let slopes = RgbaImage::from_fn(level.width, level.height, |x, y| {
         let [du, dv] = level.texels[(y * level.width + x) as usize];
         let code = |v: f32| (127.5 + 127.5 * (v / largest)).round() as u8;
@@ -149,41 +149,29 @@ fn maps(root: &Path, target: &Path) -> Result<()> {
         .resize_exact(SIDE, SIDE, imageops::FilterType::Triangle)
         .into_rgba8();
 
+    // The whole's alpha is the form: what is solid is 255, drawn dark as in the profile.
     let channel = |of: &RgbaImage, c: usize| -> RgbaImage {
-        let gray = GrayImage::from_fn(of.width(), of.height(), |x, y| {
-            // The whole's alpha is the form: what is solid is 255, drawn dark as in the profile.
-            Luma([of.get_pixel(x, y).0[c]])
-        });
-        image::DynamicImage::ImageLuma8(gray).into_rgba8()
+        RgbaImage::from_fn(of.width(), of.height(), |x, y| {
+            let level = of.get_pixel(x, y).0[c];
+            image::Rgba([level, level, level, 255])
+        })
     };
     let opaque = |of: &RgbaImage| {
         let mut of = of.clone();
         of.pixels_mut().for_each(|p| p.0[3] = 255);
         of
     };
-    let rows = [
-        vec![
-            channel(&shape, 3),
-            channel(&shape, 2),
-            channel(&shape, 0),
-            channel(&shape, 1),
-            opaque(&shape),
-        ],
-        vec![
-            height,
-            channel(&slopes, 0),
-            channel(&slopes, 1),
-            slopes.clone(),
-        ],
+    let mut rows = [
+        [3, 2, 0, 1].map(|c| channel(&shape, c)).to_vec(),
+        vec![height],
     ];
+    rows[0].push(opaque(&shape));
+    rows[1].extend([channel(&slopes, 0), channel(&slopes, 1), slopes]);
     const GAP: u32 = 12;
     let across = |row: &[RgbaImage]| GAP + row.iter().map(|i| i.width() + GAP).sum::<u32>();
     let width = rows.iter().map(|r| across(r)).max().unwrap_or(GAP);
-    let mut sheet = RgbaImage::from_pixel(
-        width,
-        GAP + rows.len() as u32 * (SIDE + GAP),
-        image::Rgba([255; 4]),
-    );
+    let tall = GAP + rows.len() as u32 * (SIDE + GAP);
+    let mut sheet = RgbaImage::from_pixel(width, tall, image::Rgba([255; 4]));
     for (place, row) in rows.iter().enumerate() {
         let mut left = (width - across(row)) / 2 + GAP;
         for picture in row {
@@ -192,9 +180,7 @@ fn maps(root: &Path, target: &Path) -> Result<()> {
             left += picture.width() + GAP;
         }
     }
-    sheet
-        .save(target)
-        .map_err(|e| fault(e.to_string()).in_file(target))?;
+    save(&sheet, target)?;
     println!("{}", target.display());
     Ok(())
 }

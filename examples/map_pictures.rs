@@ -26,12 +26,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             let to = out.join(format!("{name}.{source:?}.png").to_lowercase());
+            let (time, file) = (clock.elapsed(), to.display());
             println!(
-                "{}: {:.1?}, R = {:.4}, {:?}",
-                to.display(),
-                clock.elapsed(),
-                map.radius,
-                map.bounds
+                "{file}: {time:.1?}, R = {:.4}, {:?}",
+                map.radius, map.bounds
             );
             draw(&map, &to)?;
             if source == MapSource::EXACT {
@@ -39,12 +37,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let file = mark_projection(file, Projection::Cylindrical);
                 revmap_files::write_shape_map(&map, file)?;
                 let table = ArcLength::new(&profile)?.table(map.columns, map.rows);
-                let picture = image::ImageBuffer::<image::Luma<u16>, _>::from_raw(
-                    table.columns,
-                    table.rows,
-                    table.texels,
-                );
-                if let Some(picture) = picture {
+                let (columns, rows, texels) = (table.columns, table.rows, table.texels);
+                type Lengths = image::ImageBuffer<image::Luma<u16>, Vec<u16>>;
+                if let Some(picture) = Lengths::from_raw(columns, rows, texels) {
                     picture.save(out.join(format!("{name}.lengths.png")))?;
                 }
             }

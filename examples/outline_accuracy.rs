@@ -8,10 +8,9 @@ use revmap_files::raster::pictured;
 
 fn main() -> Result<(), revmap::Error> {
     let rows: Vec<u32> = std::env::args().skip(1).flat_map(|a| a.parse()).collect();
-    let rows = if rows.is_empty() {
-        vec![64, 128, 256, 512]
-    } else {
-        rows
+    let rows = match rows[..] {
+        [] => vec![64, 128, 256, 512],
+        _ => rows,
     };
     println!(
         "| profile | rows | 8 bits: mean / p99 / max, texels | 1/512 of the height | binary: mean / p99 / max, texels | 1/512 of the height |"
@@ -44,14 +43,11 @@ fn profiles() -> Result<Vec<(&'static str, Profile)>, revmap::Error> {
     }
     let round =
         |k: u32, n: u32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(n));
-    let ring: Vec<[f64; 2]> = (0..4000)
-        .map(|k| round(k, 4000))
-        .map(|p| [0.311 + 0.123 * p.x, 0.507 + 0.123 * p.y])
-        .collect();
-    let star: Vec<[f64; 2]> = (0..10)
-        .map(|k| round(k, 10) * if k % 2 == 0 { 0.303 } else { 0.151 })
-        .map(|p| [0.352 + p.x, 0.503 + p.y])
-        .collect();
+    let place = |k| DVec2::new(0.311, 0.507) + 0.123 * round(k, 4000);
+    let ring: Vec<_> = (0..4000).map(|k| place(k).to_array()).collect();
+    let length = |k| if k % 2 == 0 { 0.303 } else { 0.151 };
+    let place = |k| DVec2::new(0.352, 0.503) + length(k) * round(k, 10);
+    let star: Vec<_> = (0..10).map(|k| place(k).to_array()).collect();
     let cup = [
         [0.0, 0.0513],
         [0.2507, 0.0513],
@@ -86,11 +82,7 @@ fn errors(a: &Outline, b: &Outline, step: f64) -> [f64; 3] {
         .collect();
     distances.sort_unstable_by(f64::total_cmp);
     let n = distances.len().max(1);
-    let at = |q: f64| {
-        distances
-            .get((q * (n - 1) as f64) as usize)
-            .copied()
-            .unwrap_or(f64::NAN)
-    };
+    let found = |q: f64| distances.get((q * (n - 1) as f64) as usize);
+    let at = |q: f64| found(q).copied().unwrap_or(f64::NAN);
     [distances.iter().sum::<f64>() / n as f64, at(0.99), at(1.0)]
 }

@@ -50,15 +50,10 @@ fn main() -> Fallible<()> {
         reversed: true,
     };
     let mut stage = Stage::new(&host, options)?;
+    let middle = Vec3::new(0.25, 0.0, 0.45);
     let meshes = [
         Mesh::floor(&host, 2.5, 0.0, Vec3::new(0.35, 0.33, 0.3))?,
-        Mesh::sphere(
-            &host,
-            64,
-            Vec3::new(0.25, 0.0, 0.45),
-            0.3,
-            Vec3::new(0.2, 0.35, 0.6),
-        )?,
+        Mesh::sphere(&host, 64, middle, 0.3, Vec3::new(0.2, 0.35, 0.6))?,
     ];
     let output = Output::Pass(PassFormats {
         begun: PassKind::Dynamic {

@@ -1,7 +1,6 @@
 //! The picture of the method, from the program's own numbers: profile, map of distances, a ray in
 //! the half-plane with its steps over the outline in patches, and the solid with the same ray.
 
-use crate::fault;
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use revmap::error::Result;
@@ -66,16 +65,10 @@ pub fn draw(device: &Device, root: &Path, target: &Path) -> Result<()> {
     let mut sheet = RgbImage::from_pixel(width, PANEL[1] + 2 * GAP, Rgb([255; 3]));
     for (place, panel) in panels.iter().enumerate() {
         let left = GAP + place as u32 * (PANEL[0] + GAP);
-        image::imageops::overlay(
-            &mut sheet,
-            &panel.picture(),
-            i64::from(left),
-            i64::from(GAP),
-        );
+        let (left, top) = (i64::from(left), i64::from(GAP));
+        image::imageops::overlay(&mut sheet, &panel.picture(), left, top);
     }
-    sheet
-        .save(target)
-        .map_err(|e| fault(e.to_string()).in_file(target))?;
+    crate::save(&sheet, target)?;
     println!("{}: {} steps", target.display(), ray.steps.len());
     Ok(())
 }
@@ -156,10 +149,9 @@ fn ray_panel(outline: &Outline, patches: &[QuadricPatch], ray: &Ray) -> Canvas {
             let part = f64::from(k) / 16.0;
             let p = patch.start.lerp(patch.end, part);
             // On the quadric at this height; planes are level.
-            let r = if patch.is_plane() {
-                p.x
-            } else {
-                patch.square_at(p.y).max(0.0).sqrt()
+            let r = match patch.is_plane() {
+                true => p.x,
+                false => patch.square_at(p.y).max(0.0).sqrt(),
             };
             at(DVec2::new(r, p.y))
         };
@@ -198,10 +190,7 @@ fn solid_panel(device: &Device, profile: Profile, ray: &Ray) -> Result<Canvas> {
         let from_eye = point(t) - frame.eye;
         let depth = from_eye.dot(frame.forward);
         let away = |way: DVec3| from_eye.dot(way) / (depth * way.length_squared());
-        DVec2::new(
-            frame.middle[0] + away(frame.right),
-            frame.middle[1] - away(frame.up),
-        )
+        DVec2::from_array(frame.middle) + DVec2::new(away(frame.right), -away(frame.up))
     };
     // Its origin is nearer to the eye than the solid, and so is all of it.
     canvas.path([seen(0.0), seen(ray.hit)].into_iter(), 2.0, RAY);
@@ -219,13 +208,7 @@ fn mean(frame: &Frame, [left, top]: [u32; 2], side: u32) -> [f64; 3] {
             *sum += f64::from(value) / f64::from(side * side);
         }
     }
-    sum.map(|v| {
-        if v <= 0.003_130_8 {
-            12.92 * v
-        } else {
-            1.055 * v.powf(1.0 / 2.4) - 0.055
-        }
-    })
+    sum.map(revmap::frame::srgb_from_linear)
 }
 
 /// Where a point of the half-plane is in a panel, pixels.
@@ -243,11 +226,8 @@ struct Canvas(Vec<[f64; 3]>);
 impl Canvas {
     fn of(color: impl Fn(u32, u32) -> [f64; 3]) -> Self {
         let [width, height] = PANEL;
-        Self(
-            (0..width * height)
-                .map(|k| color(k % width, k / width))
-                .collect(),
-        )
+        let pixels = (0..width * height).map(|k| color(k % width, k / width));
+        Self(pixels.collect())
     }
 
     /// Means of 3 x 3 colours a pixel; what is left of the axis is paper.
@@ -257,10 +237,9 @@ impl Canvas {
             for k in 0..9u32 {
                 let part = DVec2::new(f64::from(k % 3), f64::from(k / 3)) / 3.0 + 1.0 / 6.0;
                 let p = (DVec2::new(f64::from(x), f64::from(y)) + part - CORNER) / UNIT;
-                let found = if p.x < 0.0 {
-                    PAPER
-                } else {
-                    color(DVec2::new(p.x, 1.0 - p.y))
+                let found = match p.x < 0.0 {
+                    true => PAPER,
+                    false => color(DVec2::new(p.x, 1.0 - p.y)),
                 };
                 sum = [0, 1, 2].map(|k| sum[k] + found[k] / 9.0);
             }
@@ -298,12 +277,8 @@ impl Canvas {
     }
 
     fn outline(&mut self, outline: &Outline) {
-        let segments: Vec<_> = outline
-            .surface_segments()
-            .map(|s| [at(s.a), at(s.b)])
-            .collect();
-        for segment in segments {
-            self.path(segment.into_iter(), 1.6, INK);
+        for segment in outline.surface_segments() {
+            self.path([at(segment.a), at(segment.b)].into_iter(), 1.6, INK);
         }
     }
 

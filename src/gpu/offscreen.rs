@@ -378,6 +378,23 @@ impl Offscreen {
         }
     }
 
+    /// The colours of the frame that was drawn last, sRGB with alpha in 8 bits each, row 0 on top,
+    /// without smoothed silhouettes: for a window, which has no time to make a [`Frame`].
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way, and for
+    /// other planes than [`Planes::Color`].
+    pub fn rgba(&mut self) -> Result<Vec<[u8; 4]>> {
+        self.check_whole()?;
+        if self.settings.planes != Planes::Color {
+            let message = "pictures are of colours alone; read a frame of all planes";
+            return Err(Error::new(ErrorKind::Usage, message));
+        }
+        let planes = self.target.read(&self.commands)?;
+        let colors = planes.first().copied().unwrap_or_default();
+        Ok(colors.as_chunks().0.to_vec())
+    }
+
     /// Same as [`Renderer::map_bytes`].
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {

@@ -11,3 +11,4 @@ pub mod ways;
 
 pub use drawing::*;
 pub use scenes::*;
+pub use shapes::offset;

@@ -1,7 +1,7 @@
 //! Checks that a picture's hits are first hits. Counts surfaces that a search has missed by more
 //! than a texel, and hits that do not exist.
 
-use super::{device, reference};
+use super::{device, reference, updated};
 use rayon::prelude::*;
 use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
@@ -44,13 +44,8 @@ pub fn count(scene: &Scene, truth: &Frame, frame: &Frame, texel: f64) -> Count {
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height).unwrap();
     // F changes along a ray by at most 1 + b per unit of length, with b below 3 here, times the
     // number of cells along an axis of the box.
-    let cells = scene
-        .objects
-        .iter()
-        .flat_map(|o| o.repeat)
-        .max()
-        .unwrap_or(1);
-    let near = 0.25 * texel / f64::from(cells);
+    let cells = scene.objects.iter().flat_map(|o| o.repeat).max();
+    let near = 0.25 * texel / f64::from(cells.unwrap_or(1));
     (0..truth.pixels())
         .into_par_iter()
         .map(|index| {
@@ -92,12 +87,8 @@ pub fn counts<const N: usize>(
     let mut renderers = settings.map(|s| Offscreen::new(device(), &scenes[0], s).unwrap());
     let all = scenes.iter().map(|scene| {
         let truth = reference(scene, settings[0]);
-        renderers.each_mut().map(|renderer| {
-            renderer.update(scene).unwrap();
-            renderer.draw().unwrap();
-            let frame = renderer.read().unwrap();
-            count(scene, &truth, &frame, texel)
-        })
+        let frames = renderers.each_mut().map(|r| updated(r, scene));
+        frames.map(|frame| count(scene, &truth, &frame, texel))
     });
     let all = all.collect();
     drop(renderers);

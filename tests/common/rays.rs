@@ -8,16 +8,12 @@ use revmap_files::ProfileAxis;
 /// Profiles by name: those of [`shapes`], and the drawings of chess pieces. The environment
 /// variable `ONLY` selects one of them.
 pub fn profiles() -> Vec<(String, Profile)> {
-    let mut all: Vec<(String, Profile)> = shapes::all()
-        .into_iter()
-        .map(|(name, p)| (name.to_string(), p))
-        .collect();
+    let mut all: Vec<(String, Profile)> = Vec::new();
+    all.extend(shapes::all().into_iter().map(|(name, p)| (name.into(), p)));
     for name in ["bishop", "king", "pawn", "rook"] {
         let file = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        all.push((
-            name.into(),
-            revmap_files::profile(file, ProfileAxis::Center).unwrap(),
-        ));
+        let profile = revmap_files::profile(file, ProfileAxis::Center).unwrap();
+        all.push((name.into(), profile));
     }
     if let Ok(only) = std::env::var("ONLY") {
         all.retain(|(name, _)| *name == only);

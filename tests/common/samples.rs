@@ -22,19 +22,19 @@ pub(crate) fn cone(r: f64, low: f64, high: f64) -> Outline {
     outline([(0.0, low), (r, low), (0.0, high)])
 }
 
+/// Points at the angles of `n` segments from the lower pole of the axis to the upper one.
+fn half_turn(n: usize, mut radius: impl FnMut() -> f64) -> Outline {
+    outline((0..=n).map(|k| {
+        let (sin, cos) = (std::f64::consts::PI * (k as f64 / n as f64 - 0.5)).sin_cos();
+        let radius = radius();
+        let r = if k % n == 0 { 0.0 } else { radius * cos };
+        (r, 0.5 + radius * sin)
+    }))
+}
+
 /// A ball of `n` segments from pole to pole.
 pub(crate) fn ball(radius: f64, n: usize) -> Outline {
-    outline((0..=n).map(|k| {
-        let angle = std::f64::consts::PI * (k as f64 / n as f64 - 0.5);
-        (
-            if k == 0 || k == n {
-                0.0
-            } else {
-                radius * angle.cos()
-            },
-            0.5 + radius * angle.sin(),
-        )
-    }))
+    half_turn(n, || radius)
 }
 
 /// A torus: ring radius 0.3, tube radius 0.12, 40 segments.
@@ -66,16 +66,9 @@ pub(crate) fn glass() -> Outline {
 /// A solid with a closed cavity and a ring apart from it.
 pub(crate) fn hollow() -> Outline {
     let mut hollow = outline([(0.0, 0.1), (0.3, 0.1), (0.35, 0.5), (0.2, 0.8), (0.0, 0.8)]);
-    hollow.loops.push(
-        [(0.0, 0.7), (0.15, 0.7), (0.25, 0.5), (0.2, 0.2), (0.0, 0.2)]
-            .map(DVec2::from)
-            .to_vec(),
-    );
-    hollow.loops.push(
-        [(0.4, 0.4), (0.46, 0.4), (0.46, 0.6), (0.4, 0.6)]
-            .map(DVec2::from)
-            .to_vec(),
-    );
+    let cavity = outline([(0.0, 0.7), (0.15, 0.7), (0.25, 0.5), (0.2, 0.2), (0.0, 0.2)]);
+    let ring = outline([(0.4, 0.4), (0.46, 0.4), (0.46, 0.6), (0.4, 0.6)]);
+    hollow.loops.extend([cavity.loops, ring.loops].concat());
     hollow
 }
 
@@ -87,18 +80,7 @@ pub(crate) fn random(seed: u64) -> Outline {
     let n = 3 + (next() * 9.0) as usize;
     match seed % 3 {
         // Half a star: both ends on the axis.
-        0 => outline((0..=n).map(|k| {
-            let angle = std::f64::consts::PI * (k as f64 / n as f64 - 0.5);
-            let radius = 0.15 + 0.33 * next();
-            (
-                if k == 0 || k == n {
-                    0.0
-                } else {
-                    radius * angle.cos()
-                },
-                0.5 + radius * angle.sin(),
-            )
-        })),
+        0 => half_turn(n, || 0.15 + 0.33 * next()),
         // A whole star off the axis: a ring.
         1 => outline((0..n).map(|k| {
             let angle = std::f64::consts::TAU * k as f64 / n as f64;

@@ -1,7 +1,16 @@
 //! Profiles for tests, each with a different difficulty.
 
 use revmap::profile::Profile;
+use revmap::scene::Offset;
 use std::f64::consts::{PI, TAU};
+
+pub const fn offset(extend: f64, bevel: f64, chamfer: f64) -> Offset {
+    Offset {
+        extend,
+        bevel,
+        chamfer,
+    }
+}
 
 fn polygon(points: &[[f64; 2]], radius: f64) -> Profile {
     Profile::polygon(points, radius).unwrap()
@@ -12,11 +21,7 @@ pub fn sphere() -> Profile {
     let points: Vec<_> = (0..=96)
         .map(|k| {
             let angle = PI * (f64::from(k) / 96.0 - 0.5);
-            let r = if k == 0 || k == 96 {
-                0.0
-            } else {
-                0.4 * angle.cos()
-            };
+            let r = if k % 96 == 0 { 0.0 } else { 0.4 * angle.cos() };
             [r, 0.5 + 0.4 * angle.sin()]
         })
         .collect();
@@ -42,10 +47,8 @@ pub fn vase() -> Profile {
     let mut points = vec![[0.0, 0.05]];
     points.extend((0..=80).map(|k| {
         let z = f64::from(k) / 80.0;
-        [
-            0.24 + 0.1 * (5.2 * z + 0.3).sin() + 0.03 * z,
-            0.05 + 0.9 * z,
-        ]
+        let r = 0.24 + 0.1 * (5.2 * z + 0.3).sin() + 0.03 * z;
+        [r, 0.05 + 0.9 * z]
     }));
     points.push([0.0, 0.95]);
     polygon(&points, 0.5)
@@ -96,17 +99,9 @@ pub fn column() -> Profile {
 
 /// A cut stone: flat facets, sharp girdle, off the box's middle.
 pub fn jewel() -> Profile {
-    polygon(
-        &[
-            [0.0, 0.1],
-            [0.38, 0.58],
-            [0.4, 0.61],
-            [0.38, 0.64],
-            [0.26, 0.82],
-            [0.0, 0.82],
-        ],
-        0.5,
-    )
+    let girdle = [[0.38, 0.58], [0.4, 0.61], [0.38, 0.64]];
+    let points = [&[[0.0, 0.1]][..], &girdle, &[[0.26, 0.82], [0.0, 0.82]]];
+    polygon(&points.concat(), 0.5)
 }
 
 /// All eight profiles, by name.

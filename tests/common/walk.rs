@@ -58,6 +58,12 @@ pub struct Walk {
     pub patches: u32,
 }
 
+/// `a`, `b` and `c` of a ray.
+fn coefficients(o: Vec3, v: Vec3) -> [f32; 3] {
+    let square = |p: Vec3, q: Vec3| p.x * q.x + p.y * q.y;
+    [square(v, v), square(o, v), square(o, o)]
+}
+
 /// The `t` of the root at which the ray goes from out to in of one quadric (`side` 1), or from in
 /// to out (-1). NaN, or a number that fails the guard, if there is none. `(a, b, c)` as above.
 pub fn entering_root(quadric: [f32; 4], side: f32, [a, b, c]: [f32; 3], [oz, vz]: [f32; 2]) -> f32 {
@@ -82,11 +88,7 @@ pub fn walk(tables: &Tables, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
         return walk;
     }
     let n = rows as f32;
-    let (a, b, c) = (
-        v.x * v.x + v.y * v.y,
-        o.x * v.x + o.y * v.y,
-        o.x * o.x + o.y * o.y,
-    );
+    let [a, b, c] = coefficients(o, v);
     let square = |t: f32| c + t * (2.0 * b + t * a);
     let nearest = -b / a.max(1e-30);
     let up = v.z >= 0.0;
@@ -142,16 +144,13 @@ pub fn contains(tables: &Tables, square: f32, z: f32) -> bool {
         return false;
     }
     let run = tables.rows[((z * rows as f32) as usize).min(rows - 1)];
-    (run >> 12..(run >> 12) + (run & 0xfff))
-        .filter(|&k| {
-            let GpuPatch { quadric, range, .. } = tables.records[k as usize];
-            let [a, k0, k1, k2] = quadric;
-            let p = -a * (k0 + z * (k1 + z * k2));
-            a != 0.0 && range[0] <= z && z < range[1] && p > square
-        })
-        .count()
-        % 2
-        == 1
+    let beyond = (run >> 12..(run >> 12) + (run & 0xfff)).filter(|&k| {
+        let GpuPatch { quadric, range, .. } = tables.records[k as usize];
+        let [a, k0, k1, k2] = quadric;
+        let p = -a * (k0 + z * (k1 + z * k2));
+        a != 0.0 && range[0] <= z && z < range[1] && p > square
+    });
+    beyond.count() % 2 == 1
 }
 
 /// The first boundary point at `t >= 0` of a solid along `origin + t direction`, computed as in a
@@ -265,19 +264,13 @@ pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) ->
                 // The ray starts near the solid, as shaders start their rays at the box.
                 let near = -o.dot(v) / v.length_squared();
                 let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
-                let flat = [
-                    v.x * v.x + v.y * v.y,
-                    o.x * v.x + o.y * v.y,
-                    o.x * o.x + o.y * o.y,
-                ];
+                let flat = coefficients(o, v);
                 let root = entering_root(record.quadric, 1.0, flat, [o.z, v.z]);
                 let [cz, cr, low, high] = record.guard;
                 let square = flat[2] + root * (2.0 * flat[1] + root * flat[0]);
                 let z = o.z + root * v.z;
-                let place = cz * z + cr * square;
                 let t = root + near as f32;
-                let valid = place >= low
-                    && place <= high
+                let valid = (low..=high).contains(&(cz * z + cr * square))
                     && (-HEIGHT_SLACK..=1.0 + HEIGHT_SLACK).contains(&z);
                 if valid && walk.hit.is_none_or(|(best, _)| t < best) {
                     walk.hit = Some((t, *record));

@@ -19,14 +19,12 @@ pub const WALKED: Ways<'static> = [&[DrawPath::Tiles], &[DrawPath::Tiles]];
 /// apart than half a texel of 512 rows.
 pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
     let both = || a.distance.iter().zip(&b.distance);
-    let hits = both().filter(|(a, _)| a.is_finite()).count();
-    let edge = both()
-        .filter(|(a, b)| a.is_finite() != b.is_finite())
-        .count();
-    let far = both()
-        .filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 0.5 / 512.0)
-        .count();
-    (hits, edge, far)
+    let hits = both().filter(|(a, _)| a.is_finite());
+    let edge = both().filter(|(a, b)| a.is_finite() != b.is_finite());
+    // The difference of two infinities is no number, and that of one is an edge.
+    let finite = both().filter(|(a, b)| (*a - *b).is_finite());
+    let far = finite.filter(|(a, b)| (*a - *b).abs() > 0.5 / 512.0);
+    (hits.count(), edge.count(), far.count())
 }
 
 /// Draws, and fails if an object is drawn by another path: the picture would be right, but would
@@ -38,11 +36,8 @@ pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Fr
     // SwiftShader clips no triangles: tiles draw solids that the box cuts.
     let narrow = device().report().name.contains("SwiftShader");
     if !(narrow && drawn.draw_paths == WALKED[stage]) {
-        assert_eq!(
-            drawn.draw_paths, ways[stage],
-            "{name}, {:?}",
-            settings.stage
-        );
+        let name = format!("{name}, {:?}", settings.stage);
+        assert_eq!(drawn.draw_paths, ways[stage], "{name}");
     }
     drawn.frame
 }

@@ -73,22 +73,18 @@ fn error(covered: &[f64], frame: &Frame) -> [f64; 2] {
 }
 
 fn cases() -> Vec<(String, Scene)> {
-    let eyes = [
-        DVec3::new(2.2, 0.4, 1.3),
-        DVec3::new(-0.6, 1.9, 0.5),
-        DVec3::new(0.3, -0.9, 2.1),
-    ];
-    let mut outlines: Vec<(String, Outline)> = [
+    let eyes = [[2.2, 0.4, 1.3], [-0.6, 1.9, 0.5], [0.3, -0.9, 2.1]].map(DVec3::from_array);
+    let outlines = [
         ("ball", samples::ball(0.4, 400)),
         ("cylinder", samples::cylinder(0.3, 0.1, 0.9)),
         ("cone", samples::cone(0.4, 0.1, 0.9)),
         ("torus", samples::torus()),
         ("glass", samples::glass()),
         ("hollow", samples::hollow()),
-    ]
-    .map(|(name, outline)| (name.to_owned(), outline))
-    .into();
-    outlines.extend((0..3).map(|seed| (format!("random {seed}"), samples::random(seed))));
+        ("random 0", samples::random(0)),
+        ("random 1", samples::random(1)),
+        ("random 2", samples::random(2)),
+    ];
     let mut all = Vec::new();
     for (name, outline) in outlines {
         for eye in eyes {
@@ -160,21 +156,15 @@ fn what_is_hidden_smooths_nothing() {
     let (_, both) = drawn(&scene);
     assert!(both.distance != one.distance);
     let mut frame = both.clone();
-    frame
-        .color
-        .iter_mut()
-        .for_each(|c| *c = [0.0, 0.0, 0.0, 1.0]);
     for (pixel, color) in frame.color.iter_mut().enumerate() {
         let nearer = both.distance[pixel] != one.distance[pixel];
-        color[0] = f32::from(u8::from(nearer));
+        *color = [f32::from(u8::from(nearer)), 0.0, 0.0, 1.0];
     }
     silhouettes(&scene, &mut frame).unwrap();
     let inner = |(pixel, c): &(usize, &[f32; 4])| one.hits(*pixel) && c[0] > 0.05 && c[0] < 0.95;
     let blended = frame.color.iter().enumerate().filter(inner).count();
-    assert!(
-        blended > 20,
-        "{blended} pixels of the contour before a solid are smoothed"
-    );
+    // Pixels of the contour before a solid.
+    assert!(blended > 20, "{blended} are smoothed");
 }
 
 #[test]
@@ -183,15 +173,11 @@ fn a_line_leaves_of_a_pixel_what_can_be_counted() {
     let at = |k: u32| (f64::from(k) + 0.5) / f64::from(n) - 0.5;
     for slope in [0.0, 0.3, -0.7, 1.0] {
         for distance in [0.0, 0.1, 0.35, 0.5, 0.8, 1.2] {
-            let inside = (0..n * n)
-                .filter(|k| at(k % n) < distance + slope * at(k / n))
-                .count();
-            let counted = inside as f64 / f64::from(n * n);
+            let inside = |k: &u32| at(k % n) < distance + slope * at(k / n);
+            let counted = (0..n * n).filter(inside).count() as f64 / f64::from(n * n);
             let found = coverage(distance, slope);
-            assert!(
-                (found - counted).abs() < 0.003,
-                "{distance}, {slope}: {found}, {counted}"
-            );
+            let near = (found - counted).abs() < 0.003;
+            assert!(near, "{distance}, {slope}: {found}, {counted}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Compares quadric patches and their tables with the reference in double precision, ray by ray.
 
 use crate::common::rays::{Random, count, profiles};
+use crate::common::shapes::offset;
 use crate::common::walk::trace_patches;
 use glam::{DVec2, DVec3};
 use revmap::maps::{BakeOptions, ShapeMap};
@@ -19,25 +20,13 @@ struct Tally {
     normal: Vec<f64>,
 }
 
-/// Rays from cameras all round, above and below.
-fn shoot(profile: &Profile, offset: Offset, count: usize) -> (Tally, String) {
-    let options = FitOptions::default();
-    shoot_at(profile, &profile.outline, &options, offset, count)
-}
-
-/// Rays as in `shoot`, with patches made from `own`.
-fn shoot_at(
-    profile: &Profile,
-    own: &Outline,
-    options: &FitOptions,
-    offset: Offset,
-    count: usize,
-) -> (Tally, String) {
+/// Rays from cameras all round, above and below, with patches made from `own`.
+fn shoot(profile: &Profile, own: &Outline, offset: Offset, count: usize) -> (Tally, String) {
     let source = ContourSource::new(own).unwrap();
     let contour = source.contour(&offset).unwrap();
-    let patches = fit_patches(&contour, options);
+    let patches = fit_patches(&contour, &FitOptions::default());
     let tables = Tables::new(&patches, ROWS);
-    let tally = against_offset(profile, offset, count, |origin, direction| {
+    let tally = against(profile, offset, count, |origin, direction| {
         trace_patches(&tables, profile.radius, DVec2::ZERO, origin, direction)
             .map(|hit| (hit.t, hit.normal))
     });
@@ -51,16 +40,8 @@ fn shoot_at(
     (tally, words)
 }
 
-fn against(
-    profile: &Profile,
-    count: usize,
-    trace: impl Fn(DVec3, DVec3) -> Option<(f64, DVec3)>,
-) -> Tally {
-    against_offset(profile, Offset::default(), count, trace)
-}
-
 /// Compares a search with the reference.
-fn against_offset(
+fn against(
     profile: &Profile,
     offset: Offset,
     count: usize,
@@ -78,12 +59,9 @@ fn against_offset(
         let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.3).sin_cos();
         let (y, x) = (random.next() * 6.3).sin_cos();
         let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
-        let r = profile.radius;
-        let target = DVec3::new(
-            (random.next() * 2.0 - 1.0) * r,
-            (random.next() * 2.0 - 1.0) * r,
-            random.next(),
-        );
+        let [x, y, z] = [random.next(), random.next(), random.next()];
+        let across = DVec2::new(x * 2.0 - 1.0, y * 2.0 - 1.0) * profile.radius;
+        let target = across.extend(z);
         let direction = (target - origin).normalize();
         let truth = reference.trace(Ray { origin, direction });
         let found = trace(origin, direction);
@@ -115,7 +93,7 @@ fn check(
     count: usize,
     failures: &mut Vec<String>,
 ) -> [usize; 2] {
-    let (tally, words) = shoot(profile, offset, count);
+    let (tally, words) = shoot(profile, &profile.outline, offset, count);
     let p99 = quantile(&tally.depth, 0.99);
     let words = format!(
         "{name:8} {words} {:6} hits {:3} wrong, depth p99 {p99:.4} max {:.3} texels, normal p99 {:.3} max {:.2}",
@@ -151,11 +129,7 @@ fn patches_meet_the_reference() {
     let mut failures = Vec::new();
     let (mut wrong, mut hits) = (0, 0);
     for (extend, bevel, chamfer) in OFFSETS {
-        let offset = Offset {
-            extend,
-            bevel,
-            chamfer,
-        };
+        let offset = offset(extend, bevel, chamfer);
         println!("{offset:?}");
         for (name, profile) in profiles() {
             let [w, h] = check(&name, &profile, offset, count, &mut failures);
@@ -163,11 +137,9 @@ fn patches_meet_the_reference() {
             hits += h;
         }
     }
-    println!("{wrong} wrong of {hits}");
-    assert!(
-        wrong as f64 <= 5e-5 * hits as f64,
-        "{wrong} wrong of {hits}"
-    );
+    let what = format!("{wrong} wrong of {hits}");
+    println!("{what}");
+    assert!(wrong as f64 <= 5e-5 * hits as f64, "{what}");
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
@@ -178,11 +150,9 @@ fn papers(profile: &Profile, picture: &Profile, count: usize) -> Tally {
     let texel = 1.0 / 512.0;
     let largest = map.distance.iter().fold(0.0f32, |m, &d| m.max(d));
     let value = |i: i64, j: i64| {
-        let (i, j) = (
-            i.clamp(0, i64::from(map.columns) - 1),
-            j.clamp(0, i64::from(map.rows) - 1),
-        );
-        let d = map.distance[(j * i64::from(map.columns) + i) as usize].max(0.0) / largest;
+        let [columns, rows] = [map.columns, map.rows].map(i64::from);
+        let (i, j) = (i.clamp(0, columns - 1), j.clamp(0, rows - 1));
+        let d = map.distance[(j * columns + i) as usize].max(0.0) / largest;
         f64::from((d * 255.0).round() / 255.0 * largest)
     };
     let sample = |r: f64, z: f64| {
@@ -193,7 +163,7 @@ fn papers(profile: &Profile, picture: &Profile, count: usize) -> Tally {
         (value(i, j) * (1.0 - u) + value(i + 1, j) * u) * (1.0 - v)
             + (value(i, j + 1) * (1.0 - u) + value(i + 1, j + 1) * u) * v
     };
-    against(profile, count, |origin, direction| {
+    against(profile, Offset::default(), count, |origin, direction| {
         let (mut t, end) = clip(profile.radius, origin, direction)?;
         for _ in 0..20 {
             let p = origin + direction * t;
@@ -212,10 +182,8 @@ fn papers(profile: &Profile, picture: &Profile, count: usize) -> Tally {
 
 /// The part of a ray within the box.
 fn clip(radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
-    let (low, high) = (
-        DVec3::new(-radius, -radius, 0.0),
-        DVec3::new(radius, radius, 1.0),
-    );
+    let side = DVec2::splat(radius);
+    let (low, high) = ((-side).extend(0.0), side.extend(1.0));
     let (a, b) = ((low - origin) / direction, (high - origin) / direction);
     let (from, to) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
     (to > from).then_some((from, to))
@@ -237,19 +205,12 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
             0.5 * theirs.wrong as f64 / theirs.hits as f64,
             0.5 * quantile(&theirs.depth, 0.99),
         );
-        println!(
-            "{name:8} papers: wrong {:.3} %, depth p99 {:.3} texels",
-            200.0 * limits.0,
-            2.0 * limits.1
-        );
+        let (wrong, p99) = (200.0 * limits.0, 2.0 * limits.1);
+        println!("{name:8} papers: wrong {wrong:.3} %, depth p99 {p99:.3} texels");
         for (kind, traced) in [("binary", binary), ("grey", bytes)] {
-            let options = FitOptions::default();
-            let offset = Offset::default();
-            let (tally, words) = shoot_at(&profile, &traced.outline, &options, offset, count);
-            let (wrong, p99) = (
-                tally.wrong as f64 / tally.hits as f64,
-                quantile(&tally.depth, 0.99),
-            );
+            let (tally, words) = shoot(&profile, &traced.outline, Offset::default(), count);
+            let wrong = tally.wrong as f64 / tally.hits as f64;
+            let p99 = quantile(&tally.depth, 0.99);
             let words = format!(
                 "{name:8} {kind:6} {words} wrong {:.3} %, depth median {:.3} p99 {p99:.3} texels, normal median {:.2} p99 {:.2}",
                 100.0 * wrong,
@@ -295,11 +256,8 @@ fn eyes_inside_and_boxes_that_cut() {
             let (mut random, mut wrong, mut hits) = (Random(3), 0, 0);
             let mut point = |size: f64| {
                 let [x, y, z] = [random.next(), random.next(), random.next()];
-                DVec3::new(
-                    (2.0 * x - 1.0) * radius * size,
-                    (2.0 * y - 1.0) * radius * size,
-                    z * size,
-                )
+                let across = DVec2::new(2.0 * x - 1.0, 2.0 * y - 1.0) * radius;
+                across.extend(z) * size
             };
             for k in 0..1500 {
                 let origin = point(if k % 2 == 0 { 1.0 } else { 3.0 });
@@ -315,9 +273,8 @@ fn eyes_inside_and_boxes_that_cut() {
                 wrong += usize::from(!same && !truth.grazes);
             }
             if wrong > 2 {
-                failures.push(format!(
-                    "{name} in {radius}, {axis}: {wrong} wrong, {hits} hits"
-                ));
+                let what = format!("{name} in {radius}, {axis}: {wrong} wrong, {hits} hits");
+                failures.push(what);
             }
         }
     }

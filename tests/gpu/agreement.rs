@@ -1,10 +1,15 @@
-//! Fragment and compute pictures of one scene are equal bit for bit, in every channel.
+//! Fragment and compute pictures of one scene are equal bit for bit, in every channel: also with all
+//! textures, bumps and offsets.
 
-use crate::common::{draw, eye, placement, scene_of, shapes};
+use crate::common::{
+    assert_sound, draw, eye, from_boxes, hits, in_compute, offset, placement, scene_of, shapes,
+    sized,
+};
 use glam::DVec3;
-use revmap::maps::MapFormat;
-use revmap::scene::{Camera, Object, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection, SlopeFilter};
+use revmap::scene::{BumpForm, Camera, Object, Offset, Scene, Shadow, Texturing};
+use revmap::settings::{Planes, Settings, Solver};
+use revmap_searches::CIRCLE;
 use std::sync::Arc;
 
 /// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
@@ -22,8 +27,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         }),
         ("stretched and turned", {
             let mut scene = scene_of(shapes::column(), eye(20.0, 2.4));
-            scene.objects[0].placement =
-                placement([0.1, -0.2, 0.3], [0.7, -0.4, 1.1], [2.0, 0.5, 1.0]);
+            let (at, turn) = ([0.1, -0.2, 0.3], [0.7, -0.4, 1.1]);
+            scene.objects[0].placement = placement(at, turn, [2.0, 0.5, 1.0]);
             scene
         }),
         ("small and far", {
@@ -49,21 +54,12 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         let mut object = Object::new(name, Arc::new(profile));
         let turn = n as f64 * 0.8;
         object.color = [0.2 + 0.1 * n as f32, 0.9 - 0.1 * n as f32, 0.5];
-        object.placement = placement(
-            [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn],
-            [0.2 * turn, 0.1, turn],
-            [0.8, 1.1, 0.7],
-        );
+        let at = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
+        object.placement = placement(at, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
         // Copies that pass through one another.
-        object.instances = vec![
-            object.placement,
-            placement(
-                [0.3 - 0.1 * turn, 0.2, 0.2],
-                [turn, 0.0, 0.4],
-                [0.5, 0.5, 0.9],
-            ),
-        ]
-        .into();
+        let at = [0.3 - 0.1 * turn, 0.2, 0.2];
+        let copy = placement(at, [turn, 0.0, 0.4], [0.5, 0.5, 0.9]);
+        object.instances = vec![object.placement, copy].into();
         crowd.objects.push(object);
     }
     all.push(("crowd", crowd));
@@ -87,26 +83,15 @@ fn fragment_and_compute_agree_bit_for_bit() {
         [(*n, scene, Solver::Quadric), (*n, scene, second)]
     });
     for (n, (name, scene), solver) in pairs {
-        let settings = Settings {
-            width: 400,
-            height: 301,
+        let settings = from_boxes(Settings {
             map_format: formats[n % 3],
             solver,
             max_steps: Some(48),
-            // Cells and lists of patches change where rays start; culled tiles count no steps.
-            proxy_min_pixels: u32::MAX,
-            occlusion_culling: false,
-            ..Settings::exact()
-        };
+            ..sized(400, 301)
+        });
         let mut fragment = draw(scene, &settings);
-        let mut compute = draw(
-            scene,
-            &Settings {
-                stage: DrawStage::Compute,
-                ..settings
-            },
-        );
-        let hits = fragment.distance.iter().filter(|d| d.is_finite()).count();
+        let mut compute = draw(scene, &in_compute(settings));
+        let hits = hits(&fragment);
         assert!(hits > 200, "{name}: only {hits} pixels are hit");
         if *name == "crowd" {
             // Depths of other objects end a search of copies in compute; the depth test comes after
@@ -117,14 +102,11 @@ fn fragment_and_compute_agree_bit_for_bit() {
         if let Some(difference) = fragment.first_difference(&compute) {
             panic!("{name}, {solver:?}: {difference}");
         }
-        let mut culled = draw(
-            scene,
-            &Settings {
-                stage: DrawStage::Compute,
-                occlusion_culling: true,
-                ..settings
-            },
-        );
+        let culling = Settings {
+            occlusion_culling: true,
+            ..in_compute(settings)
+        };
+        let mut culled = draw(scene, &culling);
         fragment.steps.fill(0.0);
         culled.steps.fill(0.0);
         culled.exhausted = fragment.exhausted;
@@ -139,10 +121,8 @@ fn fragment_and_compute_agree_bit_for_bit() {
 fn one_changed_bit_is_noticed() {
     let (_, scene) = scenes().remove(0);
     let settings = Settings {
-        width: 64,
-        height: 48,
         solver: Solver::Quadric,
-        ..Settings::exact()
+        ..sized(64, 48)
     };
     let fragment = draw(&scene, &settings);
     let mut other = fragment.clone();
@@ -151,4 +131,121 @@ fn one_changed_bit_is_noticed() {
     *value = f32::from_bits(value.to_bits() ^ 1);
     let difference = fragment.first_difference(&other).unwrap().to_string();
     assert!(difference.starts_with("N.Y at pixel"), "{difference}");
+}
+
+struct Maps {
+    earth: Arc<ColorMap>,
+    bricks: Arc<DisplacementMap>,
+}
+
+fn maps() -> Maps {
+    let asset = |name| format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
+    let earth = revmap_files::color_map(asset("colors/natural-earth.png"));
+    let bricks = revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default());
+    Maps {
+        earth: Arc::new(earth.unwrap()),
+        bricks: Arc::new(bricks.unwrap()),
+    }
+}
+
+fn covered(maps: &Maps, projection: Projection, bump_form: BumpForm) -> Texturing {
+    Texturing {
+        color_map: Some(maps.earth.clone()),
+        displacement_map: Some(maps.bricks.clone()),
+        bump: 0.02,
+        bump_form,
+        projection,
+        repeat: [2.0, 1.0],
+    }
+}
+
+const CHAMFERED: Offset = offset(-0.02, 0.7, 0.15);
+
+/// Scenes with textures, bumps, offsets, replicas and shadows.
+fn textured_scenes() -> Vec<(String, Scene)> {
+    let maps = maps();
+    let mut all = Vec::new();
+    let forms = [BumpForm::SurfaceGradient, BumpForm::Papers];
+    for (n, (_, projection)) in Projection::NAMES.into_iter().enumerate() {
+        let mut scene = scene_of(shapes::vase(), eye(20.0 + 15.0 * n as f64, 1.7));
+        let object = &mut scene.objects[0];
+        object.texturing = covered(&maps, projection, forms[n % 2]);
+        object.offset = CHAMFERED;
+        object.placement = placement([0.05, 0.0, 0.1], [0.3, -0.2, 0.4], [1.1, 0.8, 0.9]);
+        all.push((format!("{projection:?}"), scene));
+    }
+    for (name, offset) in [
+        ("extended", offset(0.04, 0.0, 1.0)),
+        ("inset", offset(-0.01, 0.0, 1.0)),
+        ("beveled", offset(0.01, 0.3, 1.0)),
+    ] {
+        let mut scene = scene_of(shapes::glass(), eye(30.0, 1.9));
+        scene.objects[0].offset = offset;
+        scene.objects[0].texturing = covered(&maps, Projection::Arc, BumpForm::SurfaceGradient);
+        all.push((name.into(), scene));
+    }
+    for mirror in [false, true] {
+        let mut scene = scene_of(shapes::jewel(), eye(25.0, 1.8));
+        let object = &mut scene.objects[0];
+        object.repeat = [3, 2, 2];
+        object.mirror = [mirror; 3];
+        object.axis = [0.4, 0.55];
+        object.texturing = covered(&maps, Projection::Cylindrical, BumpForm::SurfaceGradient);
+        all.push((format!("replicas, mirrored: {mirror}"), scene));
+    }
+    for shadow in [Shadow::Hard, Shadow::Soft] {
+        let mut scene = scene_of(shapes::torus(), DVec3::new(1.9, 1.1, 1.6));
+        scene.shadow = shadow;
+        scene.objects[0].texturing =
+            covered(&maps, Projection::Spherical, BumpForm::SurfaceGradient);
+        scene.objects[0].texturing.bump = 0.005;
+        let mut table = Object::new("table", Arc::new(shapes::cone()));
+        table.placement = placement([0.0, 0.0, -0.3], [0.0; 3], [2.5, 2.5, 0.6]);
+        let mut several = Object::new("several", Arc::new(shapes::discs()));
+        several.repeat = [2, 2, 1];
+        several.placement = placement([-0.5, 0.7, 0.1], [0.5, 0.3, 0.0], [0.8; 3]);
+        several.offset.extend = 0.005;
+        scene.objects.extend([table, several]);
+        all.push((format!("{shadow:?} shadows"), scene));
+    }
+    all
+}
+
+#[test]
+fn textures_agree_bit_for_bit() {
+    let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
+    for (n, (name, scene)) in textured_scenes().into_iter().enumerate() {
+        let inset = scene.objects[0].offset.extend < 0.0; // the papers' format cannot hold this
+        let settings = from_boxes(Settings {
+            map_rows: Some(256),
+            solver: [Solver::Live, CIRCLE, Solver::Quadric][n % 3],
+            map_format: match inset {
+                true => MapFormat::R16,
+                false => formats[(n + n / 3) % 3],
+            },
+            ..sized(200, 151)
+        });
+        let compute = in_compute(settings);
+        let fragment = draw(&scene, &settings);
+        assert_sound(&fragment, &name);
+        let hits = hits(&fragment);
+        assert!(hits > 1500, "{name}: only {hits} pixels are hit");
+        let normals = fragment.normal.iter().zip(&fragment.shading_normal);
+        let tilted = normals.filter(|(a, b)| a != b).count();
+        println!("{name}: {hits} hits, {tilted} with bumps");
+        assert!(tilted > 300, "{name}: no bumps are seen");
+        if let Some(difference) = fragment.first_difference(&draw(&scene, &compute)) {
+            panic!("{name}: {difference}");
+        }
+        // Colour only: 8 bits, encoded separately by each stage.
+        let planes = Planes::Color;
+        let color = |settings| draw(&scene, &Settings { planes, ..settings }).color;
+        let (a, b) = (color(settings), color(compute));
+        let most = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| {
+            let code = |v: f32| revmap::frame::srgb_from_linear(f64::from(v)) * 255.0;
+            (code(*a) - code(*b)).abs()
+        });
+        let most = most.fold(0.0, f64::max);
+        assert!(most < 1.01, "{name}: colours differ by {most} of 255");
+    }
 }

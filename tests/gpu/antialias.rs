@@ -1,21 +1,19 @@
 //! Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
 //! object and several, with colour only and with all planes.
 
-use crate::common::{draw, eye, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{draw, drawn_by, eye, scene_of, shapes};
 use glam::DVec3;
 use revmap::antialias::silhouettes;
 use revmap::frame::Frame;
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Settings};
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
 
 fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {
     Settings {
-        width: 200,
-        height: 150,
-        stage,
         planes,
         antialias,
-        ..Settings::exact()
+        ..drawn_by((200, 150), stage, Solver::DEFAULT)
     }
 }
 
@@ -26,11 +24,8 @@ fn different(a: &Frame, b: &Frame) -> usize {
         let color = (0..3).any(|c| (code(a[c]) - code(b[c])).abs() > 2.5);
         color || (a[3] - b[3]).abs() > 0.01
     };
-    a.color
-        .iter()
-        .zip(&b.color)
-        .filter(|(a, b)| differ(a, b))
-        .count()
+    let pairs = a.color.iter().zip(&b.color);
+    pairs.filter(|(a, b)| differ(a, b)).count()
 }
 
 #[test]
@@ -42,7 +37,7 @@ fn every_stage_smooths_the_same_silhouettes() {
     second.color = [0.1, 0.5, 0.2];
     two.objects.push(second);
     for (name, scene) in [("one", &one), ("two", &two)] {
-        for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        for stage in STAGES {
             check(&format!("{name}, {stage:?}"), scene, stage);
         }
     }
@@ -59,10 +54,7 @@ fn check(name: &str, scene: &Scene, stage: DrawStage) {
     // Depths come from the depth buffer: rounding may hide a line.
     let color = draw(scene, &settings(stage, Planes::Color, true));
     let off = different(&color, &expected);
-    assert!(
-        off * 50 <= changed,
-        "{name}: {off} of {changed} pixels differ"
-    );
+    assert!(off * 50 <= changed, "{name}: {off} of {changed} differ");
     let off = different(&draw(scene, &settings(stage, Planes::Color, false)), &plain);
     assert_eq!(off, 0, "{name}: not asked for");
 }

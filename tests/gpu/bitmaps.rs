@@ -1,7 +1,7 @@
 //! A picture of 512 rows drawn by the default search, compared with its source drawing. The RBM
 //! baseline on the same pixels gives the scale.
 
-use crate::common::{draw, errors, eye, reference, scene_of};
+use crate::common::{draw, errors, eye, reference, scene_of, sized};
 use revmap::maps::MapFormat;
 use revmap::profile::Profile;
 use revmap::settings::Settings;
@@ -55,11 +55,8 @@ fn known_at_best(profile: &Profile) -> Profile {
 /// best case and with the loop itself.
 #[test]
 fn pictures_are_better_than_by_the_rbm_baseline() {
-    let ours = Settings {
-        width: 800, // smaller pictures have too few wrong pixels for a comparison
-        height: 600,
-        ..Settings::exact()
-    };
+    // Smaller pictures have too few wrong pixels for a comparison.
+    let ours = sized(800, 600);
     let papers = Settings {
         solver: CIRCLE,
         max_steps: Some(20),

@@ -1,6 +1,6 @@
 //! Bump mapping compared with the normal of the truly displaced surface, for every projection.
 
-use crate::common::{draw, eye, placement, scene_of};
+use crate::common::{draw, eye, placement, scene_of, sized};
 use glam::{DVec2, DVec3};
 use revmap::frame::Frame;
 use revmap::maps::{ArcLength, DisplacementMap, MapFormat, Projection};
@@ -83,14 +83,8 @@ fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize)
         if !(on_side && faces) {
             continue;
         }
-        let texturing = &object.texturing;
-        let n = displaced_normal(
-            texturing.projection,
-            arc,
-            texturing.bump,
-            p.y.atan2(p.x),
-            p.z,
-        );
+        let (texturing, phi) = (&object.texturing, p.y.atan2(p.x));
+        let n = displaced_normal(texturing.projection, arc, texturing.bump, phi, p.z);
         let n = (place.rotation * (n / place.scale)).normalize();
         off += n.distance_squared(vector(frame.shading_normal[index]));
         turned += n.distance_squared(vector(frame.normal[index]));
@@ -114,10 +108,8 @@ fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
             scene.objects[0].texturing.projection = projection;
             scene.objects[0].texturing.displacement_map = Some(slopes.clone());
             let settings = Settings {
-                width: 160,
-                height: 120,
                 map_format: MapFormat::R32,
-                ..Settings::exact()
+                ..sized(160, 120)
             };
             let depths = [0.08, 0.04, 0.02];
             let errors = depths.map(|a| {
@@ -129,10 +121,8 @@ fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
             });
             for pair in errors.windows(2) {
                 let ratio = pair[0] / pair[1];
-                assert!(
-                    (3.4..4.6).contains(&ratio),
-                    "{projection:?}, {name}: {ratio}"
-                );
+                let quarter = (3.4..4.6).contains(&ratio);
+                assert!(quarter, "{projection:?}, {name}: {ratio}");
             }
         }
     }

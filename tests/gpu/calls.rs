@@ -4,7 +4,7 @@
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 /// One machine word: a handle, a pointer or a number. Each wrapped function takes at most six.
 /// Every 64-bit calling convention passes them in the same places whatever their type (on Windows
@@ -143,9 +143,7 @@ impl Drop for Layer {
 
 impl Layer {
     pub fn take() -> Self {
-        let one = ONE
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         ALIVE.store(0, Ordering::SeqCst);
         Self { _one: one }
     }
@@ -155,26 +153,15 @@ impl Layer {
         let calls =
             each!(call: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25);
         let ends = each!(end: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
-        let get = instance.fp_v1_0().get_device_proc_addr;
-        let handle = device.handle();
-        // SAFETY: each wrapper has the parameters and result of the function that it replaces.
-        unsafe {
-            ash::Device::load_with(
-                |name| {
-                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
-                    if let Some(n) = CALLS.iter().position(|known| *known == name) {
-                        REAL[n].store(real, Ordering::SeqCst);
-                        return calls[n];
-                    }
-                    if let Some(n) = ENDS.iter().position(|known| *known == name) {
-                        REAL_ENDS[n].store(real, Ordering::SeqCst);
-                        return ends[n];
-                    }
-                    real as *const c_void
-                },
-                handle,
-            )
-        }
+        planted_device(instance, device, |name, real| {
+            if let Some(n) = CALLS.iter().position(|known| *known == name) {
+                REAL[n].store(real, Ordering::SeqCst);
+                return Some(calls[n]);
+            }
+            let n = ENDS.iter().position(|known| *known == name)?;
+            REAL_ENDS[n].store(real, Ordering::SeqCst);
+            Some(ends[n])
+        })
     }
 
     /// Makes the `n`-th call from now on fail, counting calls that allocate or create something.
@@ -191,9 +178,8 @@ impl Layer {
 
     /// The call that was made to fail.
     pub fn failed(&self) -> Option<&'static str> {
-        CALLS
-            .get(FAILED.load(Ordering::SeqCst))
-            .map(|name| name.to_str().unwrap())
+        let call = CALLS.get(FAILED.load(Ordering::SeqCst));
+        call.map(|name| name.to_str().unwrap())
     }
 
     /// Loses the device from now on; the call `told_by` reports the loss.
@@ -216,29 +202,48 @@ impl Layer {
         mask: Mask,
     ) -> ash::Instance {
         *MASK.lock().unwrap() = mask;
-        let get = entry.static_fn().get_instance_proc_addr;
-        let handle = instance.handle();
-        // SAFETY: as for devices.
-        unsafe {
-            ash::Instance::load_with(
-                |name| {
-                    let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
-                    let Some(n) = QUERIES.iter().position(|known| *known == name) else {
-                        return real as *const c_void;
-                    };
-                    REAL_QUERIES[n].store(real, Ordering::SeqCst);
-                    [
-                        properties as *const c_void,
-                        features as *const c_void,
-                        families as *const c_void,
-                        formats as *const c_void,
-                        image_formats as *const c_void,
-                    ][n]
-                },
-                handle,
-            )
-        }
+        planted_instance(entry, instance, |name, real| {
+            let n = QUERIES.iter().position(|known| *known == name)?;
+            REAL_QUERIES[n].store(real, Ordering::SeqCst);
+            let queries = [
+                properties as *const c_void,
+                features as *const c_void,
+                families as *const c_void,
+                formats as *const c_void,
+                image_formats as *const c_void,
+            ];
+            Some(queries[n])
+        })
     }
+}
+
+/// A device whose functions `plant` may replace: it gets their names and the driver's own. Those in
+/// their place have their parameters and results.
+pub fn planted_device(
+    instance: &ash::Instance,
+    device: &ash::Device,
+    plant: impl Fn(&CStr, usize) -> Option<*const c_void>,
+) -> ash::Device {
+    let (get, handle) = (instance.fp_v1_0().get_device_proc_addr, device.handle());
+    // SAFETY: plain queries of a live device.
+    let real = |name: &CStr| unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
+    let load = |name: &CStr| plant(name, real(name)).unwrap_or(real(name) as *const c_void);
+    // SAFETY: the functions are the driver's, or like them.
+    unsafe { ash::Device::load_with(load, handle) }
+}
+
+/// The same for an instance.
+pub fn planted_instance(
+    entry: &ash::Entry,
+    instance: &ash::Instance,
+    plant: impl Fn(&CStr, usize) -> Option<*const c_void>,
+) -> ash::Instance {
+    let (get, handle) = (entry.static_fn().get_instance_proc_addr, instance.handle());
+    // SAFETY: as for devices.
+    let real = |name: &CStr| unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
+    let load = |name: &CStr| plant(name, real(name)).unwrap_or(real(name) as *const c_void);
+    // SAFETY: as for devices.
+    unsafe { ash::Instance::load_with(load, handle) }
 }
 
 /// Features removed from a physical device.
@@ -258,17 +263,7 @@ pub struct Mask {
     pub format: Option<vk::Format>,
 }
 
-static MASK: Mutex<Mask> = Mutex::new(Mask {
-    version: false,
-    stores: false,
-    anisotropy: false,
-    timestamps: false,
-    compute: false,
-    varyings: false,
-    sub_pixels: false,
-    samples: false,
-    format: None,
-});
+static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
 
 const QUERIES: [&CStr; 5] = [
     c"vkGetPhysicalDeviceProperties",
@@ -280,45 +275,50 @@ const QUERIES: [&CStr; 5] = [
 static REAL_QUERIES: [AtomicUsize; QUERIES.len()] = [const { AtomicUsize::new(0) }; QUERIES.len()];
 
 /// # Safety
-/// `n` is the number of the query, whose type is `F`.
-unsafe fn real<F: Copy>(n: usize) -> F {
-    let pointer = REAL_QUERIES[n].load(Ordering::SeqCst);
+/// The function that is kept has the type `F`.
+pub unsafe fn real<F: Copy>(kept: &AtomicUsize) -> F {
+    let pointer = kept.load(Ordering::SeqCst);
     // SAFETY: a pointer to a function.
     unsafe { std::mem::transmute_copy(&pointer) }
 }
 
-unsafe extern "system" fn properties(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: the driver's own function, and the caller's pointer.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceProperties>(0)(physical, out);
+/// Functions in place of the queries, by their numbers: the mask changes what the driver says.
+macro_rules! queries {
+    ($($n:literal $name:ident: $driver:ident($($arg:ident: $of:ty),*) $(-> $result:ty)?, |$mask:ident| $change:block)*) => {
+        $(unsafe extern "system" fn $name($($arg: $of),*) $(-> $result)? {
+            let $mask = *MASK.lock().unwrap();
+            // SAFETY: the driver's own function, and the caller's pointers.
+            unsafe {
+                let said = real::<vk::$driver>(&REAL_QUERIES[$n])($($arg),*);
+                $change
+                said
+            }
+        })*
+    };
+}
+
+queries! {
+    0 properties: PFN_vkGetPhysicalDeviceProperties(
+        physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties
+    ), |mask| {
+        let limits = &mut (*out).limits;
         if mask.version {
             (*out).api_version = vk::API_VERSION_1_1;
         }
         if mask.samples {
-            (*out).limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
+            limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
         }
         if mask.sub_pixels {
-            (*out).limits.sub_pixel_precision_bits = 4;
+            limits.sub_pixel_precision_bits = 4;
         }
         if mask.varyings {
-            (*out).limits.max_fragment_input_components = 64;
-            (*out).limits.max_vertex_output_components = 64;
+            limits.max_fragment_input_components = 64;
+            limits.max_vertex_output_components = 64;
         }
     }
-}
-
-unsafe extern "system" fn features(
-    physical: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceFeatures,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceFeatures>(1)(physical, out);
+    1 features: PFN_vkGetPhysicalDeviceFeatures(
+        physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures
+    ), |mask| {
         if mask.stores {
             (*out).fragment_stores_and_atomics = vk::FALSE;
         }
@@ -326,63 +326,33 @@ unsafe extern "system" fn features(
             (*out).sampler_anisotropy = vk::FALSE;
         }
     }
-}
-
-unsafe extern "system" fn families(
-    physical: vk::PhysicalDevice,
-    count: *mut u32,
-    out: *mut vk::QueueFamilyProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above; `out` has room for `count`, or is null.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceQueueFamilyProperties>(2)(physical, count, out);
-        if out.is_null() {
-            return;
-        }
-        for family in std::slice::from_raw_parts_mut(out, *count as usize) {
+    2 families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
+        physical: vk::PhysicalDevice, count: *mut u32, out: *mut vk::QueueFamilyProperties
+    ), |mask| {
+        // `out` has room for `count`, or is null.
+        let room = if out.is_null() { 0 } else { *count as usize };
+        for n in 0..room {
             if mask.timestamps {
-                family.timestamp_valid_bits = 0;
+                (*out.add(n)).timestamp_valid_bits = 0;
             }
             if mask.compute {
-                family.queue_flags &= !vk::QueueFlags::COMPUTE;
+                (*out.add(n)).queue_flags &= !vk::QueueFlags::COMPUTE;
             }
         }
     }
-}
-
-unsafe extern "system" fn formats(
-    physical: vk::PhysicalDevice,
-    format: vk::Format,
-    out: *mut vk::FormatProperties,
-) {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        real::<vk::PFN_vkGetPhysicalDeviceFormatProperties>(3)(physical, format, out);
+    3 formats: PFN_vkGetPhysicalDeviceFormatProperties(
+        physical: vk::PhysicalDevice, format: vk::Format, out: *mut vk::FormatProperties
+    ), |mask| {
         if mask.format == Some(format) {
             *out = vk::FormatProperties::default();
         }
     }
-}
-
-unsafe extern "system" fn image_formats(
-    physical: vk::PhysicalDevice,
-    format: vk::Format,
-    kind: vk::ImageType,
-    tiling: vk::ImageTiling,
-    usage: vk::ImageUsageFlags,
-    flags: vk::ImageCreateFlags,
-    out: *mut vk::ImageFormatProperties,
-) -> vk::Result {
-    let mask = *MASK.lock().unwrap();
-    // SAFETY: as above.
-    unsafe {
-        let real = real::<vk::PFN_vkGetPhysicalDeviceImageFormatProperties>(4);
-        let result = real(physical, format, kind, tiling, usage, flags, out);
+    4 image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
+        physical: vk::PhysicalDevice, format: vk::Format, kind: vk::ImageType, tiling: vk::ImageTiling,
+        usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags, out: *mut vk::ImageFormatProperties
+    ) -> vk::Result, |mask| {
         if mask.samples {
             (*out).sample_counts = vk::SampleCountFlags::TYPE_1;
         }
-        result
     }
 }

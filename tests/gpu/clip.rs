@@ -1,32 +1,24 @@
 //! Boxes that grow with the offset (`clip = "none"`), compared with the reference, which only moves
 //! the box's faces; and boxes that cut (`clip = "box"`).
 
-use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{
+    device, draw, drawn_by, errors, eye, hits, offset, placement, reference, scene_of, shapes,
+    updated,
+};
 use glam::DVec3;
 use revmap::gpu::Offscreen;
 use revmap::profile::{Profile, Raster};
-use revmap::scene::{Clip, Growth, Object, Offset, Scene};
+use revmap::scene::{Clip, Growth, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
-
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
-    Settings {
-        width: 200,
-        height: 150,
-        stage,
-        solver,
-        ..Settings::exact()
-    }
+    drawn_by((200, 150), stage, solver)
 }
 
 fn with(profile: Profile, [extend, bevel, chamfer]: [f64; 3]) -> Scene {
     let mut scene = scene_of(profile, eye(20.0, 3.4));
-    scene.objects[0].offset = Offset {
-        extend,
-        bevel,
-        chamfer,
-    };
+    scene.objects[0].offset = offset(extend, bevel, chamfer);
     // Turned, stretched and moved: the grown box must keep the solid in place.
     scene.objects[0].placement = placement([0.1, -0.2, 0.05], [0.3, -0.2, 0.7], [1.1, 0.8, 0.9]);
     scene
@@ -126,11 +118,8 @@ fn textures_stay_where_they_are() {
             let p99 = off[off.len() * 99 / 100];
             println!("{projection:?} {stage:?}: {p99:e} of {}", off.len());
             // Lengths along the outline come from a table of texels.
-            let most = if projection == Projection::Arc {
-                5e-3
-            } else {
-                1e-4
-            };
+            let arc = projection == Projection::Arc;
+            let most = if arc { 5e-3 } else { 1e-4 };
             assert!(p99 < most, "{projection:?} {stage:?}: {p99}");
         }
     }
@@ -151,10 +140,8 @@ fn boxes_grow_by_what_offsets_need() {
     assert!(growth(&object).is_none());
     object.offset.extend = 0.03;
     let grown = growth(&object);
-    assert!(
-        grown.low >= 0.03 && grown.low <= 0.1 && grown.low == grown.high,
-        "{grown:?}"
-    );
+    assert!((0.03..=0.1).contains(&grown.low), "{grown:?}");
+    assert_eq!(grown.low, grown.high);
     object.offset.extend = 0.031;
     assert_eq!(growth(&object), grown);
     object.clip = Clip::Box;
@@ -182,8 +169,6 @@ fn boxes_grow_by_what_offsets_need() {
     let whole = draw(&scene, &settings(DrawStage::Fragment, Solver::Exact));
     let c = errors(&truth, &cut, 512);
     assert!(c.missed + c.ghost <= 2);
-    let hits =
-        |frame: &revmap::frame::Frame| frame.distance.iter().filter(|d| d.is_finite()).count();
     assert!(hits(&whole) as f64 > 1.1 * hits(&cut) as f64);
 }
 
@@ -210,11 +195,8 @@ fn growing_follows_every_change() {
     ];
     for (n, change) in changes.into_iter().enumerate() {
         change(&mut scene.objects[0]);
-        renderer.update(&scene).unwrap();
-        renderer.draw().unwrap();
-        let found = renderer.read().unwrap();
+        let found = updated(&mut renderer, &scene);
         assert!(found == draw(&scene, &settings), "change {n}");
     }
-    drop(renderer);
     device().check().unwrap();
 }

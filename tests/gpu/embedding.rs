@@ -2,19 +2,14 @@
 //! that of `examples/engine`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-use crate::common::{eye, host, scene_of, shapes};
-use ash::vk;
+pub use crate::common::host::assert_silent;
+use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
+use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use host::{Host, Mesh, Options, Stage, lent, open};
-use revmap::frame::srgb_from_linear;
-use revmap::gpu::{
-    DepthOrder, Device, Offscreen, Output, PassFormats, PassKind, Renderer, View, Viewport,
-};
-use revmap::profile::Profile;
+use revmap::gpu::{Device, Offscreen, Renderer, View};
 use revmap::scene::{Camera, CameraFrame, Lighting, Object, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
-use std::cell::RefCell;
-use std::sync::Arc;
+use revmap_files::Picture;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
@@ -28,66 +23,8 @@ pub fn options() -> Options {
     }
 }
 
-pub fn borrow(host: &Host) -> Device {
-    // SAFETY: the host's own handles; each test drops the device before the host.
-    unsafe { Device::borrow(&lent(host)) }.unwrap()
-}
-
 pub fn renderer(device: &Device, stage: &Stage) -> Renderer {
-    let begun = if stage.options.dynamic {
-        PassKind::Dynamic {
-            color: vec![host::COLOR],
-            depth: host::DEPTH,
-            stencil: vk::Format::UNDEFINED,
-        }
-    } else {
-        PassKind::RenderPass {
-            pass: stage.pass,
-            subpass: 0,
-        }
-    };
-    let output = Output::Pass(PassFormats {
-        begun,
-        samples: stage.options.samples,
-        depth: order(&stage.options),
-        planes: Planes::Color,
-    });
-    Renderer::new(device, output, &SearchSettings::exact(), host::FRAMES).unwrap()
-}
-
-pub fn order(options: &Options) -> DepthOrder {
-    if options.reversed {
-        DepthOrder::Reversed
-    } else {
-        DepthOrder::Normal
-    }
-}
-
-/// Draws one frame of the host.
-pub fn frame(
-    stage: &mut Stage,
-    renderer: &mut Renderer,
-    view: &View,
-    clip: DMat4,
-    meshes: &[Mesh],
-) {
-    let renderer = RefCell::new(renderer);
-    stage
-        .frame(
-            clip,
-            Vec3::Z,
-            meshes,
-            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-            |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
-            // SAFETY: the frame was prepared, the pass has the output's formats.
-            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
-        )
-        .unwrap();
-}
-
-pub fn assert_silent(host: &Host) {
-    let messages = host.take_messages();
-    assert!(messages.is_empty(), "{messages:?}");
+    host::renderer(device, stage, &SearchSettings::exact(), host::FRAMES)
 }
 
 pub fn three() -> Scene {
@@ -123,37 +60,17 @@ pub fn drawn(
     stage.read().unwrap()
 }
 
-pub fn srgb(linear: f32) -> u8 {
-    (srgb_from_linear(f64::from(linear)) * 255.0).round() as u8
-}
-
 #[test]
 fn alone_it_draws_the_off_screen_frame() {
     let host = open();
     let device = borrow(&host);
     let scene = three();
     let settings = Settings {
-        width: options().width,
-        height: options().height,
         planes: Planes::Color,
-        ..Settings::exact()
+        ..sized(options().width, options().height)
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    offscreen.draw().unwrap();
-    let wanted: Vec<u8> = offscreen
-        .read()
-        .unwrap()
-        .color
-        .iter()
-        .flat_map(|c| {
-            [
-                srgb(c[0]),
-                srgb(c[1]),
-                srgb(c[2]),
-                (c[3] * 255.0).round() as u8,
-            ]
-        })
-        .collect();
+    let wanted = Picture::of(&next_frame(&mut offscreen)).rgba.concat();
     let view = *offscreen.view();
     for dynamic in [true, false] {
         let options = Options {
@@ -165,23 +82,14 @@ fn alone_it_draws_the_off_screen_frame() {
         // All four samples use the ray through the pixel's centre, so pixels away from silhouettes
         // are equal.
         let samples = 4;
-        let four = drawn(
-            &host,
-            &device,
-            Options { samples, ..options },
-            &scene,
-            &view,
-        )
-        .0;
+        let options = Options { samples, ..options };
+        let four = drawn(&host, &device, options, &scene, &view).0;
         let differ = (0..wanted.len() / 4)
             .filter(|n| one[4 * n..4 * n + 4] != four[4 * n..4 * n + 4])
             .count();
         println!("dynamic {dynamic}: {differ} pixels of four samples differ");
         assert!(differ < wanted.len() / 4 / 50, "{differ}");
     }
-    drop(offscreen);
-    drop(device);
-    assert_silent(&host);
 }
 
 /// The object visible at a pixel: the solid, the host's sphere, or neither.
@@ -200,8 +108,7 @@ fn meshes_meet_solids_where_they_should() {
     let host = open();
     let device = borrow(&host);
     let (middle, radius, wide) = (DVec3::new(0.35, -0.1, 0.45), 0.3, 0.3);
-    let cylinder = Profile::polygon(&[[0.0, 0.0], [wide, 0.0], [wide, 1.0], [0.0, 1.0]], 0.5);
-    let mut object = Object::new("cylinder", Arc::new(cylinder.unwrap()));
+    let mut object = Object::new("cylinder", shapes::column_of(wide).into());
     object.color = [1.0, 0.0, 0.0];
     let lighting = Lighting {
         ambient: [1.0; 3],
@@ -222,15 +129,9 @@ fn meshes_meet_solids_where_they_should() {
             reversed,
             ..options()
         };
-        let from = if inside {
-            DVec3::new(-0.1, 0.0, 0.5)
-        } else {
-            from
-        };
-        let to = if inside {
-            DVec3::new(0.3, -0.6, 0.5)
-        } else {
-            to
+        let (from, to) = match inside {
+            true => (DVec3::new(-0.1, 0.0, 0.5), DVec3::new(0.3, -0.6, 0.5)),
+            false => (from, to),
         };
         let mut stage = Stage::new(&host, options).unwrap();
         let mut renderer = renderer(&device, &stage);
@@ -238,13 +139,8 @@ fn meshes_meet_solids_where_they_should() {
         renderer.add(object.clone()).unwrap();
         let sphere = Mesh::sphere(&host, 256, middle.as_vec3(), radius as f32, Vec3::Z).unwrap();
         let [view, projection] = host::view_and_projection(from, to, &options);
-        let viewport = Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: f64::from(options.width),
-            height: f64::from(options.height),
-        };
-        let seen = View::from_matrices(view, projection, viewport, order(&options)).unwrap();
+        let port = viewport(&options);
+        let seen = View::from_matrices(view, projection, port, order(&options)).unwrap();
         for _ in 0..2 {
             let meshes = std::slice::from_ref(&sphere);
             frame(&mut stage, &mut renderer, &seen, projection * view, meshes);
@@ -258,12 +154,9 @@ fn meshes_meet_solids_where_they_should() {
                 let v = rays.pixel((n % w) as u32, (n / w) as u32);
                 let ball = ball(from - middle, v, radius);
                 let solid = upright(from, v, wide);
-                if ball.min(solid).is_infinite() {
-                    (0, f64::INFINITY)
-                } else if ball < solid {
-                    (2, ball)
-                } else {
-                    (1, solid)
+                match ball.min(solid) {
+                    f64::INFINITY => (0, f64::INFINITY),
+                    t => (if ball < solid { 2 } else { 1 }, t),
                 }
             })
             .collect();
@@ -295,8 +188,6 @@ fn meshes_meet_solids_where_they_should() {
         // Bound of one part in 2^20, as for a host's own rasterised depths.
         assert!(worst <= 2f64.powi(-20), "{worst:e}");
     }
-    drop(device);
-    assert_silent(&host);
 }
 
 /// The nearest t >= 0 at which a ray meets a sphere about the origin.

@@ -3,20 +3,18 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::memory::{HostBuffer, HostImage};
-use crate::common::host::{self, Host, open};
-use crate::common::{scene_of, shapes};
-use crate::embedding::{BACKGROUND, assert_silent, borrow, options, srgb, three, upright};
+use crate::common::host::{self, Host, borrow, dynamic, open, viewport};
+use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
+use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, PassKind,
-    Renderer, View, Viewport,
+    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
 };
-use revmap::profile::Profile;
-use revmap::scene::{Clip, Object, Scene};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
+use revmap::scene::{Clip, Scene};
+use revmap::settings::{Planes, SearchSettings, Settings};
+use revmap_files::Picture;
 use revmap_searches::CIRCLE;
-use std::sync::Arc;
 
 /// Records commands, submits them and waits.
 pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
@@ -49,38 +47,24 @@ pub fn barrier(host: &Host, cmd: vk::CommandBuffer) {
     let barrier = [vk::MemoryBarrier::default()
         .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
         .dst_access_mask(access)];
-    let all = vk::PipelineStageFlags::ALL_COMMANDS;
+    let (all, none) = (
+        vk::PipelineStageFlags::ALL_COMMANDS,
+        vk::DependencyFlags::empty(),
+    );
+    let device = &host.device;
     // SAFETY: `cmd` is recording outside of a pass.
-    unsafe {
-        host.device.cmd_pipeline_barrier(
-            cmd,
-            all,
-            all,
-            vk::DependencyFlags::empty(),
-            &barrier,
-            &[],
-            &[],
-        );
-    }
+    unsafe { device.cmd_pipeline_barrier(cmd, all, all, none, &barrier, &[], &[]) };
 }
 
-fn viewport() -> Viewport {
-    Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(options().width),
-        height: f64::from(options().height),
-    }
+/// A view by these matrices, for the host's pictures.
+fn seen(view: DMat4, projection: DMat4) -> View {
+    View::from_matrices(view, projection, viewport(&options()), DepthOrder::Normal).unwrap()
 }
 
 /// A pass without colour attachments.
 fn depth_pass(planes: Planes) -> Output {
     Output::Pass(PassFormats {
-        begun: PassKind::Dynamic {
-            color: Vec::new(),
-            depth: host::DEPTH,
-            stencil: vk::Format::UNDEFINED,
-        },
+        begun: dynamic(&[]),
         samples: 1,
         depth: DepthOrder::Normal,
         planes,
@@ -106,19 +90,9 @@ fn depths(
         renderer.add(object.clone()).unwrap();
     }
     let raw = &host.device;
-    let area = vk::Rect2D::default().extent(vk::Extent2D { width, height });
-    let range = vk::ImageSubresourceRange::default()
-        .aspect_mask(vk::ImageAspectFlags::DEPTH)
-        .level_count(1)
-        .layer_count(1);
+    let area = vk::Rect2D::default().extent(options().extent());
     let to_layout = |cmd, from, to| {
-        let change = [vk::ImageMemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
-            .old_layout(from)
-            .new_layout(to)
-            .image(image.raw)
-            .subresource_range(range)];
+        let change = [image.barrier(from, to)];
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
         let none = vk::DependencyFlags::empty();
         // SAFETY: `cmd` is recording outside of a pass.
@@ -159,22 +133,9 @@ fn depths(
             raw.cmd_set_scissor(cmd, 0, &[area]);
             renderer.record(cmd, &frame).unwrap();
             raw.cmd_end_rendering(cmd);
-            let (from, to) = (
-                Layout::DEPTH_ATTACHMENT_OPTIMAL,
-                Layout::TRANSFER_SRC_OPTIMAL,
-            );
-            to_layout(cmd, from, to);
-            let copy = vk::BufferImageCopy::default()
-                .image_subresource(
-                    vk::ImageSubresourceLayers::default()
-                        .aspect_mask(vk::ImageAspectFlags::DEPTH)
-                        .layer_count(1),
-                )
-                .image_extent(vk::Extent3D {
-                    width,
-                    height,
-                    depth: 1,
-                });
+            let to = Layout::TRANSFER_SRC_OPTIMAL;
+            to_layout(cmd, Layout::DEPTH_ATTACHMENT_OPTIMAL, to);
+            let copy = image.region(&options());
             raw.cmd_copy_image_to_buffer(cmd, image.raw, to, read.raw, &[copy]);
             barrier(host, cmd);
         }
@@ -191,24 +152,21 @@ fn depth_alone_is_a_pictures_depth() {
     let scene = three();
     let (eye, target) = (scene.camera.eye, scene.camera.target);
     let [view, projection] = host::view_and_projection(eye, target, &options());
-    let order = DepthOrder::Normal;
-    let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
+    let light = seen(view, projection);
     let exact = SearchSettings::exact();
-    let alone = depths(&host, &device, &scene, &seen, &exact, false);
-    let beside = crate::embedding::drawn(&host, &device, options(), &scene, &seen).1;
+    let alone = depths(&host, &device, &scene, &light, &exact, false);
+    let beside = crate::embedding::drawn(&host, &device, options(), &scene, &light).1;
     let hits = alone.iter().filter(|d| **d < 1.0).count();
     assert!(hits > 3000, "{hits}");
     assert!(alone == beside, "depths differ");
 
     let wide = 0.3;
-    let cylinder = Profile::polygon(&[[0.0, 0.0], [wide, 0.0], [wide, 1.0], [0.0, 1.0]], 0.5);
-    let mut one = scene_of(shapes::vase(), eye);
-    one.objects = vec![Object::new("cylinder", Arc::new(cylinder.unwrap()))];
+    let one = scene_of(shapes::column_of(wide), eye);
     let from = DVec3::new(2.0, 1.0, 2.5);
     let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let projection = parallel();
-    let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
-    let found = depths(&host, &device, &one, &seen, &exact, true);
+    let light = seen(view, projection);
+    let found = depths(&host, &device, &one, &light, &exact, true);
     let back = (projection * view).inverse();
     let (width, height) = (options().width as usize, options().height as usize);
     let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
@@ -228,8 +186,6 @@ fn depth_alone_is_a_pictures_depth() {
     println!("parallel: {hits} hits, {wrong} wrong, depth {worst:e}");
     assert!(hits > 3000 && wrong <= 2, "{hits} hits, {wrong} wrong");
     assert!(worst <= 2f64.powi(-20), "{worst:e}");
-    drop(device);
-    assert_silent(&host);
 }
 
 /// A projection of parallel rays.
@@ -267,9 +223,8 @@ fn depth_alone_of_what_the_box_cuts() {
             let [view, projection] =
                 host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options());
             for (is_parallel, projection) in [(false, projection), (true, parallel())] {
-                let order = DepthOrder::Normal;
-                let seen = View::from_matrices(view, projection, viewport(), order).unwrap();
-                let of = |least| depths(&host, &device, &scene, &seen, &by(least), is_parallel);
+                let light = seen(view, projection);
+                let of = |least| depths(&host, &device, &scene, &light, &by(least), is_parallel);
                 let (hulls, boxes) = (of(0), of(u32::MAX));
                 let hits = boxes.iter().filter(|d| **d < 1.0).count();
                 let pairs = || hulls.iter().zip(&boxes);
@@ -285,8 +240,15 @@ fn depth_alone_of_what_the_box_cuts() {
             }
         }
     }
-    drop(device);
-    assert_silent(&host);
+}
+
+/// A buffer of two words a pixel as the target of compute.
+pub fn target(words: &HostBuffer) -> ComputeTarget {
+    ComputeTarget {
+        words: words.raw,
+        images: Vec::new(),
+        depths: true,
+    }
 }
 
 /// Compute into a host's buffer gives the off-screen picture in cleared pixels. Nearer values
@@ -298,23 +260,11 @@ fn compute_writes_to_a_hosts_buffer() {
     let scene = three();
     let (width, height) = (options().width, options().height);
     let settings = Settings {
-        width,
-        height,
-        stage: DrawStage::Compute,
         planes: Planes::Color,
-        ..Settings::exact()
+        ..in_compute(sized(width, height))
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    offscreen.draw().unwrap();
-    let wanted = offscreen.read().unwrap().color;
-    let pack = |c: &[f32]| {
-        u32::from_le_bytes([
-            srgb(c[0]),
-            srgb(c[1]),
-            srgb(c[2]),
-            (c[3] * 255.0).round() as u8,
-        ])
-    };
+    let wanted = Picture::of(&next_frame(&mut offscreen)).rgba;
     let pixels = (width * height) as usize;
     let nearer = 0x0102_0304u32;
     // The left half is empty; the right half already holds a nearer depth.
@@ -322,36 +272,19 @@ fn compute_writes_to_a_hosts_buffer() {
     let mut words: Vec<u32> = (0..pixels)
         .map(|n| if is_empty(n) { 1f32.to_bits() } else { 0 })
         .collect();
-    words.extend((0..pixels).map(|n| {
-        if is_empty(n) {
-            ComputeTarget::color_word(BACKGROUND)
-        } else {
-            nearer
-        }
-    }));
+    let background = ComputeTarget::color_word(BACKGROUND);
+    words.extend((0..pixels).map(|n| if is_empty(n) { background } else { nearer }));
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
     let buffer = HostBuffer::of(&host, &words, usage).unwrap();
-    let search = SearchSettings {
-        solver: Solver::DEFAULT,
-        ..SearchSettings::exact()
-    };
     let output = Output::Compute(Planes::Color);
-    let mut renderer = Renderer::new(&device, output, &search, 1).unwrap();
+    let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 1).unwrap();
     renderer.set_lighting(&scene.lighting()).unwrap();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
     // SAFETY: the buffer is of the host's device, has two words per pixel, and outlives the
     // renderer.
-    unsafe {
-        let (words, images) = (buffer.raw, Vec::new());
-        let target = ComputeTarget {
-            words,
-            images,
-            depths: true,
-        };
-        renderer.set_compute_target(target).unwrap();
-    }
+    unsafe { renderer.set_compute_target(target(&buffer)) }.unwrap();
     once(&host, |cmd| {
         // SAFETY: `cmd` is recording outside of a pass; nothing was submitted for the slot before.
         unsafe {
@@ -365,16 +298,14 @@ fn compute_writes_to_a_hosts_buffer() {
     for n in 0..pixels {
         let (depth, color) = (f32::from_bits(found[n]), found[pixels + n]);
         if is_empty(n) {
-            assert_eq!(color, pack(&wanted[n]), "pixel {n}");
+            assert_eq!(color.to_le_bytes(), wanted[n], "pixel {n}");
             drawn += usize::from(depth < 1.0);
         } else {
             assert_eq!((depth, color), (0.0, nearer), "pixel {n}");
         }
     }
     assert!(drawn > 2000, "{drawn}");
-    drop((renderer, offscreen, buffer));
-    drop(device);
-    assert_silent(&host);
+    drop((renderer, offscreen)); // before the buffer
 }
 
 /// A depth-only renderer refuses compute and searches without an exact depth.

@@ -1,9 +1,9 @@
 //! Rays that run out of steps are counted, in both stages alike.
 
-use crate::common::{draw, eye, placement, scene_of, shapes};
-use revmap::frame::Frame;
+use crate::common::ways::STAGES;
+use crate::common::{draw, drawn_by, eye, from_boxes, hits, placement, scene_of, shapes};
 use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap::settings::{Planes, Settings, Solver};
 use revmap_searches::{CIRCLE, LINEAR, SECANT};
 use std::sync::Arc;
 
@@ -29,28 +29,17 @@ fn scenes() -> [Scene; 3] {
 fn rays_out_of_steps_are_counted_alike_in_both_stages() {
     let scenes = scenes();
     let count = |solver, max_steps, planes| {
-        let counts = [DrawStage::Fragment, DrawStage::Compute].map(|stage| {
-            let settings = Settings {
-                width: 240,
-                height: 180,
-                stage,
-                solver,
+        let counts: [(usize, usize); 2] = STAGES.map(|stage| {
+            let settings = from_boxes(Settings {
                 max_steps: Some(max_steps),
                 planes,
-                // Cells and lists of patches change where rays start; culled tiles count no steps.
-                proxy_min_pixels: u32::MAX,
-                occlusion_culling: false,
-                ..Settings::exact()
-            };
+                ..drawn_by((240, 180), stage, solver)
+            });
             let frames = scenes.each_ref().map(|scene| draw(scene, &settings));
             // The bit that marks an exhausted ray is not counted as a step.
             assert!(frames.iter().all(|f| f.steps.iter().all(|&s| s < 1e5)));
-            let hits = |f: &Frame| (0..f.pixels()).filter(|&i| f.hits(i)).count();
-            let exhausted = frames.each_ref().map(|f| f.exhausted);
-            (
-                exhausted.iter().sum::<usize>(),
-                frames.iter().map(hits).sum::<usize>(),
-            )
+            let exhausted = frames.iter().map(|f| f.exhausted);
+            (exhausted.sum(), frames.iter().map(hits).sum::<usize>())
         });
         assert_eq!(counts[0].0, counts[1].0, "{solver:?}, {max_steps} steps");
         counts[0]

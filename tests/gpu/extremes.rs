@@ -1,8 +1,10 @@
 //! Places, distances and sizes outside the range of 32-bit world coordinates; outlines and boxes
 //! that hulls do not support.
 
+use crate::common::ways::STAGES;
 use crate::common::{
-    assert_sound, device, draw, errors, eye, placement, reference, scene_of, shapes,
+    assert_sound, device, draw, drawn_by, errors, eye, placement, reference, scene_of, shapes,
+    sized,
 };
 use glam::DVec3;
 use revmap::frame::Frame;
@@ -11,16 +13,8 @@ use revmap::profile::Profile;
 use revmap::scene::{Light, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
-
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
-    Settings {
-        width: 160,
-        height: 121,
-        stage,
-        solver,
-        ..Settings::exact()
-    }
+    drawn_by((160, 121), stage, solver)
 }
 
 /// Asserts that at most `most` pixels are hit in only one of the frames, and that the 99th
@@ -30,10 +24,7 @@ fn check(truth: &Frame, frame: &Frame, (most, p99): (usize, f64), what: &str) {
     let found = errors(truth, frame, 512);
     let depth = found.depth.unwrap().p99;
     let off = found.missed + found.ghost;
-    println!(
-        "{what}: {off} of {} wrong, depth p99 {depth:.4}",
-        found.hits
-    );
+    println!("{what}: {found}");
     assert!(found.hits > 1000, "{what}: {} hits", found.hits);
     assert!(off <= most && depth <= p99, "{what}: {found}");
 }
@@ -131,13 +122,7 @@ fn a_tip_has_a_normal() {
     for (name, scene) in [("level", level), ("above", above)] {
         for stage in STAGES {
             for solver in [Solver::Exact, Solver::Quadric] {
-                let frame = draw(
-                    &scene,
-                    &Settings {
-                        width: 161,
-                        ..settings(stage, solver)
-                    },
-                );
+                let frame = draw(&scene, &drawn_by((161, 121), stage, solver));
                 assert_sound(&frame, &format!("{name}, {stage:?}, {solver}"));
             }
         }
@@ -146,12 +131,7 @@ fn a_tip_has_a_normal() {
 
 /// The draw path of the first object in the fragment stage.
 fn path(scene: &Scene) -> DrawPath {
-    let settings = Settings {
-        width: 800,
-        height: 600,
-        ..Settings::exact()
-    };
-    let offscreen = Offscreen::new(device(), scene, &settings).unwrap();
+    let offscreen = Offscreen::new(device(), scene, &sized(800, 600)).unwrap();
     offscreen.draw_paths()[0]
 }
 
@@ -164,20 +144,12 @@ fn outlines_that_cross_themselves_have_no_slivers() {
         scene.camera.target.z = 0.25;
         scene.camera.fov_y = 30.0;
         assert_eq!(path(&scene), DrawPath::Tiles);
-        let settings = |stage| Settings {
-            width: 400,
-            height: 300,
-            ..settings(stage, Solver::DEFAULT)
-        };
+        let settings = |stage| drawn_by((400, 300), stage, Solver::DEFAULT);
         let truth = reference(&scene, &settings(STAGES[0]));
         for stage in STAGES {
             let frame = draw(&scene, &settings(stage));
-            check(
-                &truth,
-                &frame,
-                (3, 0.05),
-                &format!("{elevation}, {stage:?}"),
-            );
+            let what = format!("{elevation}, {stage:?}");
+            check(&truth, &frame, (3, 0.05), &what);
         }
     }
 }
@@ -187,10 +159,9 @@ fn flat_solids_are_drawn_by_the_tree() {
     for width in [1.0, 100.0, 1000.0] {
         let mut scene = scene_of(shapes::vase(), DVec3::new(1.5, 0.6, 0.6) * width);
         scene.objects[0].placement.scale = DVec3::new(width, width, 1.0);
-        let expected = if width > 32.0 {
-            DrawPath::Tiles
-        } else {
-            DrawPath::Cells
+        let expected = match width > 32.0 {
+            true => DrawPath::Tiles,
+            false => DrawPath::Cells,
         };
         assert_eq!(path(&scene), expected, "{width}");
         in_both_stages(&scene, (3, 0.2 * width), &format!("{width}:1"));

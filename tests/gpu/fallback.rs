@@ -1,6 +1,7 @@
 //! A profile without a contour is drawn by the search on the map, and the renderer adds a note.
 
-use crate::common::{device, draw, eye, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{device, draw, drawn_by, eye, hits, scene_of, shapes};
 use glam::DVec2;
 use revmap::gpu::{self, Offscreen};
 use revmap::profile::{Outline, Profile};
@@ -32,25 +33,16 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         (DrawStage::Fragment, Shadow::Hard),
     ] {
         scene.shadow = shadow;
-        let settings = Settings {
-            width: 200,
-            height: 150,
-            stage,
-            ..Settings::exact()
-        };
-        let live = Settings {
-            solver: Solver::Live,
-            ..settings
-        };
+        let settings = drawn_by((200, 150), stage, Solver::DEFAULT);
+        let live = drawn_by((200, 150), stage, Solver::Live);
         let drawn = gpu::draw(device(), &scene, &settings).unwrap();
-        let note = &drawn.notes[0];
-        assert!(drawn.notes.len() == 1, "{:?}", drawn.notes);
-        assert!(
-            note.contains("object.0 (test)") && note.contains("live"),
-            "{note}"
-        );
+        let [note] = drawn.notes.as_slice() else {
+            unreachable!("{:?}", drawn.notes)
+        };
+        let told = note.contains("object.0 (test)") && note.contains("live");
+        assert!(told, "{note}");
         let wanted = draw(&scene, &live);
-        let hits = (0..wanted.pixels()).filter(|&i| wanted.hits(i)).count();
+        let hits = hits(&wanted);
         assert!(hits > 3000, "{hits}");
         // The picture is that of the map's own search up to rounding; the ball keeps its search.
         let far = |&i: &usize| {
@@ -71,13 +63,8 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     assert_eq!(renderer.rebuild_count(), 2);
     // Objects with a contour add no note.
     scene.objects.remove(0);
-    assert!(
-        gpu::draw(device(), &scene, &settings)
-            .unwrap()
-            .notes
-            .is_empty()
-    );
-    drop(renderer);
+    let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+    assert!(drawn.notes.is_empty());
     device().check().unwrap();
 }
 
@@ -90,13 +77,10 @@ fn what_has_no_surface_is_drawn_from_the_map() {
     let mut scene = scene_of(shapes::sphere(), eye(20.0, 2.2));
     let mut alone = Object::new("line", Arc::new(line));
     alone.placement.position.x = 0.3;
-    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+    for stage in STAGES {
         let settings = Settings {
-            width: 200,
-            height: 150,
-            stage,
             proxy_min_pixels: 0,
-            ..Settings::exact()
+            ..drawn_by((200, 150), stage, Solver::DEFAULT)
         };
         scene.objects.truncate(1);
         let wanted = draw(&scene, &settings);
@@ -116,15 +100,13 @@ fn what_has_no_surface_is_drawn_from_the_map() {
             // The sphere's search with `quadric` differs from the default.
             assert!(same + 3 >= wanted.pixels(), "{same} of {}", wanted.pixels());
         }
-        {
-            let settings = Settings {
-                solver: CONE,
-                ..settings
-            };
-            let error = Offscreen::new(device(), &scene, &settings).err().unwrap();
-            assert_eq!(error.key.as_deref(), Some("object.1.profile"), "{error}");
-            assert!(error.message.contains("no surface"), "{error}");
-        }
+        let cone = Settings {
+            solver: CONE,
+            ..settings
+        };
+        let error = Offscreen::new(device(), &scene, &cone).err().unwrap();
+        assert_eq!(error.key.as_deref(), Some("object.1.profile"), "{error}");
+        assert!(error.message.contains("no surface"), "{error}");
     }
     device().check().unwrap();
 }

@@ -3,12 +3,14 @@
 //! box's sides, both in the cases that they draw and in those that they leave to the box.
 
 use crate::common::ways::{STAGES, WALKED, WRAPPED, Ways, apart, draw_by};
-use crate::common::{device, draw, errors, eye, placement, scene_of, shapes};
+use crate::common::{
+    device, draw, drawn_by, errors, eye, from_boxes, offset, placement, scene_of, shapes,
+};
 use glam::DVec3;
 use revmap::gpu::DrawPath;
 use revmap::maps::MapFormat;
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Offset, Scene, Shadow};
+use revmap::scene::{Clip, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_lab::compare::Spread;
 
@@ -50,12 +52,8 @@ const LIVE: Search = Search {
 /// Settings that use proxies for solids of any size.
 pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
     Settings {
-        width: 320,
-        height: 240,
         proxy_min_pixels: 0,
-        solver,
-        stage,
-        ..Settings::exact()
+        ..drawn_by((320, 240), stage, solver)
     }
 }
 
@@ -70,11 +68,7 @@ impl Search {
             (_, true) => [&[DrawPath::Tiles][..]; 2],
             (_, false) => WALKED,
         };
-        let from_box = Settings {
-            proxy_min_pixels: u32::MAX,
-            occlusion_culling: false,
-            ..settings(self.from_box, DrawStage::Fragment)
-        };
+        let from_box = from_boxes(settings(self.from_box, DrawStage::Fragment));
         let boxes = draw(scene, &from_box);
         for stage in STAGES {
             let frame = draw_by(name, scene, &settings(self.solver, stage), ways);
@@ -118,20 +112,13 @@ fn offsets_in_motion() {
         for (name, profile) in shapes::all() {
             for (extend, bevel, chamfer) in both.into_iter().chain([own]) {
                 let mut scene = scene_of(profile.clone(), eye(20.0, 2.3));
-                scene.objects[0].offset = Offset {
-                    extend,
-                    bevel,
-                    chamfer,
-                };
+                scene.objects[0].offset = offset(extend, bevel, chamfer);
                 // The bevel moves a cone's foot out, past a box that cuts.
                 if (name, bevel) == ("cone", 0.12) {
                     scene.objects[0].clip = Clip::Box;
                 }
-                search.assert_same(
-                    &format!("{name} with {extend} {bevel} {chamfer}"),
-                    &scene,
-                    WRAPPED,
-                );
+                let name = format!("{name} with {extend} {bevel} {chamfer}");
+                search.assert_same(&name, &scene, WRAPPED);
             }
         }
     }
@@ -171,8 +158,8 @@ fn what_a_flat_box_cuts_along_its_side() {
             let far = eye(elevation, 2.8);
             let mut scene = scene_of(profile.clone(), far);
             let out = far.truncate().length();
-            scene.camera.eye =
-                glam::DVec2::from_angle(azimuth).extend(0.0) * out + DVec3::Z * far.z;
+            let flat = glam::DVec2::from_angle(azimuth) * out;
+            scene.camera.eye = flat.extend(far.z);
             let object = &mut scene.objects[0];
             object.clip = Clip::Box;
             object.offset.extend = 0.15;
@@ -321,17 +308,9 @@ fn where_there_is_none() {
         };
         draw_by("8 bits", &scene, &papers, WALKED);
         for solver in [Solver::Live, Solver::Exact] {
-            let boxes = Settings {
-                proxy_min_pixels: u32::MAX,
-                occlusion_culling: false,
-                ..settings(solver, stage)
-            };
-            draw_by(
-                "boxes",
-                &scene,
-                &boxes,
-                [&[DrawPath::Box], &[DrawPath::Tiles]],
-            );
+            let boxes = from_boxes(settings(solver, stage));
+            let ways: Ways = [&[DrawPath::Box], &[DrawPath::Tiles]];
+            draw_by("boxes", &scene, &boxes, ways);
         }
     }
     let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();
@@ -351,16 +330,11 @@ fn a_wrong_solid_is_noticed() {
     for (search, extend) in [(EXACT, 0.01), (LIVE, -0.05)] {
         let mut other = scene.clone();
         other.objects[0].offset.extend = extend;
-        let from_box = Settings {
-            proxy_min_pixels: u32::MAX,
-            occlusion_culling: false,
-            ..settings(search.from_box, DrawStage::Fragment)
-        };
+        let from_box = from_boxes(settings(search.from_box, DrawStage::Fragment));
         let hull = settings(search.solver, DrawStage::Fragment);
-        let ways = if search.solver == Solver::Exact {
-            WRAPPED
-        } else {
-            WALKED
+        let ways = match search.solver {
+            Solver::Exact => WRAPPED,
+            _ => WALKED,
         };
         let frame = draw_by("another", &other, &hull, ways);
         let (hits, edge, far) = apart(&draw(&scene, &from_box), &frame);

@@ -2,31 +2,27 @@
 //! the solid, never with a hole.
 
 use crate::common::passing::count;
-use crate::common::{assert_sound, device, draw, eye, reference, scene_of, shapes};
+use crate::common::{
+    assert_sound, device, draw, eye, hits, offset, reference, scene_of, shapes, sized, updated,
+};
 use revmap::error::ErrorKind;
 use revmap::gpu::{self, Offscreen};
 use revmap::maps::MapFormat;
-use revmap::scene::{Clip, Offset, Scene};
+use revmap::scene::{Clip, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_searches::CIRCLE;
 
 fn settings() -> Settings {
     Settings {
-        width: 160,
-        height: 120,
         map_rows: Some(256),
         map_format: MapFormat::R32,
-        ..Settings::exact()
+        ..sized(160, 120)
     }
 }
 
 fn with(scene: &Scene, extend: f64, bevel: f64, chamfer: f64) -> Scene {
     let mut scene = scene.clone();
-    scene.objects[0].offset = Offset {
-        extend,
-        bevel,
-        chamfer,
-    };
+    scene.objects[0].offset = offset(extend, bevel, chamfer);
     scene
 }
 
@@ -51,16 +47,11 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
             let found = count(&scene, &truth, &frame, 1.0 / 256.0);
             println!("{name}, e {extend}, b {bevel}, c {chamfer}: {found:?}");
             assert!(found.hits > 1000 || extend < -0.25, "{name}: {found:?}");
-            assert_eq!(
-                (found.passed, found.made_up),
-                (0, 0),
-                "{name}, {extend}, {bevel}"
-            );
+            let through = found.passed + found.made_up;
+            assert_eq!(through, 0, "{name}, {extend}, {bevel}");
             // Silhouettes of large faces: rounding changes only a few pixels.
-            assert!(
-                found.missed + found.ghost <= 5 + found.hits / 500,
-                "{name}: {found:?}"
-            );
+            let few = found.missed + found.ghost <= 5 + found.hits / 500;
+            assert!(few, "{name}: {found:?}");
         }
     }
 }
@@ -71,38 +62,26 @@ fn what_reaches_beyond_its_box_is_cut_and_closed() {
 fn beyond_its_map_a_solid_gets_a_wider_one() {
     let plain = scene_of(shapes::sphere(), eye(25.0, 2.2));
     let wide = with(&plain, 0.8, 0.0, 1.0);
-    let boxed = reference(&wide, &settings());
+    let wanted = reference(&wide, &settings());
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         for solver in [Solver::Live, CIRCLE, Solver::Quadric] {
-            let wanted = &boxed;
             let settings = Settings {
                 stage,
                 solver,
                 ..settings()
             };
             let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
-            renderer.update(&wide).unwrap();
-            renderer.draw().unwrap();
-            let frame = renderer.read().unwrap();
+            let frame = updated(&mut renderer, &wide);
             assert_sound(&frame, "beyond the map");
-            let pixels = 0..frame.pixels();
-            let hits = pixels.clone().filter(|&i| wanted.hits(i)).count();
-            let differ = pixels
-                .clone()
-                .filter(|&i| frame.hits(i) != wanted.hits(i))
-                .count();
+            let (pixels, hits) = (0..frame.pixels(), hits(&wanted));
+            let other = |&i: &usize| frame.hits(i) != wanted.hits(i);
+            let differ = pixels.clone().filter(other).count();
             let both = pixels.filter(|&i| frame.hits(i) && wanted.hits(i));
             let far = |&i: &usize| (frame.distance[i] - wanted.distance[i]).abs() > 0.02;
             let off = both.filter(far).count();
-            println!(
-                "{stage:?}, {}: of {hits} {differ} differ, {off} are elsewhere",
-                solver.name()
-            );
-            assert!(
-                hits > 3000 && differ <= 20 && off <= 20,
-                "{stage:?}, {}",
-                solver.name()
-            );
+            let what = format!("{stage:?}, {solver}: of {hits} {differ} differ, {off} elsewhere");
+            println!("{what}");
+            assert!(hits > 3000 && differ <= 20 && off <= 20, "{what}");
         }
     }
     device().check().unwrap();
@@ -115,11 +94,8 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
     let mut renderer = Offscreen::new(device(), &plain, &settings()).unwrap();
     let mut refused = |key: &str, scene: &Scene| {
         let error = renderer.update(scene).unwrap_err();
-        assert_eq!(
-            (error.kind, error.key.as_deref()),
-            (ErrorKind::Content, Some(key)),
-            "{error}"
-        );
+        let found = (error.kind, error.key.as_deref());
+        assert_eq!(found, (ErrorKind::Content, Some(key)), "{error}");
     };
     refused("object.0.extend", &with(&plain, f64::NAN, 0.0, 1.0));
     refused("object.0.bevel", &with(&plain, 0.0, -0.1, 1.0));

@@ -6,7 +6,6 @@ mod common;
 
 mod accuracy;
 mod agreement;
-mod agreement_textures;
 mod antialias;
 mod bitmaps;
 mod bumps;

@@ -2,10 +2,9 @@
 //! have only one. Non-coherent memory is never mapped, so nothing needs a flush.
 #![allow(unsafe_code)]
 
-use crate::calls::Layer;
+use crate::calls::{Layer, planted_device, planted_instance, real};
 use crate::common::host::{lent, open};
 use crate::common::{eye, scene_of, shapes};
-use crate::embedding::assert_silent;
 use ash::vk;
 use revmap::gpu::{Device, HostDevice, MemoryUse, Offscreen};
 use revmap::settings::{DrawStage, Planes, Settings};
@@ -33,14 +32,6 @@ static ALLOCATED: [AtomicU64; TYPES.len()] = [const { AtomicU64::new(0) }; TYPES
 static TRUE_TYPE: AtomicUsize = AtomicUsize::new(0);
 static REAL: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 
-/// # Safety
-/// `F` is the type of the function stored at `n`.
-unsafe fn real<F: Copy>(n: usize) -> F {
-    let pointer = REAL[n].load(SeqCst);
-    // SAFETY: a pointer to a function.
-    unsafe { std::mem::transmute_copy(&pointer) }
-}
-
 unsafe extern "system" fn types(
     _: vk::PhysicalDevice,
     out: *mut vk::PhysicalDeviceMemoryProperties,
@@ -62,29 +53,25 @@ unsafe extern "system" fn types(
     unsafe { *out = all };
 }
 
-unsafe extern "system" fn of_buffer(
-    device: vk::Device,
-    buffer: vk::Buffer,
-    out: *mut vk::MemoryRequirements,
-) {
-    // SAFETY: the driver's own function, and the caller's pointer.
-    unsafe {
-        real::<vk::PFN_vkGetBufferMemoryRequirements>(0)(device, buffer, out);
-        (*out).memory_type_bits = (1 << TYPES.len()) - 1;
-    }
+/// What a buffer or an image needs: memory of any type.
+macro_rules! requirements {
+    ($name:ident, $n:literal, $driver:ident, $of:ty) => {
+        unsafe extern "system" fn $name(
+            device: vk::Device,
+            of: $of,
+            out: *mut vk::MemoryRequirements,
+        ) {
+            // SAFETY: the driver's own function, and the caller's pointer.
+            unsafe {
+                real::<vk::$driver>(&REAL[$n])(device, of, out);
+                (*out).memory_type_bits = (1 << TYPES.len()) - 1;
+            }
+        }
+    };
 }
 
-unsafe extern "system" fn of_image(
-    device: vk::Device,
-    image: vk::Image,
-    out: *mut vk::MemoryRequirements,
-) {
-    // SAFETY: as above.
-    unsafe {
-        real::<vk::PFN_vkGetImageMemoryRequirements>(1)(device, image, out);
-        (*out).memory_type_bits = (1 << TYPES.len()) - 1;
-    }
-}
+requirements!(of_buffer, 0, PFN_vkGetBufferMemoryRequirements, vk::Buffer);
+requirements!(of_image, 1, PFN_vkGetImageMemoryRequirements, vk::Image);
 
 unsafe extern "system" fn allocate(
     device: vk::Device,
@@ -97,7 +84,7 @@ unsafe extern "system" fn allocate(
         let mut info = *info;
         ALLOCATED[info.memory_type_index as usize].fetch_add(info.allocation_size, SeqCst);
         info.memory_type_index = TRUE_TYPE.load(SeqCst) as u32;
-        real::<vk::PFN_vkAllocateMemory>(2)(device, &raw const info, callbacks, out)
+        real::<vk::PFN_vkAllocateMemory>(&REAL[2])(device, &raw const info, callbacks, out)
     }
 }
 
@@ -105,45 +92,29 @@ unsafe extern "system" fn allocate(
 fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     let _alone = Layer::take();
     let host = open();
-    // SAFETY: a plain query; each function below replaces the one of its name.
-    let (instance, raw) = unsafe {
-        let all = host
-            .instance
-            .get_physical_device_memory_properties(host.physical);
-        let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
-        let found = all
-            .memory_types
-            .iter()
-            .position(|t| t.property_flags.contains(seen));
-        TRUE_TYPE.store(found.unwrap(), SeqCst);
-        let entry = ash::Entry::load().unwrap();
-        let get = entry.static_fn().get_instance_proc_addr;
-        let handle = host.instance.handle();
-        let instance = ash::Instance::load_with(
-            |name| match name.to_bytes() {
-                b"vkGetPhysicalDeviceMemoryProperties" => types as *const c_void,
-                _ => get(handle, name.as_ptr()).map_or(0, |f| f as usize) as *const c_void,
-            },
-            handle,
-        );
-        let get = host.instance.fp_v1_0().get_device_proc_addr;
-        let handle = host.device.handle();
-        let raw = ash::Device::load_with(
-            |name| {
-                let real = get(handle, name.as_ptr()).map_or(0, |f| f as usize);
-                let (n, planted) = match name.to_bytes() {
-                    b"vkGetBufferMemoryRequirements" => (0, of_buffer as *const c_void),
-                    b"vkGetImageMemoryRequirements" => (1, of_image as *const c_void),
-                    b"vkAllocateMemory" => (2, allocate as *const c_void),
-                    _ => return real as *const c_void,
-                };
-                REAL[n].store(real, SeqCst);
-                planted
-            },
-            handle,
-        );
-        (instance, raw)
+    let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
+    // SAFETY: plain queries of live handles.
+    let (all, entry) = unsafe {
+        let instance = &host.instance;
+        let all = instance.get_physical_device_memory_properties(host.physical);
+        (all, ash::Entry::load().unwrap())
     };
+    let mut all = all.memory_types.iter();
+    let found = all.position(|t| t.property_flags.contains(seen));
+    TRUE_TYPE.store(found.unwrap(), SeqCst);
+    let instance = planted_instance(&entry, &host.instance, |name, _| {
+        (name == c"vkGetPhysicalDeviceMemoryProperties").then_some(types as *const c_void)
+    });
+    let raw = planted_device(&host.instance, &host.device, |name, real| {
+        let (n, planted) = match name.to_bytes() {
+            b"vkGetBufferMemoryRequirements" => (0, of_buffer as *const c_void),
+            b"vkGetImageMemoryRequirements" => (1, of_image as *const c_void),
+            b"vkAllocateMemory" => (2, allocate as *const c_void),
+            _ => return None,
+        };
+        REAL[n].store(real, SeqCst);
+        Some(planted)
+    });
     let planted = HostDevice {
         instance: &instance,
         device: &raw,
@@ -171,18 +142,11 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     assert!(before.visible > 0 && before.host > 0, "{before:?}");
     let read = after.host - before.host;
     assert!(read >= (4 * 16 + 4) * pixels, "{before:?}, {after:?}");
-    assert_eq!(
-        (after.device, after.visible),
-        (before.device, before.visible)
-    );
+    assert_eq!(after.device, before.device);
+    assert_eq!(after.visible, before.visible);
     let bytes = ALLOCATED.each_ref().map(|bytes| bytes.load(SeqCst));
-    assert_eq!(
-        bytes.map(|b| b > 0),
-        [false, true, false, true, true, true],
-        "{bytes:?}"
-    );
+    let used = [false, true, false, true, true, true];
+    assert_eq!(bytes.map(|b| b > 0), used, "{bytes:?}");
     drop(drawn);
     assert_eq!(device.memory_use(), MemoryUse::default());
-    drop(device);
-    assert_silent(&host);
 }

@@ -2,7 +2,7 @@
 //! accuracy of normals.
 
 use crate::common::passing::{Count, counts};
-use crate::common::{device, eye, scene_of, shapes};
+use crate::common::{device, eye, offset, scene_of, shapes, sized, updated};
 use glam::DVec3;
 use rayon::prelude::*;
 use revmap::frame::Frame;
@@ -16,14 +16,6 @@ use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write as _;
 
 const ROWS: u32 = 512;
-
-fn offset(extend: f64, bevel: f64, chamfer: f64) -> Offset {
-    Offset {
-        extend,
-        bevel,
-        chamfer,
-    }
-}
 
 /// The widest setting comes first, because maps reach as far as their first scene needs. The list
 /// has outward and inward offsets, gentle bevels, a steep bevel on an inset solid, and chamfers,
@@ -55,11 +47,9 @@ fn with(scene: &Scene, offset: Offset, elevation: f64) -> Scene {
 
 fn searched(solver: Solver, width: u32, height: u32) -> Settings {
     Settings {
-        width,
-        height,
         solver,
         map_rows: Some(ROWS),
-        ..Settings::exact()
+        ..sized(width, height)
     }
 }
 
@@ -116,14 +106,9 @@ fn write_the_table() {
     let mut row = |shape: &str, setting: &str, counts: [Count; 3]| {
         write!(text, "| {shape} | {setting} | {} |", counts[0].hits).unwrap();
         for c in counts {
-            let Count {
-                missed,
-                ghost,
-                passed,
-                made_up,
-                ..
-            } = c;
-            write!(text, " {missed} | {ghost} | {passed} | {made_up} |").unwrap();
+            for number in [c.missed, c.ghost, c.passed, c.made_up] {
+                write!(text, " {number} |").unwrap();
+            }
         }
         text.push('\n');
     };
@@ -176,11 +161,8 @@ fn smooth_error(scene: &Scene, frame: &Frame, texel: f64) -> (f64, usize) {
             Some(angle * angle)
         })
         .collect();
-    let count = squares.len();
-    (
-        (squares.iter().sum::<f64>() / count.max(1) as f64).sqrt(),
-        count,
-    )
+    let (sum, count) = (squares.iter().sum::<f64>(), squares.len());
+    ((sum / count.max(1) as f64).sqrt(), count)
 }
 
 /// Normals are right within 2 degrees away from creases, for every offset. The error comes from
@@ -201,9 +183,7 @@ fn normals_follow_bevel_and_chamfer() {
             let mut renderer = Offscreen::new(device(), &first, &settings).unwrap();
             for (name, offset) in all {
                 let scene = with(&plain, offset, 25.0);
-                renderer.update(&scene).unwrap();
-                renderer.draw().unwrap();
-                let frame = renderer.read().unwrap();
+                let frame = updated(&mut renderer, &scene);
                 let (rms, count) = smooth_error(&scene, &frame, 1.0 / f64::from(ROWS));
                 let what = format!(
                     "{map_format:?} {shape:7} {name:27} {rms:6.3} degrees rms over {count} pixels"

@@ -2,15 +2,14 @@
 //! before it is recorded.
 
 use crate::common::host::memory::HostBuffer;
-use crate::common::host::{self, Options, Stage, open};
+use crate::common::host::{self, Options, Stage, borrow, open};
 use crate::common::{eye, placement, scene_of, shapes};
-use crate::embedding::{assert_silent, borrow, options, order};
+use crate::embedding::options;
+use crate::embedding_outputs::{barrier, once, target};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use revmap::error::ErrorKind;
-use revmap::gpu::{
-    ComputeTarget, Device, ObjectId, Output, PassFormats, PassKind, PreparedFrame, Renderer, View,
-};
+use revmap::gpu::{Device, ObjectId, Output, PreparedFrame, Renderer, View};
 use revmap::scene::{Camera, Object, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings};
 use std::sync::Arc;
@@ -61,89 +60,38 @@ fn add(renderer: &mut Renderer, scene: &Scene) -> Vec<ObjectId> {
     scene.objects.iter().map(add).collect()
 }
 
-/// Draws with its own renderer, in one of the two stages.
-trait Drawn {
-    /// Calls `prepare`, records the frame that it returns, and returns the picture.
-    fn draw(
-        &mut self,
-        prepare: &mut dyn FnMut(&mut Renderer, vk::CommandBuffer, usize) -> PreparedFrame,
-    ) -> Vec<u8>;
-    fn renderer(&mut self) -> &mut Renderer;
-}
+/// Prepares a frame in a slot.
+type Prepare<'a> = &'a mut dyn FnMut(&mut Renderer, vk::CommandBuffer, usize) -> PreparedFrame;
 
-struct Fragments<'a> {
+/// A renderer that draws in one of the two stages. It is dropped before the words.
+struct Drawn<'a> {
     renderer: Renderer,
-    stage: Stage<'a>,
-}
-
-impl<'a> Fragments<'a> {
-    fn new(host: &'a host::Host, device: &Device) -> Self {
-        let stage = Stage::new(host, small()).unwrap();
-        let output = Output::Pass(PassFormats {
-            begun: PassKind::Dynamic {
-                color: vec![host::COLOR],
-                depth: host::DEPTH,
-                stencil: vk::Format::UNDEFINED,
-            },
-            samples: 1,
-            depth: order(&stage.options),
-            planes: Planes::Color,
-        });
-        let renderer = Renderer::new(device, output, &SearchSettings::exact(), SLOTS).unwrap();
-        Self { renderer, stage }
-    }
-}
-
-impl Drawn for Fragments<'_> {
-    fn draw(
-        &mut self,
-        prepare: &mut dyn FnMut(&mut Renderer, vk::CommandBuffer, usize) -> PreparedFrame,
-    ) -> Vec<u8> {
-        let renderer = std::cell::RefCell::new(&mut self.renderer);
-        self.stage
-            .frame(
-                DMat4::IDENTITY,
-                Vec3::Z,
-                &[],
-                |cmd, slot| Ok(prepare(&mut renderer.borrow_mut(), cmd, slot)),
-                // SAFETY: the frame was prepared, the pass has the output's formats.
-                |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
-            )
-            .unwrap();
-        self.stage.read().unwrap().0
-    }
-
-    fn renderer(&mut self) -> &mut Renderer {
-        &mut self.renderer
-    }
-}
-
-struct Compute<'a> {
-    renderer: Renderer,
-    host: &'a host::Host,
+    /// The pass of fragments; `None` in compute.
+    stage: Option<Stage<'a>>,
     words: HostBuffer<'a>,
+    host: &'a host::Host,
     next: usize,
 }
 
-impl<'a> Compute<'a> {
-    fn new(host: &'a host::Host, device: &Device) -> Self {
-        let output = Output::Compute(Planes::Color);
-        let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), SLOTS).unwrap();
-        let words = Self::cleared(host);
-        // SAFETY: the buffer has two words per pixel, is of the host's device, and outlives the
-        // renderer.
-        unsafe {
-            renderer.set_compute_target(ComputeTarget {
-                words: words.raw,
-                images: Vec::new(),
-                depths: true,
-            })
-        }
-        .unwrap();
+impl<'a> Drawn<'a> {
+    fn fragments(host: &'a host::Host, device: &Device) -> Self {
+        let stage = Stage::new(host, small()).unwrap();
         Self {
-            renderer,
+            renderer: host::renderer(device, &stage, &SearchSettings::exact(), SLOTS),
+            stage: Some(stage),
+            words: Self::cleared(host),
             host,
-            words,
+            next: 0,
+        }
+    }
+
+    fn compute(host: &'a host::Host, device: &Device) -> Self {
+        let output = Output::Compute(Planes::Color);
+        Self {
+            renderer: Renderer::new(device, output, &SearchSettings::exact(), SLOTS).unwrap(),
+            stage: None,
+            words: Self::cleared(host),
+            host,
             next: 0,
         }
     }
@@ -154,60 +102,60 @@ impl<'a> Compute<'a> {
         words.extend(vec![0u32; pixels]);
         HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap()
     }
-}
 
-impl Drawn for Compute<'_> {
-    fn draw(
-        &mut self,
-        prepare: &mut dyn FnMut(&mut Renderer, vk::CommandBuffer, usize) -> PreparedFrame,
-    ) -> Vec<u8> {
+    /// Calls `prepare`, records the frame that it returns, and returns the picture.
+    fn draw(&mut self, prepare: Prepare) -> Vec<u8> {
+        let Some(stage) = &mut self.stage else {
+            return self.compute_frame(prepare);
+        };
+        let renderer = std::cell::RefCell::new(&mut self.renderer);
+        let drawn = stage.frame(
+            DMat4::IDENTITY,
+            Vec3::Z,
+            &[],
+            |cmd, slot| Ok(prepare(&mut renderer.borrow_mut(), cmd, slot)),
+            // SAFETY: the frame was prepared, the pass has the output's formats.
+            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
+        );
+        drawn.unwrap();
+        stage.read().unwrap().0
+    }
+
+    fn compute_frame(&mut self, prepare: Prepare) -> Vec<u8> {
         let slot = self.next;
         self.next = (slot + 1) % host::FRAMES;
-        let words = Self::cleared(self.host);
-        // SAFETY: as in `new`; every frame before is complete, as `once` waits.
-        unsafe {
-            self.renderer.set_compute_target(ComputeTarget {
-                words: words.raw,
-                images: Vec::new(),
-                depths: true,
-            })
-        }
-        .unwrap();
-        let renderer = &mut self.renderer;
-        crate::embedding_outputs::once(self.host, |cmd| {
+        let (words, renderer) = (Self::cleared(self.host), &mut self.renderer);
+        // SAFETY: the buffer has two words per pixel, is of the host's device, and outlives the
+        // frame; every frame before is complete, as `once` waits.
+        unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
+        once(self.host, |cmd| {
             let frame = prepare(renderer, cmd, slot);
             // SAFETY: `cmd` is recording outside of a pass, and the frame was prepared for it.
             unsafe { renderer.record_compute(cmd, &frame) }.unwrap();
-            crate::embedding_outputs::barrier(self.host, cmd);
+            barrier(self.host, cmd);
         });
         let bytes = words.bytes();
         self.words = words;
         bytes
     }
-
-    fn renderer(&mut self) -> &mut Renderer {
-        &mut self.renderer
-    }
 }
 
 /// Runs a test in both stages, each renderer with the objects of [`scene`].
-fn in_both_stages(test: impl Fn(&mut dyn Drawn, &[ObjectId], &str)) {
+fn in_both_stages(test: impl Fn(&mut Drawn, &[ObjectId], &str)) {
     let host = open();
     let device = borrow(&host);
-    let mut fragments = Fragments::new(&host, &device);
-    let ids = add(&mut fragments.renderer, &scene());
-    test(&mut fragments, &ids, "fragment");
-    drop(fragments);
-    let mut compute = Compute::new(&host, &device);
-    let ids = add(&mut compute.renderer, &scene());
-    test(&mut compute, &ids, "compute");
-    drop(compute);
-    drop(device);
-    assert_silent(&host);
+    for stage in ["fragment", "compute"] {
+        let mut drawn = match stage {
+            "compute" => Drawn::compute(&host, &device),
+            _ => Drawn::fragments(&host, &device),
+        };
+        let ids = add(&mut drawn.renderer, &scene());
+        test(&mut drawn, &ids, stage);
+    }
 }
 
 /// The picture of one view, prepared just before it is recorded.
-fn plainly(drawn: &mut dyn Drawn, view: &View) -> Vec<u8> {
+fn plainly(drawn: &mut Drawn, view: &View) -> Vec<u8> {
     drawn.draw(&mut |renderer, cmd, slot| {
         // SAFETY: `cmd` is recording, and the slot's previous frame is complete.
         unsafe { renderer.prepare(cmd, slot, view) }.unwrap()
@@ -258,12 +206,9 @@ fn what_is_set_after_prepare_takes_effect_next_time() {
         });
         assert_eq!(differ(&found, &wanted), 0, "{stage}");
         let after = plainly(drawn, &view);
-        assert!(
-            differ(&after, &wanted) > 200,
-            "{stage}: nothing has changed"
-        );
+        assert!(differ(&after, &wanted) > 200, "{stage}: as before");
         // The result equals a renderer that always had this state.
-        let all = drawn.renderer();
+        let all = &mut drawn.renderer;
         all.remove(ids[0]).unwrap();
         all.remove(ids[1]).unwrap();
         let mut few = scene();
@@ -290,14 +235,13 @@ fn a_token_is_of_its_renderer_and_of_its_slots_last_frame() {
             }
         });
         let stale = stale.unwrap();
-        let renderer = drawn.renderer();
+        let renderer = &drawn.renderer;
         // SAFETY: a refused call records nothing.
         let refused = unsafe {
             let none = vk::CommandBuffer::null();
-            if stage == "compute" {
-                renderer.record_compute(none, &stale)
-            } else {
-                renderer.record(none, &stale)
+            match stage {
+                "compute" => renderer.record_compute(none, &stale),
+                _ => renderer.record(none, &stale),
             }
         };
         assert_eq!(refused.unwrap_err().kind, ErrorKind::Usage, "{stage}");
@@ -317,7 +261,7 @@ fn objects_by_the_ten_thousand() {
         object
     };
     let bytes = |count: u32| {
-        let mut compute = Compute::new(&host, &device);
+        let mut compute = Drawn::compute(&host, &device);
         let ids: Vec<_> = (0..count)
             .map(|n| compute.renderer.add(object(n)).unwrap())
             .collect();
@@ -333,10 +277,5 @@ fn objects_by_the_ten_thousand() {
     };
     let (few, many) = (bytes(2_000), bytes(20_000));
     println!("{few} and {many} bytes");
-    assert!(
-        many < 14 * few,
-        "{few} bytes of 2,000 objects, {many} of 20,000"
-    );
-    drop(device);
-    assert_silent(&host);
+    assert!(many < 14 * few);
 }

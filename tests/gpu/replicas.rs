@@ -1,7 +1,7 @@
 //! Replicas in a box give the same picture as the same number of single solids.
 
 use crate::common::passing::count;
-use crate::common::{draw, reference, scene_of, shapes};
+use crate::common::{draw, hits, placement, reference, scene_of, shapes, sized};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::MapFormat;
@@ -15,12 +15,10 @@ const ROWS: u32 = 512;
 
 fn settings(solver: Solver) -> Settings {
     Settings {
-        width: 200,
-        height: 150,
         map_rows: Some(ROWS),
         map_format: MapFormat::R32,
         solver,
-        ..Settings::exact()
+        ..sized(200, 150)
     }
 }
 
@@ -28,11 +26,8 @@ fn settings(solver: Solver) -> Settings {
 fn flipped(profile: &Profile) -> Profile {
     let turn = |points: &Vec<glam::DVec2>| {
         // Reversing the order of points keeps the orientation of loops.
-        let turned = points
-            .iter()
-            .rev()
-            .map(|p| glam::DVec2::new(p.x, 1.0 - p.y));
-        turned.collect()
+        let turned = points.iter().rev();
+        turned.map(|p| glam::DVec2::new(p.x, 1.0 - p.y)).collect()
     };
     let loops = profile.outline.loops.iter().map(turn).collect();
     Profile::new(Outline { loops }, profile.radius)
@@ -48,29 +43,17 @@ fn singles(replicas: &Object) -> Vec<Object> {
     let mut objects = Vec::new();
     for kind in 0..8u32 {
         let reflected = [0, 1, 2].map(|k| kind >> k & 1 == 1);
-        let mut object = Object::new(
-            "single",
-            if reflected[2] {
-                upturned.clone()
-            } else {
-                upright.clone()
-            },
-        );
+        let profile = if reflected[2] { &upturned } else { &upright };
+        let mut object = Object::new("single", profile.clone());
         object.offset = replicas.offset;
         object.texturing = replicas.texturing.clone();
-        object.axis = [0, 1].map(|k| {
-            if reflected[k] {
-                1.0 - replicas.axis[k]
-            } else {
-                replicas.axis[k]
-            }
+        object.axis = [0, 1].map(|k| match reflected[k] {
+            true => 1.0 - replicas.axis[k],
+            false => replicas.axis[k],
         });
         for cell in 0..COUNT.iter().product::<u32>() {
-            let at = [
-                cell % COUNT[0],
-                cell / COUNT[0] % COUNT[1],
-                cell / (COUNT[0] * COUNT[1]),
-            ];
+            let [nx, ny, _] = COUNT;
+            let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
             if (0..3).any(|k| (replicas.mirror[k] && at[k] % 2 == 1) != reflected[k]) {
                 continue;
             }
@@ -124,13 +107,11 @@ fn cases() -> Vec<(&'static str, Scene)> {
         change(object);
         scene
     };
-    let oblique = DVec3::new(1.35, 0.8, 1.25);
+    let mirrored = |o: &mut Object| o.mirror = [true; 3];
+    let [oblique, within] = [[1.35, 0.8, 1.25], [0.17, 0.16, 0.5]].map(DVec3::from_array);
     vec![
         ("plain", case(shapes::vase(), oblique, &|_| {})),
-        (
-            "mirrored",
-            case(shapes::vase(), oblique, &|o| o.mirror = [true; 3]),
-        ),
+        ("mirrored", case(shapes::vase(), oblique, &mirrored)),
         (
             "mirrored, axis off the middle, cut by their cells",
             case(shapes::torus(), DVec3::new(-1.2, 0.9, -0.4), &|o| {
@@ -150,16 +131,10 @@ fn cases() -> Vec<(&'static str, Scene)> {
             "beveled, turned and stretched",
             case(shapes::jewel(), DVec3::new(1.4, -1.4, 1.5), &|o| {
                 o.offset.bevel = 0.2;
-                o.placement =
-                    crate::common::placement([0.1, 0.0, 0.0], [0.2, -0.1, 0.4], [1.1, 0.8, 1.2]);
+                o.placement = placement([0.1, 0.0, 0.0], [0.2, -0.1, 0.4], [1.1, 0.8, 1.2]);
             }),
         ),
-        (
-            "between them",
-            case(shapes::sphere(), DVec3::new(0.17, 0.16, 0.5), &|o| {
-                o.mirror = [true; 3]
-            }),
-        ),
+        ("between them", case(shapes::sphere(), within, &mirrored)),
     ]
 }
 
@@ -175,7 +150,7 @@ fn replicas_are_as_many_single_solids() {
 
         let texel = 1.0 / f64::from(ROWS);
         let truth = reference(&scene, &settings(Solver::DEFAULT));
-        let hits = (0..truth.pixels()).filter(|&i| truth.hits(i)).count();
+        let hits = hits(&truth);
         assert!(hits > 4000, "{name}: {hits}");
         for solver in [Solver::Live, Solver::Quadric] {
             let together = draw(&scene, &settings(solver));
@@ -204,10 +179,7 @@ fn textures_are_laid_on_each_replica() {
     let (_, scene) = cases().remove(0);
     let mut alone = scene.clone();
     alone.objects = singles(&scene.objects[0]);
-    let (together, apart) = (
-        draw(&scene, &settings(Solver::DEFAULT)),
-        draw(&alone, &settings(Solver::DEFAULT)),
-    );
+    let [together, apart] = [&scene, &alone].map(|s| draw(s, &settings(Solver::DEFAULT)));
     let both: Vec<usize> = (0..together.pixels())
         .filter(|&i| together.hits(i) && apart.hits(i))
         .collect();
@@ -216,12 +188,8 @@ fn textures_are_laid_on_each_replica() {
         let round = (a[0] - b[0]).abs();
         round.min(1.0 - round) > 1e-3 || (a[1] - b[1]).abs() > 1e-3
     });
-    let off = off.count();
-    assert!(
-        both.len() > 4000 && off <= both.len() / 500,
-        "{off} of {}",
-        both.len()
-    );
+    let (off, all) = (off.count(), both.len());
+    assert!(all > 4000 && off <= all / 500, "{off} of {all}");
     // The coordinates of a single solid in the whole box would run once from 0 to 1 over its
     // height.
     let low = both.iter().filter(|&&i| together.uv[i][1] < 0.3).count();

@@ -1,12 +1,15 @@
 //! Shadows between solids: each follows the caster's own offset and replicas, whatever the
 //! receiver.
 
-use crate::common::{assert_sound, draw, placement, reference, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{
+    assert_sound, draw, drawn_by, from_boxes, in_compute, placement, reference, shapes, sized,
+};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
+use revmap::settings::{Settings, Solver};
 use revmap_searches::CIRCLE;
 use std::sync::Arc;
 
@@ -46,16 +49,12 @@ fn cases() -> Vec<(&'static str, Scene)> {
         o.offset.chamfer = 0.8;
     };
     let replicas = |o: &mut Object| o.repeat = [2, 2, 1];
+    let extended = |o: &mut Object| o.offset.extend = 0.08;
+    let inset = |o: &mut Object| o.offset.extend = -0.15;
     vec![
         ("plain", scene(vec![caster(shapes::jewel(), &|_| {})])),
-        (
-            "extended",
-            scene(vec![caster(shapes::jewel(), &|o| o.offset.extend = 0.08)]),
-        ),
-        (
-            "inset",
-            scene(vec![caster(shapes::sphere(), &|o| o.offset.extend = -0.15)]),
-        ),
+        ("extended", scene(vec![caster(shapes::jewel(), &extended)])),
+        ("inset", scene(vec![caster(shapes::sphere(), &inset)])),
         ("beveled", scene(vec![caster(shapes::cone(), &beveled)])),
         ("replicas", scene(vec![caster(shapes::sphere(), &replicas)])),
         ("beveled, and replicas beside", {
@@ -85,42 +84,23 @@ fn otherwise_lit(a: &Frame, b: &Frame) -> (usize, usize) {
 #[test]
 fn shadows_are_the_references() {
     for (name, scene) in cases() {
-        let settings = Settings {
-            width: 240,
-            height: 180,
-            ..Settings::exact()
-        };
+        let settings = sized(240, 180);
         let truth = reference(&scene, &settings);
         for solver in [Solver::Live, Solver::Quadric] {
             let settings = Settings { solver, ..settings };
             let frame = draw(&scene, &settings);
             assert_sound(&frame, name);
             let (off, dark) = otherwise_lit(&truth, &frame);
-            println!(
-                "{name}, {}: {off} pixels lit otherwise, {dark} dark",
-                solver.name()
-            );
+            let what = format!("{name}, {solver}: {off} pixels lit otherwise, {dark} dark");
+            println!("{what}");
             // Shadow edges are within a pixel of their place (rays start a texel and a half off the
             // surface), and `live` rounds the table's rim. A caster without its offset or its
             // replicas changes a quarter of its shadow or more.
-            assert!(dark > 1500, "{name}: {dark}");
-            assert!(
-                8 * off <= dark,
-                "{name}, {}: {off} of {dark}",
-                solver.name()
-            );
-            // Cells and lists of patches change where rays start; culled tiles count no steps.
-            let fragment = Settings {
-                proxy_min_pixels: u32::MAX,
-                occlusion_culling: false,
-                ..settings
-            };
-            let compute = Settings {
-                stage: DrawStage::Compute,
-                ..fragment
-            };
-            let difference = draw(&scene, &fragment).first_difference(&draw(&scene, &compute));
-            assert_eq!(difference, None, "{name}, {}", solver.name());
+            assert!(dark > 1500 && 8 * off <= dark, "{what}");
+            let fragment = from_boxes(settings);
+            let compute = draw(&scene, &in_compute(fragment));
+            let difference = draw(&scene, &fragment).first_difference(&compute);
+            assert_eq!(difference, None, "{what}");
         }
     }
 }
@@ -149,11 +129,7 @@ fn soft_shadows_are_the_references() {
     for (name, mut scene) in cases() {
         scene.objects.iter_mut().for_each(|o| o.color = [0.8; 3]);
         scene.lights[0].radius = 6.0;
-        let settings = Settings {
-            width: 160,
-            height: 120,
-            ..Settings::exact()
-        };
+        let settings = sized(160, 120);
         scene.shadow = Shadow::Off;
         let lit = reference(&scene, &settings);
         scene.shadow = Shadow::Soft;
@@ -173,10 +149,8 @@ fn soft_shadows_are_the_references() {
             // Rays of `live` begin a texel and a half off the surface.
             let most = if solver == "live" { 0.1 } else { 0.06 };
             assert!(error < most, "{name}, {solver}: {error}");
-            assert!(
-                hard > 3.0 * error && small > 2.0 * error,
-                "{name}, {solver}"
-            );
+            assert!(hard > 3.0 * error, "{name}, {solver}");
+            assert!(small > 2.0 * error, "{name}, {solver}");
         }
     }
 }
@@ -207,17 +181,8 @@ fn every_column_of_a_tile_is_lit_alike() {
         scene.shadow = shadow;
         for (width, height) in [(161, 123), (203, 77)] {
             for solver in [CIRCLE, Solver::Live, Solver::Quadric, Solver::Exact] {
-                let fragment = Settings {
-                    width,
-                    height,
-                    solver,
-                    ..Settings::exact()
-                };
-                let compute = Settings {
-                    stage: DrawStage::Compute,
-                    ..fragment
-                };
-                let (one, other) = (draw(&scene, &fragment), draw(&scene, &compute));
+                let [one, other] =
+                    STAGES.map(|stage| draw(&scene, &drawn_by((width, height), stage, solver)));
                 let columns = otherwise_by_column(&one, &other);
                 let name = format!("{shadow:?}, {width} x {height}, {}", solver.name());
                 // Rays of `live` start elsewhere in the two stages, which is visible at a

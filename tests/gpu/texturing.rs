@@ -1,12 +1,13 @@
 //! Texture coordinates compared with their formulas, the seam, the colours of the reference.
 
-use crate::common::{draw, eye, placement, reference, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{draw, eye, placement, reference, scene_of, shapes, sized};
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::maps::{ArcLength, ColorMap, MapFormat, Projection};
+use revmap::maps::{ArcLength, ColorMap, DisplacementMap, MapFormat, Projection};
 use revmap::profile::Profile;
-use revmap::scene::{CameraFrame, Scene};
-use revmap::settings::{DrawStage, Settings};
+use revmap::scene::{BumpForm, CameraFrame, Scene};
+use revmap::settings::Settings;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -15,10 +16,8 @@ const HALF: [f64; 2] = [0.5 / 720.0, 0.5 / 360.0];
 
 fn settings() -> Settings {
     Settings {
-        width: 120,
-        height: 90,
         map_format: MapFormat::R32,
-        ..Settings::exact()
+        ..sized(120, 90)
     }
 }
 
@@ -70,7 +69,7 @@ fn coordinates_are_their_formulas() {
             ("torus", shapes::torus()),
         ];
         for (name, profile) in profiles {
-            let arc = ArcLength::new(&profile).unwrap();
+            let lengths = ArcLength::new(&profile).unwrap();
             let mut scene = scene_of(profile, eye(0.0, 1.7));
             for (k, view) in views().into_iter().enumerate() {
                 let axis = if k == 0 { [0.44, 0.53] } else { [0.5, 0.5] };
@@ -83,18 +82,12 @@ fn coordinates_are_their_formulas() {
                     p.x -= axis[0] - 0.5;
                     p.y -= axis[1] - 0.5;
                     let [u, v] = frame.uv[index].map(f64::from);
-                    let wanted = formula(projection, &arc, p, axis);
+                    let wanted = formula(projection, &lengths, p, axis);
                     let planar = projection == Projection::Planar;
-                    let du = if planar {
-                        (u - wanted[0]).abs()
-                    } else {
-                        round(u - wanted[0])
-                    };
-                    let dv = if projection == Projection::Arc {
-                        round(v - wanted[1])
-                    } else {
-                        (v - wanted[1]).abs()
-                    };
+                    let (du, dv) = (u - wanted[0], v - wanted[1]);
+                    let du = if planar { du.abs() } else { round(du) };
+                    let arc = projection == Projection::Arc;
+                    let dv = if arc { round(dv) } else { dv.abs() };
                     let r = p.x.hypot(p.y);
                     // The 24 bits of the distance do not determine the azimuth closer to the axis
                     // than this.
@@ -109,11 +102,9 @@ fn coordinates_are_their_formulas() {
                 }
             }
         }
-        println!("{projection:?}: {all} pixels, {seam} at the seam, {pole} at a pole");
-        assert!(
-            all >= 1000 && seam >= 100 && pole >= 50,
-            "{projection:?}: {all}, {seam}, {pole}"
-        );
+        let what = format!("{projection:?}: {all} pixels, {seam} at the seam, {pole} at a pole");
+        println!("{what}");
+        assert!(all >= 1000 && seam >= 100 && pole >= 50, "{what}");
     }
 }
 
@@ -135,6 +126,16 @@ fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
     Arc::new(ColorMap::from_texels(width, height, texels).unwrap())
 }
 
+/// The slopes of a square of heights.
+fn slopes(side: u32, height: impl Fn(f64, f64) -> f64) -> Arc<DisplacementMap> {
+    let at = |k: u32| f64::from(k) / f64::from(side);
+    let heights: Vec<f32> = (0..side * side)
+        .map(|k| height(at(k % side), at(k / side)) as f32)
+        .collect();
+    let map = DisplacementMap::from_heights(side, side, &heights, Default::default());
+    Arc::new(map.unwrap())
+}
+
 fn srgb(linear: f32) -> f64 {
     revmap::frame::srgb_from_linear(f64::from(linear))
 }
@@ -143,7 +144,7 @@ fn srgb(linear: f32) -> f64 {
 /// levels are read.
 #[test]
 fn the_seam_is_not_seen() {
-    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+    for stage in STAGES {
         for repeat in [1.0, 5.0] {
             let mut scene = scene_of(shapes::sphere(), eye(0.0, 1.7));
             scene.objects[0].texturing.color_map = Some(waves(1024, 512, 4.0));
@@ -153,15 +154,12 @@ fn the_seam_is_not_seen() {
                 // Four waves around: a quarter turn gives the same picture without the seam.
                 scene.camera.eye = DVec3::new(-side, side - 1.0, 0.05).normalize() * 1.3;
                 scene.camera.eye.z += 0.5;
-                draw(
-                    &scene,
-                    &Settings {
-                        stage,
-                        width: 160,
-                        height: 120,
-                        ..settings()
-                    },
-                )
+                let settings = Settings {
+                    map_format: MapFormat::R32,
+                    stage,
+                    ..sized(160, 120)
+                };
+                draw(&scene, &settings)
             };
             let (with, without) = (colors(1.0), colors(0.0));
             let mut worst: f64 = 0.0;
@@ -186,26 +184,12 @@ fn the_seam_is_not_seen() {
 /// opposite direction there.
 #[test]
 fn bumps_within_a_cavity_are_the_references() {
-    let can = [
-        [0.0, 0.05],
-        [0.45, 0.05],
-        [0.45, 0.95],
-        [0.0, 0.95],
-        [0.0, 0.85],
-        [0.35, 0.85],
-        [0.35, 0.15],
-        [0.0, 0.15],
-    ];
-    let heights: Vec<f32> = (0..32 * 32)
-        .map(|k| (0.5 + 0.3 * (TAU * 3.0 * f64::from(k / 32) / 32.0).sin()) as f32)
-        .collect();
-    let slopes = revmap::maps::DisplacementMap::from_heights(32, 32, &heights, Default::default());
-    let slopes = Arc::new(slopes.unwrap());
-    for projection in [
-        Projection::Cylindrical,
-        Projection::Spherical,
-        Projection::Arc,
-    ] {
+    let outside = [[0.0, 0.05], [0.45, 0.05], [0.45, 0.95], [0.0, 0.95]];
+    let inside = [[0.0, 0.85], [0.35, 0.85], [0.35, 0.15], [0.0, 0.15]];
+    let can = [outside, inside].concat();
+    let slopes = slopes(32, |_, y| 0.5 + 0.3 * (TAU * 3.0 * y).sin());
+    let solid = Projection::NAMES.map(|named| named.1).into_iter();
+    for projection in solid.filter(|&p| p != Projection::Planar) {
         let profile = Profile::polygon(&can, 0.5).unwrap();
         let mut scene = scene_of(profile, DVec3::new(-0.15, 0.02, 0.5));
         scene.camera.target = DVec3::new(0.35, 0.0, 0.5);
@@ -224,11 +208,9 @@ fn bumps_within_a_cavity_are_the_references() {
             .collect();
         angles.sort_by(f64::total_cmp);
         let (count, p90) = (angles.len(), angles[angles.len() * 9 / 10]);
-        println!("{projection:?}: {count} pixels, p90 {p90:.3} degrees");
-        assert!(
-            count == truth.pixels() && p90 < 1.0,
-            "{projection:?}: {count}, {p90}"
-        );
+        let what = format!("{projection:?}: {count} pixels, p90 {p90:.3} degrees");
+        println!("{what}");
+        assert!(count == truth.pixels() && p90 < 1.0, "{what}");
     }
 }
 
@@ -236,16 +218,11 @@ fn bumps_within_a_cavity_are_the_references() {
 /// in every projection.
 #[test]
 fn colours_and_bumps_are_the_references() {
-    let heights: Vec<f32> = (0..64 * 64)
-        .map(|k| {
-            let (x, y) = (f64::from(k % 64) / 64.0, f64::from(k / 64) / 64.0);
-            (0.5 + 0.2 * (TAU * 2.0 * x).sin() + 0.2 * (TAU * 3.0 * y).cos()) as f32
-        })
-        .collect();
-    let slopes = revmap::maps::DisplacementMap::from_heights(64, 64, &heights, Default::default());
-    let slopes = Arc::new(slopes.unwrap());
+    let slopes = slopes(64, |x, y| {
+        0.5 + 0.2 * (TAU * 2.0 * x).sin() + 0.2 * (TAU * 3.0 * y).cos()
+    });
     for (_, projection) in Projection::NAMES {
-        for (form, bump) in [("surface-gradient", 0.03), ("papers", 0.01)] {
+        for (form, bump) in [(BumpForm::SurfaceGradient, 0.03), (BumpForm::Papers, 0.01)] {
             // The view avoids places where the texture is squeezed into lines: the reference has no
             // smaller mip levels.
             let planar = projection == Projection::Planar;
@@ -258,11 +235,7 @@ fn colours_and_bumps_are_the_references() {
             look.color_map = Some(waves(64, 32, 3.0));
             look.displacement_map = Some(slopes.clone());
             look.bump = bump;
-            look.bump_form = revmap::scene::BumpForm::NAMES
-                .iter()
-                .find(|n| n.0 == form)
-                .unwrap()
-                .1;
+            look.bump_form = form;
             look.projection = projection;
             look.repeat = [2.0, 1.0];
             let truth = reference(&scene, &settings());
@@ -270,13 +243,8 @@ fn colours_and_bumps_are_the_references() {
             let (mut angles, mut colors) = (Vec::new(), Vec::new());
             for i in (0..truth.pixels()).filter(|&i| truth.hits(i) && frame.hits(i)) {
                 let normal = |f: &Frame| DVec3::from_array(f.shading_normal[i].map(f64::from));
-                angles.push(
-                    normal(&truth)
-                        .dot(normal(&frame))
-                        .clamp(-1.0, 1.0)
-                        .acos()
-                        .to_degrees(),
-                );
+                let cosine = normal(&truth).dot(normal(&frame)).clamp(-1.0, 1.0);
+                angles.push(cosine.acos().to_degrees());
                 let d = |c: usize| (srgb(truth.albedo[i][c]) - srgb(frame.albedo[i][c])).abs();
                 colors.push(d(0).max(d(1)).max(d(2)));
             }
@@ -287,7 +255,7 @@ fn colours_and_bumps_are_the_references() {
             let half = (part(&mut angles, 50), part(&mut colors, 50));
             let most = (part(&mut angles, 75), part(&mut colors, 75));
             let what = format!(
-                "{projection:?}, {form}: {} pixels, {half:.4?} {most:.4?}",
+                "{projection:?}, {form:?}: {} pixels, {half:.4?} {most:.4?}",
                 angles.len()
             );
             println!("{what}");

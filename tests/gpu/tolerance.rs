@@ -1,20 +1,18 @@
 //! Levels of surfaces: errors stay below the tolerance, and pictures depend only on the view.
 
-use crate::common::{device, draw, eye, placement, reference, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{
+    device, draw, drawn_by, eye, next_frame, placement, reference, scene_of, shapes, updated,
+};
 use revmap::gpu::{Device, INSTANCE_BYTES, Offscreen};
 use revmap::scene::{Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Tolerance};
+use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
 use revmap_lab::compare::pixel_errors;
-
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
 fn settings(stage: DrawStage, pixels: f64) -> Settings {
     Settings {
-        width: 320,
-        height: 240,
-        stage,
         tolerance: Tolerance::new(pixels).unwrap(),
-        ..Settings::default()
+        ..drawn_by((320, 240), stage, Solver::DEFAULT)
     }
 }
 
@@ -38,8 +36,7 @@ fn errors_stay_below_the_tolerance() {
                 for pixels in [0.05, 0.25, 2.0] {
                     let settings = settings(stage, pixels);
                     let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
-                    offscreen.draw().unwrap();
-                    let frame = offscreen.read().unwrap();
+                    let frame = next_frame(&mut offscreen);
                     let found = pixel_errors(&scene, &truth, &frame).unwrap();
                     let cost = offscreen.object_costs()[0];
                     let most = cost.error_pixels.unwrap();
@@ -71,29 +68,20 @@ fn a_picture_follows_from_the_view_alone() {
         };
         let mut offscreen = Offscreen::new(device(), &near, &settings).unwrap();
         let mut drawn = |scene: &Scene| {
-            offscreen.update(scene).unwrap();
-            offscreen.draw().unwrap();
-            let frame = offscreen.read().unwrap();
-            (
-                frame,
-                levels(&offscreen)[0].unwrap(),
-                offscreen.rebuild_count(),
-            )
+            let frame = updated(&mut offscreen, scene);
+            let level = levels(&offscreen)[0].unwrap();
+            (frame, level, offscreen.rebuild_count())
         };
         let (first, fine, made) = drawn(&near);
-        assert_eq!(
-            made, 1,
-            "the exact surface is not made where it is not drawn"
-        );
+        // The exact surface is not made where it is not drawn.
+        assert_eq!(made, 1);
         let (away, coarse, _) = drawn(&far);
         assert!(coarse > fine, "{fine} near, {coarse} far");
         let (again, level, made) = drawn(&near);
         assert!(again == first && level == fine && made == 2);
         assert_eq!(drawn(&far).2, 2);
-        assert!(
-            away == draw(&far, &settings),
-            "another picture of a first frame"
-        );
+        let fresh = draw(&far, &settings);
+        assert!(away == fresh, "another picture of a first frame");
     }
 }
 

@@ -3,9 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Host, lent, open};
-use crate::common::{device, eye, scene_of, shapes};
-use crate::embedding::{assert_silent, three};
+use crate::common::host::{Checked, Host, lent, open, open_with};
+use crate::common::{device, eye, next_frame, scene_of, shapes, updated};
+use crate::embedding::three;
 use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
@@ -57,11 +57,22 @@ fn work(host: &Host, raw: &ash::Device, settings: &Settings) -> revmap::Result<(
     Ok(())
 }
 
+/// The layer, and a host with the layer above its device.
+fn layered() -> (Layer, Checked, ash::Device) {
+    let (layer, host) = (Layer::take(), open());
+    let raw = layer.device(&host.instance, &host.device);
+    (layer, host, raw)
+}
+
+/// The system's loader, as in the host.
+fn entry() -> ash::Entry {
+    // SAFETY: a plain load.
+    unsafe { ash::Entry::load() }.unwrap()
+}
+
 #[test]
 fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
-    let layer = Layer::take();
-    let host = open();
-    let raw = layer.device(&host.instance, &host.device);
+    let (layer, host, raw) = layered();
     for (stage, solver) in [
         (DrawStage::Fragment, Solver::Exact),
         (DrawStage::Compute, Solver::Live),
@@ -74,45 +85,32 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
         work(&host, &raw, &settings).unwrap();
         let all = layer.made();
         assert!(all > 50, "{stage:?}: {all} calls");
-        assert_eq!(
-            layer.alive(),
-            0,
-            "{stage:?}: left alive without any failure"
-        );
+        assert_eq!(layer.alive(), 0, "{stage:?}: left without any failure");
         let mut seen = std::collections::BTreeSet::new();
         for n in 0..all {
             layer.fail_at(n);
             let result = work(&host, &raw, &settings);
             let failed = layer.failed().unwrap();
             let error = result.expect_err(failed);
-            assert_eq!(
-                error.kind,
-                ErrorKind::OutOfDeviceMemory,
-                "{failed}: {error}"
-            );
+            let kind = ErrorKind::OutOfDeviceMemory;
+            assert_eq!(error.kind, kind, "{failed}: {error}");
             let message = error.to_string();
             // Errors of the allocator's own calls have its wording.
             let named = message.contains(failed) || message.contains("memory");
-            assert!(named, "{stage:?}, call {n}, {failed}: {message}");
-            assert_eq!(
-                layer.alive(),
-                0,
-                "{stage:?}, call {n}, {failed}: left alive"
-            );
+            let what = format!("{stage:?}, call {n}, {failed}: {message}");
+            assert!(named, "{what}");
+            assert_eq!(layer.alive(), 0, "{what}, left alive");
             seen.insert(failed);
         }
         println!("{stage:?}: {all} calls of {} kinds", seen.len());
         assert!(seen.len() > 15, "{seen:?}");
     }
-    assert_silent(&host);
 }
 
 /// A renderer works again after a failed update, once memory is available and an update succeeds.
 #[test]
 fn a_renderer_survives_a_failed_update() {
-    let layer = Layer::take();
-    let host = open();
-    let raw = layer.device(&host.instance, &host.device);
+    let (layer, host, raw) = layered();
     let device = borrow(&host, &raw, &host.instance).unwrap();
     let settings = settings(DrawStage::Fragment);
     let [before, after] = scenes();
@@ -132,19 +130,14 @@ fn a_renderer_survives_a_failed_update() {
         failures += 1;
     }
     assert!(failures > 0);
-    drawn.update(&after).unwrap();
-    drawn.draw().unwrap();
-    assert_same(&drawn.read().unwrap(), &wanted);
+    assert_same(&updated(&mut drawn, &after), &wanted);
     drop((drawn, device));
     assert_eq!(layer.alive(), 0);
-    assert_silent(&host);
 }
 
 #[test]
 fn a_lost_device_is_an_error_in_every_later_frame() {
-    let layer = Layer::take();
-    let host = open();
-    let raw = layer.device(&host.instance, &host.device);
+    let (layer, host, raw) = layered();
     for told_by in ["vkQueueSubmit", "vkWaitForFences"] {
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
             let device = borrow(&host, &raw, &host.instance).unwrap();
@@ -157,10 +150,8 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
                 let error = drawn.draw().unwrap_err();
                 let text = error.to_string();
                 assert_eq!(error.kind, ErrorKind::DeviceLost, "{text}");
-                assert!(
-                    text.contains(told_by) && text.contains("the device was lost"),
-                    "{text}"
-                );
+                let told = text.contains(told_by) && text.contains("the device was lost");
+                assert!(told, "{text}");
                 assert!(drawn.read().is_err());
             }
             drop((drawn, device));
@@ -168,15 +159,12 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
             assert_eq!(layer.alive(), 0, "{told_by}, {stage:?}");
         }
     }
-    assert_silent(&host);
 }
 
 /// A loss detected by the allocator is reported as a lost device, not as lack of memory.
 #[test]
 fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
-    let layer = Layer::take();
-    let host = open();
-    let raw = layer.device(&host.instance, &host.device);
+    let (layer, host, raw) = layered();
     let device = borrow(&host, &raw, &host.instance).unwrap();
     layer.lose(Some("vkAllocateMemory"));
     let settings = settings(DrawStage::Fragment);
@@ -188,95 +176,55 @@ fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
     drop(device);
     layer.lose(None);
     assert_eq!(layer.alive(), 0);
-    assert_silent(&host);
 }
 
 fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
-    let mut drawn = Offscreen::new(device, scene, settings).unwrap();
-    drawn.draw().unwrap();
-    drawn.read().unwrap()
+    next_frame(&mut Offscreen::new(device, scene, settings).unwrap())
 }
 
 #[track_caller]
 fn assert_same(a: &Frame, b: &Frame) {
     assert_eq!(a.pixels(), b.pixels());
     let bits = |frame: &Frame, i| frame.pixel(i).map(f32::to_bits);
-    let differ = (0..a.pixels())
-        .filter(|&i| bits(a, i) != bits(b, i))
-        .count();
-    assert_eq!(differ, 0, "pixels differ");
+    let differ = (0..a.pixels()).filter(|&i| bits(a, i) != bits(b, i));
+    assert_eq!(differ.count(), 0, "pixels differ");
 }
 
 /// A device without a required feature is refused, and the error names the feature.
 #[test]
 fn a_device_without_what_is_needed_is_refused() {
-    let layer = Layer::take();
-    let host = open();
-    // SAFETY: the system's loader, as in the host.
-    let entry = unsafe { ash::Entry::load() }.unwrap();
-    let formats = [
-        (vk::Format::R16_SFLOAT, "sampled 16-bit float images"),
-        (vk::Format::R32_SFLOAT, "sampled 32-bit float images"),
-        (
-            vk::Format::R32G32B32A32_SFLOAT,
-            "render targets and storage images",
-        ),
-        (vk::Format::D32_SFLOAT, "a 32-bit float depth buffer"),
+    let (layer, host, entry) = (Layer::take(), open(), entry());
+    const HALF: Option<vk::Format> = Some(vk::Format::R16_SFLOAT);
+    const FLOAT: Option<vk::Format> = Some(vk::Format::R32_SFLOAT);
+    const FLOATS: Option<vk::Format> = Some(vk::Format::R32G32B32A32_SFLOAT);
+    const DEPTH: Option<vk::Format> = Some(vk::Format::D32_SFLOAT);
+    type Change = fn(&mut Mask);
+    let lacks: [(Change, &str); 7] = [
+        (|m| m.format = HALF, "sampled 16-bit float images"),
+        (|m| m.format = FLOAT, "sampled 32-bit float images"),
+        (|m| m.format = FLOATS, "render targets and storage images"),
+        (|m| m.format = DEPTH, "a 32-bit float depth buffer"),
+        (|m| m.version = true, "Vulkan 1.2"),
+        (|m| m.stores = true, "fragmentStoresAndAtomics"),
+        (|m| m.compute = true, "a queue for graphics and compute"),
     ];
-    let mut masks = formats
-        .map(|(format, name)| {
-            let format = Some(format);
-            (
-                Mask {
-                    format,
-                    ..Mask::default()
-                },
-                name,
-            )
-        })
-        .to_vec();
-    masks.push((
-        Mask {
-            version: true,
-            ..Mask::default()
-        },
-        "Vulkan 1.2",
-    ));
-    masks.push((
-        Mask {
-            stores: true,
-            ..Mask::default()
-        },
-        "fragmentStoresAndAtomics",
-    ));
-    masks.push((
-        Mask {
-            compute: true,
-            ..Mask::default()
-        },
-        "a queue for graphics and compute",
-    ));
-    for (mask, lack) in masks {
+    for (change, lack) in lacks {
+        let mut mask = Mask::default();
+        change(&mut mask);
         let instance = layer.instance(&entry, &host.instance, mask);
         let Err(error) = borrow(&host, &host.device, &instance) else {
             panic!("taken without {lack}");
         };
         assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
-        assert!(
-            error.to_string().contains(&format!("lacks {lack}")),
-            "{error}"
-        );
+        let named = error.to_string().contains(&format!("lacks {lack}"));
+        assert!(named, "{error}");
     }
-    assert_silent(&host);
 }
 
 /// The report on hulls matches the drawing: no hulls on devices with coarse sub-pixel precision.
 #[test]
 fn the_report_and_the_features_asked_for_agree() {
-    let layer = Layer::take();
-    let host = open();
-    // SAFETY: as above.
-    let entry = unsafe { ash::Entry::load() }.unwrap();
+    let (layer, host, entry) = (Layer::take(), open(), entry());
     for sub_pixels in [false, true] {
         let mask = Mask {
             sub_pixels,
@@ -292,16 +240,12 @@ fn the_report_and_the_features_asked_for_agree() {
         assert_eq!(hulls.1, if clips { "yes" } else { "no" });
         assert!(!(clips && sub_pixels));
     }
-    assert_silent(&host);
 }
 
 /// A device without optional features draws the same picture.
 #[test]
 fn a_device_without_what_is_optional_draws_the_same() {
-    let layer = Layer::take();
-    let host = open();
-    // SAFETY: as above.
-    let entry = unsafe { ash::Entry::load() }.unwrap();
+    let (layer, host, entry) = (Layer::take(), open(), entry());
     let mut scene = three();
     scene.shadow = Shadow::Hard;
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
@@ -312,20 +256,14 @@ fn a_device_without_what_is_optional_draws_the_same() {
         };
         let whole = borrow(&host, &host.device, &host.instance).unwrap();
         let wanted = picture(&whole, &scene, &settings);
-        for mask in [
-            Mask {
-                anisotropy: true,
-                ..Mask::default()
-            },
-            Mask {
-                timestamps: true,
-                ..Mask::default()
-            },
-            Mask {
-                varyings: true,
-                ..Mask::default()
-            },
-        ] {
+        let changes: [fn(&mut Mask); 3] = [
+            |m| m.anisotropy = true,
+            |m| m.timestamps = true,
+            |m| m.varyings = true,
+        ];
+        for change in changes {
+            let mut mask = Mask::default();
+            change(&mut mask);
             let instance = layer.instance(&entry, &host.instance, mask);
             let poorer = borrow(&host, &host.device, &instance).unwrap();
             let mut drawn = Offscreen::new(&poorer, &scene, &settings).unwrap();
@@ -333,11 +271,7 @@ fn a_device_without_what_is_optional_draws_the_same() {
             assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
             if mask.varyings && stage == DrawStage::Fragment {
                 // Cells need more varyings, so tiles are drawn; the visible solids are the same.
-                let paths = drawn.draw_paths();
-                assert!(
-                    paths.iter().all(|path| *path == DrawPath::Tiles),
-                    "{paths:?}"
-                );
+                assert_eq!(drawn.draw_paths(), [DrawPath::Tiles; 3]);
                 let frame = drawn.read().unwrap();
                 let differ = |&i: &usize| frame.hits(i) != wanted.hits(i);
                 let differ = (0..frame.pixels()).filter(differ).count();
@@ -347,19 +281,13 @@ fn a_device_without_what_is_optional_draws_the_same() {
             }
         }
     }
-    assert_silent(&host);
 }
 
 /// Colour in a pass needs no feature at all.
 #[test]
 fn colour_is_drawn_on_a_device_opened_without_features() {
     let _layer = Layer::take();
-    let host = Host::open(true, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, vk::PhysicalDeviceFeatures::default()))
-    })
-    .unwrap();
+    let host = open_with(|_| vk::PhysicalDeviceFeatures::default());
     let bare = borrow(&host, &host.device, &host.instance).unwrap();
     let settings = Settings {
         planes: Planes::Color,
@@ -369,21 +297,17 @@ fn colour_is_drawn_on_a_device_opened_without_features() {
     let mut crowd = three();
     for (number, object) in (0..).zip(&mut crowd.objects) {
         let base = object.placement;
-        let of = |n: u32| Placement {
-            position: base.position
-                + DVec3::new(-0.4 * f64::from(n), 0.13 * f64::from((n + number) % 9), 0.0),
-            ..base
+        let of = |n: u32| {
+            let by = [-0.4 * f64::from(n), 0.13 * f64::from((n + number) % 9), 0.0];
+            let position = base.position + DVec3::from_array(by);
+            Placement { position, ..base }
         };
         object.instances = (0..70).map(of).collect();
     }
     for scene in [&three(), &crowd] {
-        assert_same(
-            &picture(&bare, scene, &settings),
-            &picture(device(), scene, &settings),
-        );
+        let wanted = picture(device(), scene, &settings);
+        assert_same(&picture(&bare, scene, &settings), &wanted);
     }
-    drop(bare);
-    assert_silent(&host);
     device().check().unwrap();
 }
 
@@ -401,8 +325,7 @@ fn renderers_on_one_device_do_not_disturb_each_other() {
                 for _ in 0..4 {
                     let mut drawn = Offscreen::new(device(), scene, &settings(*stage)).unwrap();
                     for _ in 0..4 {
-                        drawn.draw().unwrap();
-                        assert_same(&drawn.read().unwrap(), wanted);
+                        assert_same(&next_frame(&mut drawn), wanted);
                     }
                 }
             });
@@ -414,9 +337,7 @@ fn renderers_on_one_device_do_not_disturb_each_other() {
 /// A thousand renderers in sequence on one device. No object made by a renderer outlives it.
 #[test]
 fn a_thousand_renderers_leave_nothing_behind() {
-    let layer = Layer::take();
-    let host = open();
-    let raw = layer.device(&host.instance, &host.device);
+    let (layer, host, raw) = layered();
     let device = borrow(&host, &raw, &host.instance).unwrap();
     let scenes = scenes();
     let mut alive = [0; 2];
@@ -438,11 +359,8 @@ fn a_thousand_renderers_leave_nothing_behind() {
             alive[usize::from(cycle == 999)] = layer.alive();
         }
     }
-    assert_eq!(
-        alive[0], alive[1],
-        "made and not destroyed after 4 renderers and after 1000"
-    );
+    // Made and not destroyed after 4 renderers and after 1000.
+    assert_eq!(alive[0], alive[1]);
     drop(device);
     assert_eq!(layer.alive(), 0);
-    assert_silent(&host);
 }

@@ -1,30 +1,22 @@
 //! A renderer from update to update: a failed update leaves nothing half done, and unchanged parts
 //! are not made again.
 
-use crate::common::{device, draw, eye, placement, scene_of, shapes};
+use crate::common::ways::STAGES;
+use crate::common::{
+    device, draw, drawn_by, eye, next_frame, placement, scene_of, shapes, updated,
+};
 use revmap::error::ErrorKind;
-use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath, Offscreen};
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_searches::{CIRCLE, CONE};
 
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
-
 fn settings(stage: DrawStage) -> Settings {
     Settings {
-        width: 160,
-        height: 120,
         proxy_min_pixels: 0, // a proxy for solids of any size
-        stage,
-        ..Settings::exact()
+        ..drawn_by((160, 120), stage, Solver::DEFAULT)
     }
-}
-
-fn drawn(renderer: &mut Offscreen) -> Frame {
-    renderer.draw().unwrap();
-    renderer.read().unwrap()
 }
 
 fn vase() -> Scene {
@@ -61,14 +53,14 @@ fn what_is_refused_changes_nothing() {
             };
             let scene = vase();
             let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
-            let before = drawn(&mut renderer);
+            let before = next_frame(&mut renderer);
             let mut spoilt = scene.clone();
             spoilt.background = [1.0; 4];
             spoilt.camera.eye.x += 0.3;
             spoil(&mut spoilt);
             let error = renderer.update(&spoilt).unwrap_err().to_string();
             assert!(error.contains(word), "{word}: {error}");
-            let after = drawn(&mut renderer);
+            let after = next_frame(&mut renderer);
             assert_eq!(before.first_difference(&after), None, "{word}");
         }
     }
@@ -88,15 +80,14 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
         };
         let mut scene = vase();
         let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
-        let before = drawn(&mut renderer);
+        let before = next_frame(&mut renderer);
         scene.objects[0].profile = thin.clone().into();
         let error = renderer.update(&scene).unwrap_err();
         assert_eq!(error.kind, ErrorKind::Content, "{error}");
-        let after = drawn(&mut renderer);
+        let after = next_frame(&mut renderer);
         assert_eq!(before.first_difference(&after), None);
         scene.objects[0].profile = shapes::glass().into();
-        renderer.update(&scene).unwrap();
-        let mended = drawn(&mut renderer);
+        let mended = updated(&mut renderer, &scene);
         let fresh = draw(&scene, &settings);
         assert_eq!(fresh.first_difference(&mended), None);
         assert!((0..fresh.pixels()).any(|i| fresh.hits(i)));
@@ -130,11 +121,10 @@ fn other_objects_are_taken_over() {
     for stage in STAGES {
         let mut scene = vase();
         let mut renderer = Offscreen::new(device(), &scene, &settings(stage)).unwrap();
-        drawn(&mut renderer);
+        next_frame(&mut renderer);
         for (what, change) in changes {
             change(&mut scene);
-            renderer.update(&scene).unwrap();
-            let kept = drawn(&mut renderer);
+            let kept = updated(&mut renderer, &scene);
             let fresh = draw(&scene, &settings(stage));
             assert_eq!(fresh.first_difference(&kept), None, "{stage:?}: {what}");
         }
@@ -171,14 +161,11 @@ fn only_what_has_changed_is_cut() {
         };
         let mut scene = three();
         let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
-        let mut updated = |scene: &Scene, cuts: u64, what: &str| {
+        let mut check = |scene: &Scene, cuts: u64, what: &str| {
             renderer.update(scene).unwrap();
             let cuts = if solver.reads_map() { 0 } else { cuts };
-            assert_eq!(
-                renderer.rebuild_count(),
-                cuts,
-                "{solver}, {stage:?}: {what}"
-            );
+            let found = renderer.rebuild_count();
+            assert_eq!(found, cuts, "{solver}, {stage:?}: {what}");
             let way = match (solver, stage) {
                 (Solver::Exact, DrawStage::Fragment) => DrawPath::Cells,
                 (Solver::Other(_), _) => DrawPath::Box,
@@ -186,29 +173,29 @@ fn only_what_has_changed_is_cut() {
             };
             assert_eq!(renderer.draw_paths(), [way; 3], "{solver}: {what}");
             let fresh = draw(scene, &settings);
-            let kept = drawn(&mut renderer);
+            let kept = next_frame(&mut renderer);
             assert_eq!(fresh.first_difference(&kept), None, "{solver}: {what}");
         };
-        updated(&scene, 2, "two profiles");
+        check(&scene, 2, "two profiles");
         scene.camera.eye.x += 0.2;
-        updated(&scene, 2, "the camera");
+        check(&scene, 2, "the camera");
         scene.objects[1].placement.position.z = 0.1;
         scene.lights.clear();
-        updated(&scene, 2, "a placement and lights");
+        check(&scene, 2, "a placement and lights");
         scene.objects[1].offset.extend = 0.02;
-        updated(&scene, 3, "one offset");
+        check(&scene, 3, "one offset");
         scene.camera.eye.x += 0.2;
-        updated(&scene, 3, "the camera again");
+        check(&scene, 3, "the camera again");
         scene.objects[1].offset.extend = 0.0;
-        updated(&scene, 3, "as its twin");
-        updated(&scene, 3, "until frames in flight are done");
+        check(&scene, 3, "as its twin");
+        check(&scene, 3, "until frames in flight are done");
         scene.objects[1].offset.extend = 0.02;
-        updated(&scene, 4, "what was forgotten");
+        check(&scene, 4, "what was forgotten");
         scene.objects[2].offset.extend = 0.02;
-        updated(&scene, 5, "the other profile");
+        check(&scene, 5, "the other profile");
         // The two objects exchange places.
         scene.objects.swap(1, 2);
-        updated(&scene, 5, "their order");
+        check(&scene, 5, "their order");
         // Solids out of view are left to the rasteriser or have no tiles.
         for object in &mut scene.objects {
             object.placement.position.x += 100.0;
@@ -217,7 +204,7 @@ fn only_what_has_changed_is_cut() {
         let none = [DrawPath::Nothing; 3];
         let by_tiles = !matches!(solver, Solver::Other(_));
         assert_eq!(renderer.draw_paths() == none, by_tiles, "{solver}");
-        let frame = drawn(&mut renderer);
+        let frame = next_frame(&mut renderer);
         assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }
     device().check().unwrap();

@@ -1,7 +1,7 @@
 //! Devices: their requirements, opening one, borrowing a host's.
 
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::handle::{Handle, handle};
+use crate::handle::{Handle, create, handle};
 use crate::pointers::{described, fill, list, put, read, take, text};
 use crate::values::size;
 use ash::vk;
@@ -87,9 +87,8 @@ unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outco
     // SAFETY: the host's own function and instance.
     let known = unsafe { get_instance_proc_addr(instance, c"vkGetDeviceProcAddr".as_ptr()) };
     if known.is_none() {
-        return Err(Fault::usage(
-            "get_instance_proc_addr does not know vkGetDeviceProcAddr of this instance",
-        ));
+        let message = "get_instance_proc_addr does not know vkGetDeviceProcAddr of this instance";
+        return Err(Fault::usage(message));
     }
     let functions = ash::StaticFn {
         get_instance_proc_addr,
@@ -120,10 +119,8 @@ pub unsafe extern "C" fn revmap_requirements(
         }
         let needs = Requirements::of(&functions, physical_device)?;
         if !needs.extensions.is_empty() {
-            return Err(Fault::new(
-                RevmapResult::Internal,
-                "device extensions are needed, which this interface cannot name",
-            ));
+            let message = "device extensions are needed, which this interface cannot name";
+            return Err(Fault::new(RevmapResult::Internal, message));
         }
         let value = RevmapRequirements {
             size: size(size_of::<RevmapRequirements>()),
@@ -150,21 +147,18 @@ pub unsafe extern "C" fn revmap_device_open(
     device: *mut *mut RevmapDevice,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(device, "device", || {
-            let choice = if choice.is_null() {
-                None
-            } else {
-                Some(text(choice, "choice")?)
+    unsafe {
+        create(device, || {
+            let choice = match choice.is_null() {
+                true => None,
+                false => Some(text(choice, "choice")?),
             };
-            let opened = if validate == 0 {
-                Device::open(choice)?
-            } else {
-                Device::open_validated(choice)?
-            };
-            Ok(Handle::create(opened))
+            Ok(match validate {
+                0 => Device::open(choice)?,
+                _ => Device::open_validated(choice)?,
+            })
         })
-    })
+    }
 }
 
 /// Borrows a host's device. All handles belong together. The handles must stay valid until this
@@ -179,32 +173,27 @@ pub unsafe extern "C" fn revmap_device_borrow(
     device: *mut *mut RevmapDevice,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers and handles.
-    enter(|| unsafe {
-        put(device, "device", || {
+    unsafe {
+        create(device, || {
             let host = read(host)?;
             let instance = instance_of(host.get_instance_proc_addr, host.instance)?;
             if host.physical_device.is_null() || host.device.is_null() {
                 return Err(Fault::usage("the VkPhysicalDevice or the VkDevice is null"));
             }
             let functions = ash::Device::load(instance.fp_v1_0(), host.device);
-            let features = if host.features.is_null() {
-                vk::PhysicalDeviceFeatures::default()
-            } else {
-                take(host.features, "features")?
-            };
-            let borrowed = Device::borrow(&HostDevice {
+            let lent = HostDevice {
                 instance: &instance,
                 physical: host.physical_device,
                 device: &functions,
                 queue_family: host.queue_family,
                 queue: (!host.queue.is_null()).then_some(host.queue),
-                features,
+                features: host.features.as_ref().copied().unwrap_or_default(),
                 allocator: None,
                 pipeline_cache: (!host.pipeline_cache.is_null()).then_some(host.pipeline_cache),
-            })?;
-            Ok(Handle::create(borrowed))
+            };
+            Ok(Device::borrow(&lent)?)
         })
-    })
+    }
 }
 
 /// Returns the properties of a device. The size of info must be set.
@@ -280,18 +269,16 @@ pub unsafe extern "C" fn revmap_device_pipeline_cache(
     enter(|| unsafe {
         let room = take(count, "count")?;
         let data = RevmapDevice::get(device)?.pipeline_cache_data()?;
+        let length = data.len();
         if !bytes.is_null() {
-            if room < data.len() {
-                return Err(Fault::usage(format!(
-                    "{} bytes do not fit into {room}",
-                    data.len()
-                )));
+            if room < length {
+                let message = format!("{length} bytes do not fit into {room}");
+                return Err(Fault::usage(message));
             }
-            bytes
-                .cast::<u8>()
-                .copy_from_nonoverlapping(data.as_ptr(), data.len());
+            let bytes = bytes.cast::<u8>();
+            bytes.copy_from_nonoverlapping(data.as_ptr(), length);
         }
-        put(count, "count", || Ok(data.len()))
+        put(count, "count", || Ok(length))
     })
 }
 

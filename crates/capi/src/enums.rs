@@ -193,8 +193,12 @@ pub enum RevmapShadow {
     Soft = 2,
 }
 
-/// Functions from the numbers of an enumeration to the library's values.
+/// Functions from the numbers of an enumeration to the library's values, or to those of the same
+/// names.
 macro_rules! numbers {
+    ($($function:ident: $from:ident => $to:ident [$($name:ident)*])*) => {
+        numbers! { $($function: $from => $to { $($name => $to::$name),* })* }
+    };
     ($($function:ident: $from:ident => $to:ty { $($name:ident => $value:expr),* $(,)? })*) => {
         $(pub(crate) fn $function(number: u32) -> Outcome<$to> {
             let all = [$(($from::$name as u32, $value)),*];
@@ -206,7 +210,6 @@ macro_rules! numbers {
 }
 
 numbers! {
-    axis: RevmapAxis => ProfileAxis { Center => ProfileAxis::Center, Left => ProfileAxis::Left }
     solver: RevmapSolver => Solver {
         Default => Solver::DEFAULT, Linear => LINEAR, Relief => RELIEF, Secant => SECANT,
         Circle => CIRCLE, Live => Solver::Live, Cone => CONE, Relaxed => RELAXED,
@@ -216,31 +219,22 @@ numbers! {
         Default => None, Binary => Some(revmap_files::BINARY), Coverage => Some(revmap_files::COVERAGE),
         Exact => Some(MapSource::EXACT),
     }
-    map_format: RevmapMapFormat => MapFormat {
-        R32 => MapFormat::R32, R16 => MapFormat::R16, Rgba8 => MapFormat::Rgba8,
-    }
     planes: RevmapPlanes => Planes {
         Color => Planes::Color, All => Planes::All, Depth => Planes::Depth { parallel: false },
         DepthParallel => Planes::Depth { parallel: true },
     }
-    plane: RevmapPlane => RevmapPlane {
-        Srgb8 => RevmapPlane::Srgb8, Color => RevmapPlane::Color, Distance => RevmapPlane::Distance,
-        Normal => RevmapPlane::Normal, ShadingNormal => RevmapPlane::ShadingNormal, Albedo => RevmapPlane::Albedo,
-        Uv => RevmapPlane::Uv, Steps => RevmapPlane::Steps,
-    }
-    depth_order: RevmapDepthOrder => DepthOrder { Normal => DepthOrder::Normal, Reversed => DepthOrder::Reversed }
-    pass_kind: RevmapPassKind => RevmapPassKind {
-        Dynamic => RevmapPassKind::Dynamic, RenderPass => RevmapPassKind::RenderPass,
-    }
-    stage: RevmapStage => DrawStage { Fragment => DrawStage::Fragment, Compute => DrawStage::Compute }
-    projection: RevmapProjection => Projection {
-        Cylindrical => Projection::Cylindrical, Planar => Projection::Planar, Spherical => Projection::Spherical,
-        Arc => Projection::Arc,
-    }
-    bump_form: RevmapBumpForm => BumpForm {
-        SurfaceGradient => BumpForm::SurfaceGradient, Papers => BumpForm::Papers,
-    }
-    clip: RevmapClip => Clip { None => Clip::None, Box => Clip::Box }
-    slope_filter: RevmapSlopeFilter => SlopeFilter { Scharr => SlopeFilter::Scharr, Central => SlopeFilter::Central }
-    shadow: RevmapShadow => Shadow { Off => Shadow::Off, Hard => Shadow::Hard, Soft => Shadow::Soft }
+}
+
+numbers! {
+    axis: RevmapAxis => ProfileAxis [Center Left]
+    map_format: RevmapMapFormat => MapFormat [R32 R16 Rgba8]
+    plane: RevmapPlane => RevmapPlane [Srgb8 Color Distance Normal ShadingNormal Albedo Uv Steps]
+    depth_order: RevmapDepthOrder => DepthOrder [Normal Reversed]
+    pass_kind: RevmapPassKind => RevmapPassKind [Dynamic RenderPass]
+    stage: RevmapStage => DrawStage [Fragment Compute]
+    projection: RevmapProjection => Projection [Cylindrical Planar Spherical Arc]
+    bump_form: RevmapBumpForm => BumpForm [SurfaceGradient Papers]
+    clip: RevmapClip => Clip [None Box]
+    slope_filter: RevmapSlopeFilter => SlopeFilter [Scharr Central]
+    shadow: RevmapShadow => Shadow [Off Hard Soft]
 }

@@ -96,14 +96,10 @@ pub(crate) fn enter(body: impl FnOnce() -> Outcome<()>) -> RevmapResult {
 }
 
 fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let said = panic
-        .downcast_ref::<&str>()
-        .copied()
-        .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    format!(
-        "a fault of the library: {}",
-        said.unwrap_or("it says no more")
-    )
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let said = text.or_else(|| panic.downcast_ref::<&str>().copied());
+    let said = said.unwrap_or("it says no more");
+    format!("a fault of the library: {said}")
 }
 
 /// The kind of this thread's last failure; REVMAP_RESULT_OK if there was none.

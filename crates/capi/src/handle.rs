@@ -2,10 +2,11 @@
 //!
 //! Each number is used once, so that a destroyed handle is never mistaken for another.
 
-use crate::fault::{Fault, Outcome, RevmapResult};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::pointers::put;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError, RwLock, TryLockError};
+use std::sync::{Mutex, PoisonError, RwLock, RwLockWriteGuard, TryLockError};
 
 /// The values behind the handles of one kind.
 pub(crate) struct Registry<T> {
@@ -26,22 +27,15 @@ pub(crate) trait Handle: Sized + 'static {
         // nothing.
         static NEXT: AtomicUsize = AtomicUsize::new(16);
         let number = NEXT.fetch_add(16, Ordering::Relaxed);
-        let mut live = Self::registry()
-            .live
-            .write()
-            .unwrap_or_else(PoisonError::into_inner);
-        live.insert(number, value);
+        Self::registry().write().insert(number, value);
         std::ptr::without_provenance_mut(number)
     }
 
     fn get(handle: *const Self) -> Outcome<Self::Value> {
-        let live = Self::registry()
-            .live
-            .read()
-            .unwrap_or_else(PoisonError::into_inner);
-        live.get(&handle.addr())
-            .cloned()
-            .ok_or_else(|| missing(Self::NAME, handle.is_null()))
+        let live = &Self::registry().live;
+        let live = live.read().unwrap_or_else(PoisonError::into_inner);
+        let found = live.get(&handle.addr()).cloned();
+        found.ok_or_else(|| missing(Self::NAME, handle.is_null()))
     }
 
     /// The result of `get`; `None` for a null handle.
@@ -57,23 +51,16 @@ pub(crate) trait Handle: Sized + 'static {
         if handle.is_null() {
             return Ok(());
         }
-        let value = {
-            let mut live = Self::registry()
-                .live
-                .write()
-                .unwrap_or_else(PoisonError::into_inner);
-            live.remove(&handle.addr())
-        };
+        let value = Self::registry().write().remove(&handle.addr());
         // The value is dropped without the lock, since that may take long.
         value.map(drop).ok_or_else(|| missing(Self::NAME, false))
     }
 }
 
 fn missing(name: &str, null: bool) -> Fault {
-    let why = if null {
-        "is null"
-    } else {
-        "was destroyed, or never was one"
+    let why = match null {
+        true => "is null",
+        false => "was destroyed, or never was one",
     };
     Fault::new(RevmapResult::Handle, format!("the {name} {why}"))
 }
@@ -84,6 +71,19 @@ impl<T> Registry<T> {
             live: RwLock::new(BTreeMap::new()),
         }
     }
+
+    fn write(&self) -> RwLockWriteGuard<'_, BTreeMap<usize, T>> {
+        self.live.write().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The body of an entry point that makes a handle.
+pub(crate) unsafe fn create<H: Handle>(
+    to: *mut *mut H,
+    value: impl FnOnce() -> Outcome<H::Value>,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe { put(to, H::NAME, || Ok(H::create(value()?))) })
 }
 
 /// Calls `work` with a value that one thread at a time may use.
@@ -140,10 +140,8 @@ mod tests {
         for wrong in [first, std::ptr::null_mut()] {
             assert_eq!(Thing::get(wrong).unwrap_err().result, RevmapResult::Handle);
         }
-        assert_eq!(
-            Thing::destroy(first).unwrap_err().result,
-            RevmapResult::Handle
-        );
+        let again = Thing::destroy(first).unwrap_err().result;
+        assert_eq!(again, RevmapResult::Handle);
         assert!(Thing::destroy(std::ptr::null_mut()).is_ok());
         assert!(Thing::get_optional(std::ptr::null()).unwrap().is_none());
         assert!(Thing::get_optional(first).is_err());

@@ -64,11 +64,10 @@ described!(RevmapObjectInfo);
 impl RevmapObjectInfo {
     pub(crate) unsafe fn object(&self) -> Outcome<Object> {
         let profile = RevmapProfile::get(self.profile)?;
-        let name = if self.name.is_null() {
-            "object"
-        } else {
+        let name = match self.name.is_null() {
+            true => "object",
             // SAFETY: the caller's text.
-            unsafe { text(self.name, "name") }?
+            false => unsafe { text(self.name, "name") }?,
         };
         // SAFETY: the caller's, as many as it says.
         let instances = unsafe { list(self.instances, self.instance_count, "instances") }?;
@@ -110,6 +109,7 @@ pub(crate) fn placements(from: &[RevmapPlacement]) -> Vec<Placement> {
 pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -> RevmapResult {
     enter(|| {
         let (specular, texturing) = (Specular::default(), Texturing::default());
+        let plain = Offset::default();
         let value = RevmapObjectInfo {
             size: size(size_of::<RevmapObjectInfo>()),
             map_rows: Object::MAP_ROWS,
@@ -124,7 +124,11 @@ pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -
             bump_form: 0,
             bump: texturing.bump,
             texture_repeat: texturing.repeat,
-            offset: Offset::default().into(),
+            offset: RevmapOffset {
+                extend: plain.extend,
+                bevel: plain.bevel,
+                chamfer: plain.chamfer,
+            },
             axis: [0.5; 2],
             repeat: [1; 3],
             mirror: [0; 3],

@@ -3,14 +3,14 @@
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPlane};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::handle::{Handle, alone, handle};
+use crate::handle::{Handle, alone, create, handle};
 use crate::object::RevmapObjectInfo;
-use crate::pointers::{described, fill, put, read, text};
+use crate::pointers::{described, fill, read, text};
 use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
 use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
 use revmap::scene::Scene;
-use revmap::settings::Settings;
+use revmap::settings::{Planes, Settings};
 use revmap_files::Picture;
 use std::ffi::{c_char, c_void};
 use std::sync::{Arc, Mutex};
@@ -21,7 +21,7 @@ handle!(RevmapOffscreen, "off-screen picture", Arc<Mutex<Drawing>>);
 
 pub(crate) struct Drawing {
     offscreen: Offscreen,
-    planes: revmap::settings::Planes,
+    planes: Planes,
     /// The planes of the last picture that were read back.
     frame: Option<Frame>,
     drawn: bool,
@@ -118,9 +118,8 @@ impl Drawing {
     /// The planes of the last picture.
     fn frame(&mut self) -> Outcome<&Frame> {
         if !self.drawn {
-            return Err(Fault::usage(
-                "nothing is drawn yet; call revmap_offscreen_draw",
-            ));
+            let message = "nothing is drawn yet; call revmap_offscreen_draw";
+            return Err(Fault::usage(message));
         }
         match &mut self.frame {
             Some(frame) => Ok(frame),
@@ -188,19 +187,19 @@ pub unsafe extern "C" fn revmap_offscreen_create(
     offscreen: *mut *mut RevmapOffscreen,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(offscreen, "off-screen picture", || {
+    unsafe {
+        create(offscreen, || {
             let settings = read(picture)?.settings()?;
             let scene = read(scene)?.scene()?;
             let device = RevmapDevice::get(device)?;
-            Ok(Handle::create(Arc::new(Mutex::new(Drawing {
+            Ok(Arc::new(Mutex::new(Drawing {
                 offscreen: Offscreen::new(&device, &scene, &settings)?,
                 planes: settings.planes,
                 frame: None,
                 drawn: false,
-            }))))
+            })))
         })
-    })
+    }
 }
 
 /// Updates the picture to another scene. The cost depends on the differences from the former scene.
@@ -279,10 +278,9 @@ pub unsafe extern "C" fn revmap_offscreen_read(
         let plane = enums::plane(plane)?;
         with(offscreen, |d| {
             let of_color = matches!(plane, RevmapPlane::Srgb8 | RevmapPlane::Color);
-            if !of_color && d.planes != revmap::settings::Planes::All {
-                return Err(Fault::usage(
-                    "the picture holds colours alone; give it REVMAP_PLANES_ALL",
-                ));
+            if !of_color && d.planes != Planes::All {
+                let message = "the picture holds colours alone; give it REVMAP_PLANES_ALL";
+                return Err(Fault::usage(message));
             }
             let frame = d.frame()?;
             // SAFETY: the caller's bytes, as many as it says.

@@ -29,14 +29,14 @@ unsafe fn check_size<T: Described>(from: *const T) -> Outcome<()> {
     }
     // SAFETY: the caller's structure begins with its size.
     let size = unsafe { from.cast::<u32>().read() };
-    if size as usize == size_of::<T>() {
+    let (name, own) = (T::NAME, size_of::<T>());
+    if size as usize == own {
         return Ok(());
     }
-    Err(Fault::usage(format!(
-        "the {} says that it has {size} bytes; set its size to sizeof, which is {} here",
-        T::NAME,
-        size_of::<T>()
-    )))
+    let message = format!(
+        "the {name} says that it has {size} bytes; set its size to sizeof, which is {own} here"
+    );
+    Err(Fault::usage(message))
 }
 
 /// A structure from the caller.
@@ -87,13 +87,10 @@ pub(crate) unsafe fn list<'a, T>(from: *const T, count: usize, what: &str) -> Ou
     if from.is_null() {
         return Err(null(what));
     }
-    if count
-        .checked_mul(size_of::<T>())
-        .is_none_or(|bytes| bytes > isize::MAX as usize)
-    {
-        return Err(Fault::usage(format!(
-            "{count} {what} are more than memory holds"
-        )));
+    let bytes = count.checked_mul(size_of::<T>());
+    if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
+        let message = format!("{count} {what} are more than memory holds");
+        return Err(Fault::usage(message));
     }
     // SAFETY: the caller's, of so many elements, unchanged during the call.
     Ok(unsafe { std::slice::from_raw_parts(from, count) })

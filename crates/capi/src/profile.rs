@@ -2,7 +2,7 @@
 
 use crate::enums;
 use crate::fault::{RevmapResult, enter};
-use crate::handle::{Handle, handle};
+use crate::handle::{Handle, create, handle};
 use crate::pointers::{list, put, text};
 use revmap::profile::Profile;
 use std::ffi::{c_char, c_void};
@@ -28,12 +28,12 @@ pub unsafe extern "C" fn revmap_profile_from_points(
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(profile, "profile", || {
+    unsafe {
+        create(profile, || {
             let points = list(points, count, "points")?;
-            Ok(Handle::create(Arc::new(Profile::polygon(points, radius)?)))
+            Ok(Arc::new(Profile::polygon(points, radius)?))
         })
-    })
+    }
 }
 
 /// Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it.
@@ -52,13 +52,13 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(profile, "profile", || {
+    unsafe {
+        create(profile, || {
             let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
             let made = revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Makes a profile from a file, as revmap_profile_from_bytes() does from its content. The path is
@@ -72,12 +72,12 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(profile, "profile", || {
+    unsafe {
+        create(profile, || {
             let made = revmap_files::profile(text(path, "path")?, enums::axis(axis)?)?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Returns the radius of the profile's box, object units.

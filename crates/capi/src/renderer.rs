@@ -8,8 +8,8 @@ pub mod statistics;
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
 use crate::fault::{Outcome, RevmapResult, enter};
-use crate::handle::{Handle, alone, handle};
-use crate::pointers::{described, list, put, read};
+use crate::handle::{Handle, alone, create, handle};
+use crate::pointers::{described, list, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, Renderer};
@@ -89,19 +89,15 @@ impl RevmapPass {
                 pass: self.render_pass,
                 subpass: self.subpass,
             },
-            RevmapPassKind::Dynamic => PassKind::Dynamic {
-                // SAFETY: the caller's, as many as it says.
-                color: unsafe {
-                    list(
-                        self.color_formats,
-                        self.color_format_count as usize,
-                        "color formats",
-                    )
-                }?
-                .to_vec(),
-                depth: self.depth_format,
-                stencil: self.stencil_format,
-            },
+            RevmapPassKind::Dynamic => {
+                let count = self.color_format_count as usize;
+                PassKind::Dynamic {
+                    // SAFETY: the caller's, as many as it says.
+                    color: unsafe { list(self.color_formats, count, "color formats") }?.to_vec(),
+                    depth: self.depth_format,
+                    stencil: self.stencil_format,
+                }
+            }
         };
         Ok(PassFormats {
             begun,
@@ -121,21 +117,22 @@ fn with<R>(
     alone(&shared, RevmapRenderer::NAME, work)
 }
 
-fn create(
+/// A renderer without objects.
+fn recorder(
     device: *const RevmapDevice,
     output: Output,
     settings: &revmap::settings::SearchSettings,
     frames: u32,
-) -> Outcome<*mut RevmapRenderer> {
+) -> Outcome<Arc<Mutex<Recorder>>> {
     let device = RevmapDevice::get(device)?;
     let in_pass = matches!(output, Output::Pass(_));
     let renderer = Renderer::new(&device, output, settings, frames as usize)?;
-    Ok(Handle::create(Arc::new(Mutex::new(Recorder {
+    Ok(Arc::new(Mutex::new(Recorder {
         renderer,
         in_pass,
         prepared: (0..frames).map(|_| None).collect(),
         notes: Vec::new(),
-    }))))
+    })))
 }
 
 /// Makes a renderer without objects that draws fragments in a host's pass. A null search is the
@@ -151,12 +148,12 @@ pub unsafe extern "C" fn revmap_renderer_create(
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers and handles.
-    enter(|| unsafe {
-        put(renderer, "renderer", || {
+    unsafe {
+        create(renderer, || {
             let output = Output::Pass(read(pass)?.formats()?);
-            create(device, output, &crate::values::search(search)?, frames)
+            recorder(device, output, &crate::values::search(search)?, frames)
         })
-    })
+    }
 }
 
 /// Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
@@ -173,12 +170,12 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(renderer, "renderer", || {
+    unsafe {
+        create(renderer, || {
             let output = Output::Compute(enums::planes(planes)?);
-            create(device, output, &crate::values::search(search)?, frames)
+            recorder(device, output, &crate::values::search(search)?, frames)
         })
-    })
+    }
 }
 
 /// Sets lights and shadows for all objects.

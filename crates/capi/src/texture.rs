@@ -2,8 +2,8 @@
 
 use crate::enums;
 use crate::fault::{RevmapResult, enter};
-use crate::handle::{Handle, handle};
-use crate::pointers::{list, put, text};
+use crate::handle::{Handle, create, handle};
+use crate::pointers::{list, text};
 use revmap::maps::{ColorMap, DisplacementMap};
 use std::ffi::c_char;
 use std::sync::Arc;
@@ -27,12 +27,12 @@ pub unsafe extern "C" fn revmap_color_map_from_file(
     color_map: *mut *mut RevmapColorMap,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(color_map, "color map", || {
+    unsafe {
+        create(color_map, || {
             let made = revmap_files::color_map(text(path, "path")?)?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
@@ -47,13 +47,13 @@ pub unsafe extern "C" fn revmap_color_map_from_texels(
     color_map: *mut *mut RevmapColorMap,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(color_map, "color map", || {
+    unsafe {
+        create(color_map, || {
             let texels = list(texels, width as usize * height as usize, "texels")?;
             let made = ColorMap::from_texels(width, height, texels.to_vec())?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Destroys a colour map; null is none. Objects that use it stay as they are.
@@ -77,13 +77,13 @@ pub unsafe extern "C" fn revmap_height_map_from_file(
     height_map: *mut *mut RevmapHeightMap,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(height_map, "height map", || {
+    unsafe {
+        create(height_map, || {
             let filter = enums::slope_filter(filter)?;
             let made = revmap_files::displacement_map(text(path, "path")?, filter)?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
@@ -99,14 +99,14 @@ pub unsafe extern "C" fn revmap_height_map_from_heights(
     height_map: *mut *mut RevmapHeightMap,
 ) -> RevmapResult {
     // SAFETY: the caller's pointers.
-    enter(|| unsafe {
-        put(height_map, "height map", || {
+    unsafe {
+        create(height_map, || {
             let heights = list(heights, width as usize * height as usize, "heights")?;
             let filter = enums::slope_filter(filter)?;
             let made = DisplacementMap::from_heights(width, height, heights, filter)?;
-            Ok(Handle::create(Arc::new(made)))
+            Ok(Arc::new(made))
         })
-    })
+    }
 }
 
 /// Destroys a height map; null is none. Objects that use it stay as they are.

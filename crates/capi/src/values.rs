@@ -148,16 +148,6 @@ impl From<RevmapOffset> for Offset {
     }
 }
 
-impl From<Offset> for RevmapOffset {
-    fn from(from: Offset) -> Self {
-        Self {
-            extend: from.extend,
-            bevel: from.bevel,
-            chamfer: from.chamfer,
-        }
-    }
-}
-
 impl RevmapLighting {
     pub(crate) fn defaults() -> Self {
         static LIGHTS: LazyLock<[RevmapLight; 2]> = LazyLock::new(|| {
@@ -181,16 +171,14 @@ impl RevmapLighting {
     pub(crate) unsafe fn lighting(&self) -> Outcome<Lighting> {
         // SAFETY: the caller's, as many as it says.
         let lights = unsafe { list(self.lights, self.light_count as usize, "lights") }?;
+        let light = |light: &RevmapLight| Light {
+            direction: light.direction.into(),
+            color: light.color,
+            radius: light.radius.into(),
+        };
         Ok(Lighting {
             ambient: self.ambient,
-            lights: lights
-                .iter()
-                .map(|light| Light {
-                    direction: light.direction.into(),
-                    color: light.color,
-                    radius: light.radius.into(),
-                })
-                .collect(),
+            lights: lights.iter().map(light).collect(),
             shadow: enums::shadow(self.shadow)?,
         })
     }
@@ -226,12 +214,10 @@ impl RevmapView {
             width,
             height,
         };
-        Ok(View::from_matrices(
-            DMat4::from_cols_array(&self.view),
-            DMat4::from_cols_array(&self.projection),
-            viewport,
-            enums::depth_order(self.depth_order)?,
-        )?)
+        let [view, projection] =
+            [self.view, self.projection].map(|columns| DMat4::from_cols_array(&columns));
+        let order = enums::depth_order(self.depth_order)?;
+        Ok(View::from_matrices(view, projection, viewport, order)?)
     }
 }
 

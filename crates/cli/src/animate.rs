@@ -77,35 +77,24 @@ impl Animate {
         if self.turn.is_some_and(|turn| !turn.is_finite()) {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
-        if let Some(file) = &self.times {
-            output::check(
-                std::slice::from_ref(file),
-                "--times",
-                &["csv"],
-                &[&self.scene],
-            )?;
-        }
+        output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         if let Some(folder) = &self.output {
             std::fs::create_dir_all(folder).map_err(|e| {
                 let message = format!("cannot be made ({e}); choose another folder");
                 Error::new(ErrorKind::File, message).in_file(folder)
             })?;
         }
-        let varied = self
-            .vary
-            .iter()
+        let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
-            .collect::<Result<Vec<_>>>()?;
+            .collect::<Result<_>>()?;
         let mut file = SceneFile::open(&self.scene)?;
         let first = self.scene_at(&mut file, &varied, 0)?;
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
         written.extend((0..self.frames).filter_map(|n| self.picture(n)));
         output::spare(file.files(), &written, "--output")?;
         let (device, kept) = self.drawing.open()?;
-        let progress = Progress::start(
-            &format!("drawing on {}", device.report().name),
-            self.drawing.quiet,
-        );
+        let what = format!("drawing on {}", device.report().name);
+        let progress = Progress::start(&what, self.drawing.quiet);
         let rows = self.draw(&device, &mut file, &varied, &first, &progress)?;
         drop(progress);
         device.check()?;
@@ -205,30 +194,22 @@ impl Animate {
         if self.drawing.quiet {
             return;
         }
-        let report = device.report();
-        output::note(&format!(
-            "device: {} ({}), driver {}",
-            report.name, report.kind, report.driver
-        ));
+        output::device(device.report());
         let whole = |r: &Row| r.prepare_ms + r.frame_ms;
         let settled = &rows[rows.len().min(10)..];
-        let mut all: Vec<f64> = (if settled.is_empty() { rows } else { settled })
-            .iter()
-            .map(whole)
-            .collect();
+        let measured = if settled.is_empty() { rows } else { settled };
+        let mut all: Vec<f64> = measured.iter().map(whole).collect();
         all.sort_by(f64::total_cmp);
         let (median, most) = (all[all.len() / 2], all[all.len() - 1]);
         let late: u64 = settled.iter().map(|r| r.compiled).sum();
         let compiled = device.pipelines_compiled();
         let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
-        let (after, of_them) = if settled.is_empty() {
-            ("", String::new())
-        } else {
-            (
-                " after the tenth",
-                format!(", {late} of them after the tenth"),
-            )
-        };
+        let mut words = ("", String::new());
+        if !settled.is_empty() {
+            words.0 = " after the tenth";
+            words.1 = format!(", {late} of them after the tenth");
+        }
+        let (after, of_them) = words;
         output::result(&format!(
             "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
             rows.len(),
@@ -245,22 +226,16 @@ impl Vary {
                 &format!("{text:?} {what}; write KEY=FROM:TO, as in object.0.extend=0:0.1"),
             )
         };
-        let (key, range) = text
-            .split_once('=')
-            .ok_or_else(|| wrong("names no values"))?;
-        let (from, to) = range
-            .split_once(':')
-            .ok_or_else(|| wrong("has no second value"))?;
+        let parts = text.split_once('=');
+        let (key, range) = parts.ok_or_else(|| wrong("names no values"))?;
+        let parts = range.split_once(':');
+        let (from, to) = parts.ok_or_else(|| wrong("has no second value"))?;
         let list = from.trim().starts_with('[');
         let numbers = |text: &str| {
             let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
-            let parsed: Option<Vec<f64>> = inner
-                .split(',')
-                .map(|n| n.trim().parse::<f64>().ok())
-                .collect();
-            parsed
-                .filter(|all| all.iter().all(|n| n.is_finite()))
-                .ok_or_else(|| wrong("holds what is no number"))
+            let number = |n: &str| n.trim().parse().ok().filter(|n: &f64| n.is_finite());
+            let parsed: Option<Vec<f64>> = inner.split(',').map(number).collect();
+            parsed.ok_or_else(|| wrong("holds what is no number"))
         };
         let (from, to) = (numbers(from)?, numbers(to)?);
         if from.len() != to.len() {
@@ -276,18 +251,11 @@ impl Vary {
 
     /// The assignment at the fraction `part`, 0 to 1.
     fn at(&self, part: f64) -> String {
-        let values: Vec<String> = self
-            .from
-            .iter()
-            .zip(&self.to)
-            .map(|(a, b)| format!("{:?}", a + (b - a) * part))
-            .collect();
-        let joined = values.join(", ");
-        if self.list {
-            format!("{}=[{joined}]", self.key)
-        } else {
-            format!("{}={joined}", self.key)
-        }
+        let pairs = self.from.iter().zip(&self.to);
+        let values: Vec<f64> = pairs.map(|(a, b)| a + (b - a) * part).collect();
+        let list = format!("{values:?}");
+        let bare = list.trim_matches(['[', ']']);
+        format!("{}={}", self.key, if self.list { &list } else { bare })
     }
 }
 
@@ -320,11 +288,8 @@ mod tests {
         let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
         assert_eq!(three.at(0.0), "camera.eye=[1.0, 2.0, -3.0]");
         for bad in ["a", "a=1", "a=1:b", "a=[1,2]:3", "a=nan:1"] {
-            assert_eq!(
-                Vary::parse(bad).err().unwrap().kind,
-                ErrorKind::Usage,
-                "{bad}"
-            );
+            let error = Vary::parse(bad).err().unwrap();
+            assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
         }
     }
 }

@@ -63,15 +63,8 @@ impl Bake {
         let slopes_file = self.height_map.as_ref().map(|_| beside(&map_file));
         let mut inputs = vec![self.profile.as_path()];
         inputs.extend(self.height_map.as_deref());
-        output::check(
-            std::slice::from_ref(&map_file),
-            "--output",
-            &["png", "exr"],
-            &inputs,
-        )?;
-        if let Some(file) = &slopes_file {
-            output::check(std::slice::from_ref(file), "--output", &["png"], &inputs)?;
-        }
+        output::check([&map_file], "--output", &["png", "exr"], &inputs)?;
+        output::check(&slopes_file, "--output", &["png"], &inputs)?;
 
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
@@ -85,11 +78,9 @@ impl Bake {
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
-        let slopes = self
-            .height_map
-            .as_ref()
-            .map(|file| revmap_files::displacement_map(file, SlopeFilter::default()))
-            .transpose()?;
+        let slopes = self.height_map.as_ref();
+        let slopes = slopes.map(|f| revmap_files::displacement_map(f, SlopeFilter::default()));
+        let slopes = slopes.transpose()?;
         let took = begin.elapsed().as_secs_f64() * 1e3;
         drop(progress);
 
@@ -107,10 +98,8 @@ impl Bake {
         if let (Some(slopes), Some(file)) = (&slopes, &slopes_file) {
             revmap_files::write_displacement_map(slopes, file)?;
             let [width, height] = slopes.size();
-            self.tell(&format!(
-                "{}: {width}x{height} texels, slopes",
-                file.display()
-            ));
+            let file = file.display();
+            self.tell(&format!("{file}: {width}x{height} texels, slopes"));
         }
         Ok(())
     }
@@ -134,15 +123,12 @@ fn smooth(text: &str) -> std::result::Result<Smooth, String> {
 /// `file` with the projection in its name; a name with another projection is refused.
 fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
     match projection_of(file) {
-        Some(other) if other != projection => Err(Error::new(
-            ErrorKind::Usage,
-            format!(
-                "is named {}; give it the name or the option of the other",
-                other.name()
-            ),
-        )
-        .at_key("--projection")
-        .in_file(file)),
+        Some(other) if other != projection => {
+            let name = other.name();
+            let message = format!("is named {name}; give it the name or the option of the other");
+            let error = Error::new(ErrorKind::Usage, message);
+            Err(error.at_key("--projection").in_file(file))
+        }
         _ => Ok(mark_projection(file, projection)),
     }
 }
@@ -164,30 +150,21 @@ mod tests {
 
     #[test]
     fn names_of_files() {
-        let name = |projection, file: &str| marked(projection, Path::new(file));
-        assert_eq!(
-            name(Projection::Arc, "a/vase.png").unwrap(),
-            Path::new("a/vase.arc.png")
-        );
-        assert_eq!(
-            name(Projection::Arc, "a/vase.arc.exr").unwrap(),
-            Path::new("a/vase.arc.exr")
-        );
-        assert_eq!(
-            name(Projection::Arc, "vase.planar.png").unwrap_err().kind,
-            ErrorKind::Usage
-        );
-        assert_eq!(
-            beside(Path::new("a/vase.png")),
-            Path::new("a/vase.displacement.png")
-        );
-        assert_eq!(
-            beside(Path::new("vase.arc.exr")),
-            Path::new("vase.displacement.png")
-        );
-        assert_eq!(
-            beside(Path::new("v.2.png")),
-            Path::new("v.2.displacement.png")
-        );
+        let name = |file: &str| marked(Projection::Arc, Path::new(file));
+        for (file, wanted) in [
+            ("a/vase.png", "a/vase.arc.png"),
+            ("a/vase.arc.exr", "a/vase.arc.exr"),
+        ] {
+            assert_eq!(name(file).unwrap(), Path::new(wanted));
+        }
+        let error = name("vase.planar.png").unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Usage);
+        for (file, wanted) in [
+            ("a/vase.png", "a/vase.displacement.png"),
+            ("vase.arc.exr", "vase.displacement.png"),
+            ("v.2.png", "v.2.displacement.png"),
+        ] {
+            assert_eq!(beside(Path::new(file)), Path::new(wanted));
+        }
     }
 }

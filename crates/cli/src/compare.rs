@@ -3,6 +3,7 @@
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_files::read_exr;
 use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
 use serde_json::json;
 use std::path::PathBuf;
@@ -43,14 +44,8 @@ impl Compare {
                 .in_file(file));
             }
         }
-        if let Some(heat) = &self.heat {
-            let inputs = [self.a.as_path(), &self.b];
-            output::check(std::slice::from_ref(heat), "--heat", &["png"], &inputs)?;
-        }
-        let (a, b) = (
-            revmap_files::read_exr(&self.a)?,
-            revmap_files::read_exr(&self.b)?,
-        );
+        output::check(&self.heat, "--heat", &["png"], &[&self.a, &self.b])?;
+        let (a, b) = (read_exr(&self.a)?, read_exr(&self.b)?);
         let mut options = CompareOptions::default();
         options.texel = self.texel.unwrap_or(options.texel);
         let outcome = compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;
@@ -64,23 +59,17 @@ impl Compare {
             outcome.to_string().lines().for_each(output::result);
         }
         match difference {
-            Some(difference) if self.exact => Err(Error::new(
-                ErrorKind::Other,
-                format!(
+            Some(difference) if self.exact => {
+                let message = format!(
                     "the frames differ, first in {difference}; draw them again or leave out --exact"
-                ),
-            )
-            .in_file(&self.b)),
-            _ if self.json => Ok(()),
-            Some(difference) => {
-                output::result(&format!("bits        differ, first in {difference}"));
-                Ok(())
+                );
+                return Err(Error::new(ErrorKind::Other, message).in_file(&self.b));
             }
-            None => {
-                output::result("bits        equal in every channel");
-                Ok(())
-            }
+            _ if self.json => {}
+            Some(place) => output::result(&format!("bits        differ, first in {place}")),
+            None => output::result("bits        equal in every channel"),
         }
+        Ok(())
     }
 }
 

@@ -64,22 +64,13 @@ mod tests {
 
     #[test]
     fn keys_become_options_and_kinds_exit_codes() {
+        const BEVEL: &str = "object.2.bevel";
         for (kind, key, code, wanted) in [
             (ErrorKind::Unsupported, "device", 3, "--device: no"),
             (ErrorKind::Usage, "sets", 2, "--set: no"),
-            (
-                ErrorKind::Usage,
-                "object.2.bevel",
-                2,
-                "--set object.2.bevel: no",
-            ),
+            (ErrorKind::Usage, BEVEL, 2, "--set object.2.bevel: no"),
             (ErrorKind::Usage, "--stage", 2, "--stage: no"),
-            (
-                ErrorKind::Content,
-                "object.2.bevel",
-                1,
-                "object.2.bevel: no",
-            ),
+            (ErrorKind::Content, BEVEL, 1, "object.2.bevel: no"),
             (ErrorKind::TooLarge, "size", 1, "--size: no"),
         ] {
             assert_eq!(exit_code(kind), code);

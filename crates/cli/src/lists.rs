@@ -151,10 +151,9 @@ impl Lists {
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             let twin = |other: &PathBuf| other != file && other.file_stem() == file.file_stem();
             // The same name in two folders: the paths tell them apart.
-            let name = if self.scenes.iter().any(twin) {
-                file.to_string_lossy()
-            } else {
-                stem
+            let name = match self.scenes.iter().any(twin) {
+                true => file.to_string_lossy(),
+                false => stem,
             };
             views.push(View::new(name, scene));
         }
@@ -165,19 +164,15 @@ impl Lists {
     pub fn command() -> String {
         let quote = |word: String| {
             let plain = |c: char| c.is_ascii_alphanumeric() || "-_=.,/:@+%".contains(c);
-            if !word.is_empty() && word.chars().all(plain) {
-                word
-            } else {
-                format!("'{}'", word.replace('\'', "'\\''"))
+            match !word.is_empty() && word.chars().all(plain) {
+                true => word,
+                false => format!("'{}'", word.replace('\'', "'\\''")),
             }
         };
-        let words = std::env::args_os()
-            .skip(1)
-            .map(|w| quote(w.to_string_lossy().into_owned()));
-        std::iter::once("revmap".to_owned())
-            .chain(words)
-            .collect::<Vec<_>>()
-            .join(" ")
+        let mut words = vec!["revmap".to_owned()];
+        let given = std::env::args_os().skip(1);
+        words.extend(given.map(|w| quote(w.to_string_lossy().into_owned())));
+        words.join(" ")
     }
 
     /// Refuses the reference as a stage beside a picture that it would be compared with.
@@ -186,14 +181,10 @@ impl Lists {
     /// [`ErrorKind::Usage`].
     pub fn check(&self) -> Result<()> {
         if self.stage.contains(&Tracing::Reference) {
-            return Err(Error::new(
-                ErrorKind::Usage,
-                format!(
-                    "{} is what all others are compared with; give fragment or compute",
-                    name_of(&STAGES, &Tracing::Reference)
-                ),
-            )
-            .at_key("--stage"));
+            let name = name_of(&STAGES, &Tracing::Reference);
+            let message =
+                format!("{name} is what all others are compared with; give fragment or compute");
+            return Err(Error::new(ErrorKind::Usage, message).at_key("--stage"));
         }
         Ok(())
     }

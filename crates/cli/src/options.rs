@@ -236,18 +236,8 @@ mod tests {
     fn sizes_are_read_and_bounded() {
         assert_eq!(size("800x600"), Ok((800, 600)));
         assert_eq!(size("1X16384"), Ok((1, 16384)));
-        for bad in [
-            "",
-            "800",
-            "0x0",
-            "1x0",
-            "100000x100000",
-            "16385x1",
-            "-1x5",
-            "axb",
-            "1x2x3",
-            "99999999999999999999x1",
-        ] {
+        let bad = "800 0x0 1x0 100000x100000 16385x1 -1x5 axb 1x2x3 99999999999999999999x1";
+        for bad in bad.split(' ').chain([""]) {
             assert!(size(bad).is_err(), "{bad}");
         }
     }

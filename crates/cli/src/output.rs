@@ -1,6 +1,7 @@
 //! Standard output, standard error, and output files of the program.
 
 use revmap::error::{Error, ErrorKind, Result};
+use revmap::gpu::DeviceReport;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -20,6 +21,14 @@ pub fn json(value: &serde_json::Value) {
 /// Prints a line beside the results, on standard error.
 pub fn note(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", flat(line));
+}
+
+/// Prints the device in use.
+pub fn device(device: &DeviceReport) {
+    let DeviceReport {
+        name, kind, driver, ..
+    } = device;
+    note(&format!("device: {name} ({kind}), driver {driver}"));
 }
 
 /// Prints a warning; the exit code stays the same.
@@ -44,7 +53,13 @@ fn flat(text: &str) -> String {
 ///
 /// # Errors
 /// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for files that cannot be written.
-pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]) -> Result<()> {
+pub fn check<'a>(
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    option: &str,
+    endings: &[&str],
+    inputs: &[&Path],
+) -> Result<()> {
+    let files: Vec<_> = files.into_iter().collect();
     for (i, file) in files.iter().enumerate() {
         let usage = |message: String| {
             Error::new(ErrorKind::Usage, message)
@@ -75,14 +90,12 @@ pub fn check(files: &[PathBuf], option: &str, endings: &[&str], inputs: &[&Path]
 /// [`ErrorKind::Usage`], with the file's name.
 pub fn spare<'a>(
     inputs: impl Iterator<Item = &'a Path>,
-    files: &[PathBuf],
+    files: impl IntoIterator<Item = &'a PathBuf>,
     option: &str,
 ) -> Result<()> {
-    let inputs: Vec<_> = inputs
-        .filter_map(|input| input.canonicalize().ok())
-        .collect();
+    let inputs: Vec<_> = inputs.filter_map(|i| i.canonicalize().ok()).collect();
     let over = |file: &&PathBuf| file.canonicalize().is_ok_and(|file| inputs.contains(&file));
-    match files.iter().find(over) {
+    match files.into_iter().find(over) {
         None => Ok(()),
         Some(file) => Err(
             Error::new(ErrorKind::Usage, "is read as well; write to another file")
@@ -112,10 +125,10 @@ fn writable(file: &Path, option: &str) -> Result<()> {
     if file.is_dir() {
         return Err(fail("is a folder; name a file".to_owned()));
     }
-    let folder = match file.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let parent = file
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let folder = parent.unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(fail(format!(
             "the folder {} does not exist; make it first",
@@ -123,11 +136,7 @@ fn writable(file: &Path, option: &str) -> Result<()> {
         )));
     }
     let probe = folder.join(format!(".revmap-probe-{}", std::process::id()));
-    let made = std::fs::OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&probe);
-    let outcome = made.map(drop);
+    let outcome = std::fs::File::create_new(&probe).map(drop);
     let _ = std::fs::remove_file(&probe);
     outcome.map_err(|e| fail(format!("cannot be written ({e}); choose another folder")))
 }

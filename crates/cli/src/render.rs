@@ -61,27 +61,22 @@ struct Picture {
 impl Render {
     pub fn run(self) -> Result<()> {
         output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
-        let levels: Vec<_> = self.levels.iter().cloned().collect();
-        let pictures: Vec<_> = self.output.iter().chain(&levels).cloned().collect();
-        output::check(&pictures, "--levels", &["png", "exr"], &[&self.scene])?;
-        output::check(&levels, "--levels", &["png"], &[])?;
+        let pictures = self.output.iter().chain(&self.levels);
+        output::check(pictures, "--levels", &["png", "exr"], &[&self.scene])?;
+        output::check(&self.levels, "--levels", &["png"], &[])?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
         let scene = file.scene(&self.drawing.set)?;
         output::spare(file.files(), &self.output, "--output")?;
-        output::spare(file.files(), &levels, "--levels")?;
+        output::spare(file.files(), &self.levels, "--levels")?;
         let loading = milliseconds(begin);
-        let floats = self
-            .output
-            .iter()
-            .any(|file| output::has_ending(file, "exr"));
+        let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         // Searches that run out of steps are counted beside the planes; such pixels cause a
         // warning.
         let counted = self.drawing.solver.may_run_out() && !self.drawing.quiet;
-        let planes = if floats || self.drawing.verbose || self.json || counted {
-            Planes::All
-        } else {
-            Planes::Color
+        let planes = match floats || self.drawing.verbose || self.json || counted {
+            true => Planes::All,
+            false => Planes::Color,
         };
         let mut settings = self.drawing.settings(planes);
         // Frames for comparison are exact by default.
@@ -210,13 +205,10 @@ impl Render {
     /// Prints the picture's content, device and times. This output comes at the end, so that a
     /// failure is one line.
     fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture, spent: [f64; 3]) {
-        output::note(&format!(
-            "device: {}",
-            match &picture.device {
-                Some(d) => format!("{} ({}), driver {}", d.name, d.kind, d.driver),
-                None => "none, the reference is drawn on the CPU".to_owned(),
-            }
-        ));
+        match &picture.device {
+            Some(device) => output::device(device),
+            None => output::note("device: none, the reference is drawn on the CPU"),
+        }
         if self.drawing.verbose {
             self.details(scene, settings, picture, spent);
         }
@@ -224,17 +216,17 @@ impl Render {
         let stage = name_of(&options::STAGES, &self.drawing.stage);
         let times = picture.times;
         let (how, cost) = match &picture.device {
-            None => (
-                stage.to_owned(),
-                format!("{:.0} ms on the CPU", times.frame_ms),
-            ),
-            Some(device) => (
-                format!("{stage}, {}", settings.method),
-                match times.gpu_ms {
+            None => {
+                let cost = format!("{:.0} ms on the CPU", times.frame_ms);
+                (stage.to_owned(), cost)
+            }
+            Some(device) => {
+                let cost = match times.gpu_ms {
                     Some(gpu) => format!("{gpu:.2} ms on {}", device.name),
                     None => format!("{:.2} ms with {}", times.frame_ms, device.name),
-                },
-            ),
+                };
+                (format!("{stage}, {}", settings.method), cost)
+            }
         };
         let rays = match self.samples.count {
             1 => String::new(),
@@ -255,18 +247,13 @@ impl Render {
         [loading, writing, all]: [f64; 3],
     ) {
         for object in &scene.objects {
-            let [columns, rows] = map_size(object, settings);
-            output::note(&format!(
-                "{}: shape box of {columns} x {rows} texels",
-                object.name
-            ));
+            let ([columns, rows], name) = (map_size(object, settings), &object.name);
+            output::note(&format!("{name}: shape box of {columns} x {rows} texels"));
         }
         if picture.device.is_some() {
             let [shapes, textures] = picture.map_bytes.map(|bytes| bytes as f64 / 1e6);
-            output::note(&format!(
-                "{:.2} ms from submission to completion",
-                picture.times.frame_ms
-            ));
+            let ms = picture.times.frame_ms;
+            output::note(&format!("{ms:.2} ms from submission to completion"));
             output::note(&format!(
                 "on the device: shape maps (or meshes) {shapes:.2} MB, colour and displacement maps {textures:.2} MB"
             ));
@@ -351,10 +338,9 @@ impl Render {
 }
 
 fn write(frame: &Frame, file: &Path) -> Result<()> {
-    if output::has_ending(file, "exr") {
-        revmap_files::write_exr(frame, file)
-    } else {
-        revmap_files::write_png(frame, file)
+    match output::has_ending(file, "exr") {
+        true => revmap_files::write_exr(frame, file),
+        false => revmap_files::write_png(frame, file),
     }
 }
 
@@ -371,19 +357,13 @@ fn on(device: &str, mut error: Error) -> Error {
 fn cost_line(cost: &ObjectCost) -> String {
     let path = format!("{:?}", cost.path).to_lowercase();
     let level = cost.level.map(|level| {
-        let error = cost
-            .error_pixels
-            .map_or("any number of".into(), |e| format!("{e:.4}"));
-        let patches = cost.patches;
+        let error = cost.error_pixels.map(|e| format!("{e:.4}"));
+        let (error, patches) = (error.unwrap_or("any number of".into()), cost.patches);
         format!(", level {level} of {patches} patches, silhouettes within {error} pixels")
     });
-    format!(
-        "{path}{}; {} bytes of tables, {} of maps, {} of copies",
-        level.unwrap_or_default(),
-        cost.table_bytes,
-        cost.map_bytes,
-        cost.instance_bytes
-    )
+    let (level, tables) = (level.unwrap_or_default(), cost.table_bytes);
+    let (maps, copies) = (cost.map_bytes, cost.instance_bytes);
+    format!("{path}{level}; {tables} bytes of tables, {maps} of maps, {copies} of copies")
 }
 
 /// Columns and rows of an object's shape box.
@@ -420,12 +400,9 @@ impl Steps {
 /// The number of pixels in which the search ran out of steps, and the remedy; `None` if there are
 /// none.
 fn exhausted(frame: &Frame) -> Option<String> {
-    (frame.exhausted > 0).then(|| {
-        format!(
-            "{} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {}",
-            frame.exhausted,
-            Method::DEFAULT.name()
-        )
+    let (count, default) = (frame.exhausted, Method::DEFAULT.name());
+    (count > 0).then(|| {
+        format!("{count} pixels ran out of steps, and may be wrong; give more with --max-steps, or take --solver {default}")
     })
 }
 

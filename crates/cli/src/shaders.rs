@@ -69,10 +69,9 @@ const SHOWN: [&str; 9] = [
 
 impl Shaders {
     pub fn run(self) -> revmap::Result<()> {
-        let solvers = if self.solver.is_empty() {
-            revmap_searches::ALL.to_vec()
-        } else {
-            self.solver
+        let solvers = match self.solver.is_empty() {
+            true => revmap_searches::ALL.to_vec(),
+            false => self.solver,
         };
         let compiler = PipelineCompiler::open(self.device.as_deref())?;
         let shaders = compiled(&compiler, &self.stage, &solvers)?;
@@ -88,12 +87,10 @@ impl Shaders {
             }
         }
         if self.csv {
-            let head = [
-                "technique,stage,solver,path,shader,module",
-                &said.join(","),
-                "device,driver",
-            ];
-            output::result(&head.join(","));
+            let names = said.join(",");
+            output::result(&format!(
+                "technique,stage,solver,path,shader,module,{names},device,driver"
+            ));
             for shader in &shaders {
                 let of_device = [quoted(&device.name), quoted(&device.driver)];
                 let words = [
@@ -105,10 +102,8 @@ impl Shaders {
             }
             return Ok(());
         }
-        let known: Vec<&str> = SHOWN
-            .into_iter()
-            .filter(|name| said.contains(name))
-            .collect();
+        let known = SHOWN.into_iter().filter(|name| said.contains(name));
+        let known: Vec<&str> = known.collect();
         let shown = if known.is_empty() { said } else { known };
         output::result(&format!("{}, {}\n", device.name, device.driver));
         let head = ["technique", "stage", "solver", "path", "shader"]
@@ -179,23 +174,19 @@ fn words(shader: &CompiledShader) -> [&str; 6] {
 
 /// The statistics of these names; empty for those that are missing.
 fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
-    let value = |name: &&str| {
-        shader
-            .executable
-            .statistics
-            .iter()
-            .find(|(known, _)| known == name)
+    let text = |name: &&str| {
+        let mut all = shader.executable.statistics.iter();
+        let found = all.find(|(known, _)| known == name);
+        found.map_or(String::new(), |(_, value)| value.to_string())
     };
-    let text = |name| value(name).map_or(String::new(), |(_, value)| value.to_string());
     names.iter().map(text).collect()
 }
 
 /// A field of comma-separated values.
 fn quoted(text: &str) -> String {
-    if text.contains([',', '"']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
+    match text.contains([',', '"']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
     }
 }
 

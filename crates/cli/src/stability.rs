@@ -62,13 +62,8 @@ impl Stability {
         let solvers = self.solvers()?;
         let device = Device::open(self.device.as_deref())?;
         let about = device.report();
-        let machine = Machine::here(
-            &about.name,
-            about.kind,
-            &about.driver,
-            output::VERSION,
-            &self.command(),
-        );
+        let (name, kind, driver) = (&about.name, about.kind, &about.driver);
+        let machine = Machine::here(name, kind, driver, output::VERSION, &self.command());
         let out = match &self.out {
             Some(out) => {
                 folder::claim(out, self.overwrite, [])?;
@@ -77,10 +72,7 @@ impl Stability {
             None => folder::fresh(Path::new("results"), &machine.folder())?,
         };
         if !self.quiet {
-            output::note(&format!(
-                "device: {} ({}), driver {}",
-                about.name, about.kind, about.driver
-            ));
+            output::device(about);
         }
         if let Some(count) = self.random {
             return self.random(&device, count, &out);
@@ -107,11 +99,8 @@ impl Stability {
         for table in tables.iter().flatten() {
             table.aligned().lines().for_each(output::result);
         }
-        output::result(&format!(
-            "{}: {} pictures",
-            out.join("report.html").display(),
-            outcome.trials.len()
-        ));
+        let (page, count) = (out.join("report.html"), outcome.trials.len());
+        output::result(&format!("{}: {count} pictures", page.display()));
         let failures = report::failures(&chosen, &outcome);
         for line in &failures {
             output::result(line);
@@ -142,18 +131,11 @@ impl Stability {
         drop(progress);
         for failure in &failures {
             let file = out.join(&failure.file);
-            output::result(&format!(
-                "seed {}: {}; {}",
-                failure.seed,
-                failure.what,
-                file.display()
-            ));
+            let (seed, what, file) = (failure.seed, &failure.what, file.display());
+            output::result(&format!("seed {seed}: {what}; {file}"));
         }
-        let drawn = if stop.load(Ordering::Relaxed) {
-            drawn
-        } else {
-            count
-        };
+        let stopped = stop.load(Ordering::Relaxed);
+        let drawn = if stopped { drawn } else { count };
         output::result(&format!("{drawn} random scenes, {} failed", failures.len()));
         if failures.is_empty() {
             return Ok(());
@@ -164,20 +146,15 @@ impl Stability {
 
     fn solvers(&self) -> Result<Vec<Solver>> {
         if self.solver.is_empty() {
-            let quick = [CIRCLE, Solver::DEFAULT];
-            return Ok(if self.quick {
-                quick.to_vec()
-            } else {
-                USUAL.to_vec()
+            return Ok(match self.quick {
+                true => vec![CIRCLE, Solver::DEFAULT],
+                false => USUAL.to_vec(),
             });
         }
         let search = |method: &Method| {
             method.solver().ok_or_else(|| {
-                Error::new(
-                    ErrorKind::Usage,
-                    format!("{method} is no search; give searches"),
-                )
-                .at_key("--solver")
+                let message = format!("{method} is no search; give searches");
+                Error::new(ErrorKind::Usage, message).at_key("--solver")
             })
         };
         self.solver.iter().map(search).collect()

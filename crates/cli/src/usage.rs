@@ -29,15 +29,9 @@ pub fn report(error: &clap::Error) -> ExitCode {
 fn one_line(message: &str) -> String {
     let body = message.split("\nUsage:").next().unwrap_or(message);
     let body = body.split("\nFor more information").next().unwrap_or(body);
-    let parts: Vec<&str> = body
-        .lines()
-        .map(str::trim)
-        .filter(|l| !l.is_empty())
-        .collect();
-    let line = parts
-        .join(" ")
-        .replace("error: ", "")
-        .replace(" tip: ", "; ");
+    let parts = body.lines().map(str::trim).filter(|l| !l.is_empty());
+    let line = parts.collect::<Vec<_>>().join(" ");
+    let line = line.replace("error: ", "").replace(" tip: ", "; ");
     let usage = message.split("\nUsage: ").nth(1).unwrap_or("revmap");
     let command: Vec<&str> = usage
         .split_whitespace()

@@ -10,10 +10,8 @@ use revmap_files::{BINARY, COVERAGE, ProfileAxis};
 
 fn main() {
     // Figures that can be compared between machines: one thread.
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build_global()
-        .unwrap();
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1);
+    one.build_global().unwrap();
     divan::main();
 }
 
@@ -25,12 +23,8 @@ fn hundred_curves() -> String {
         let z = 5.0 + step * f64::from(k);
         let r = |z: f64| 150.0 + 30.0 * (z * 0.11).sin() + 12.0 * (z * 0.47).cos();
         let (a, b, c) = (z + step / 3.0, z + 2.0 * step / 3.0, z + step);
-        path += &format!(
-            " C{:.4},{a:.4} {:.4},{b:.4} {:.4},{c:.4}",
-            r(a) + 4.0,
-            r(b) - 4.0,
-            r(c)
-        );
+        let (ra, rb, rc) = (r(a) + 4.0, r(b) - 4.0, r(c));
+        path += &format!(" C{ra:.4},{a:.4} {rb:.4},{b:.4} {rc:.4},{c:.4}");
     }
     path += " L100,195 Z";
     format!(
@@ -43,10 +37,8 @@ fn image(rows: u32) -> Profile {
     let points: Vec<[f64; 2]> = (0..=400)
         .map(|k| f64::from(k) / 400.0)
         .map(|z| {
-            [
-                0.6 + 0.2 * (z * 22.0).sin() + 0.1 * (z * 90.0).cos(),
-                0.02 + 0.96 * z,
-            ]
+            let r = 0.6 + 0.2 * (z * 22.0).sin() + 0.1 * (z * 90.0).cos();
+            [r, 0.02 + 0.96 * z]
         })
         .chain([[0.0, 0.98], [0.0, 0.02]])
         .collect();
@@ -54,16 +46,19 @@ fn image(rows: u32) -> Profile {
     revmap_files::trace(rasterize(&polygon.outline, rows, rows)).unwrap()
 }
 
+fn bake(bencher: Bencher, source: MapSource, rows: u32) {
+    let (profile, options) = (image(rows), BakeOptions::new(source, rows));
+    bencher.bench(|| ShapeMap::bake(black_box(&profile), &options));
+}
+
 #[divan::bench(args = [1024, 4096], sample_count = 10)]
 fn binary(bencher: Bencher, rows: u32) {
-    let profile = image(rows);
-    bencher.bench(|| ShapeMap::bake(black_box(&profile), &BakeOptions::new(BINARY, rows)));
+    bake(bencher, BINARY, rows);
 }
 
 #[divan::bench(args = [1024, 4096], sample_count = 10)]
 fn coverage(bencher: Bencher, rows: u32) {
-    let profile = image(rows);
-    bencher.bench(|| ShapeMap::bake(black_box(&profile), &BakeOptions::new(COVERAGE, rows)));
+    bake(bencher, COVERAGE, rows);
 }
 
 /// From the file's bytes to the map.

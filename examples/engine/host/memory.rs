@@ -24,9 +24,8 @@ impl<'a> HostBuffer<'a> {
             let needs = host.device.get_buffer_memory_requirements(raw);
             let memory = host.memory(needs, Flags::HOST_VISIBLE | Flags::HOST_COHERENT)?;
             host.device.bind_buffer_memory(raw, memory, 0)?;
-            let mapped =
-                host.device
-                    .map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?;
+            let (all, none) = (vk::WHOLE_SIZE, vk::MemoryMapFlags::empty());
+            let mapped = host.device.map_memory(memory, 0, all, none)?;
             Ok(Self {
                 raw,
                 memory,
@@ -44,12 +43,9 @@ impl<'a> HostBuffer<'a> {
     ) -> Fallible<Self> {
         let bytes: &[u8] = bytemuck::cast_slice(values);
         let buffer = Self::new(host, bytes.len(), usage)?;
+        let (from, to) = (bytes.as_ptr(), buffer.mapped);
         // SAFETY: the mapping is as long as the bytes, and the device does not read it yet.
-        unsafe {
-            buffer
-                .mapped
-                .copy_from_nonoverlapping(bytes.as_ptr(), bytes.len())
-        };
+        unsafe { to.copy_from_nonoverlapping(from, bytes.len()) };
         Ok(buffer)
     }
 
@@ -72,6 +68,7 @@ impl Drop for HostBuffer<'_> {
 pub struct HostImage<'a> {
     pub raw: vk::Image,
     pub view: vk::ImageView,
+    pub aspect: vk::ImageAspectFlags,
     memory: vk::DeviceMemory,
     host: &'a Host,
 }
@@ -94,43 +91,75 @@ impl<'a> HostImage<'a> {
             let info = vk::ImageCreateInfo::default()
                 .image_type(vk::ImageType::TYPE_2D)
                 .format(format)
-                .extent(vk::Extent3D {
-                    width: options.width,
-                    height: options.height,
-                    depth: 1,
-                })
+                .extent(options.extent().into())
                 .mip_levels(1)
                 .array_layers(1)
                 .samples(vk::SampleCountFlags::from_raw(samples))
-                .usage(
+                .usage(if samples == 1 {
+                    usage | U::TRANSFER_SRC
+                } else {
                     usage
-                        | if samples == 1 {
-                            U::TRANSFER_SRC
-                        } else {
-                            U::empty()
-                        },
-                );
+                });
             let raw = host.device.create_image(&info, None)?;
             let needs = host.device.get_image_memory_requirements(raw);
             let memory = host.memory(needs, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
             host.device.bind_image_memory(raw, memory, 0)?;
-            let range = vk::ImageSubresourceRange::default()
-                .aspect_mask(aspect)
-                .level_count(1)
-                .layer_count(1);
+            let mut image = Self {
+                raw,
+                view: vk::ImageView::null(),
+                aspect,
+                memory,
+                host,
+            };
             let info = vk::ImageViewCreateInfo::default()
                 .image(raw)
                 .view_type(vk::ImageViewType::TYPE_2D)
                 .format(format)
-                .subresource_range(range);
-            let view = host.device.create_image_view(&info, None)?;
-            Ok(Self {
-                raw,
-                view,
-                memory,
-                host,
-            })
+                .subresource_range(image.range());
+            image.view = host.device.create_image_view(&info, None)?;
+            Ok(image)
         }
+    }
+
+    /// All of it.
+    fn range(&self) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange::default()
+            .aspect_mask(self.aspect)
+            .level_count(1)
+            .layer_count(1)
+    }
+
+    /// The layout of the image while it is drawn into.
+    pub fn drawn(&self) -> vk::ImageLayout {
+        match self.aspect {
+            vk::ImageAspectFlags::DEPTH => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+            _ => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+        }
+    }
+
+    /// A barrier between two layouts, for all accesses.
+    pub fn barrier(
+        &self,
+        from: vk::ImageLayout,
+        to: vk::ImageLayout,
+    ) -> vk::ImageMemoryBarrier<'static> {
+        vk::ImageMemoryBarrier::default()
+            .image(self.raw)
+            .subresource_range(self.range())
+            .old_layout(from)
+            .new_layout(to)
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
+    }
+
+    /// All of it, for a copy.
+    pub fn region(&self, options: &Options) -> vk::BufferImageCopy {
+        let layers = vk::ImageSubresourceLayers::default()
+            .aspect_mask(self.aspect)
+            .layer_count(1);
+        vk::BufferImageCopy::default()
+            .image_subresource(layers)
+            .image_extent(options.extent().into())
     }
 }
 

@@ -17,15 +17,8 @@ impl<'a> Mesh<'a> {
     /// A square floor at `z`, of half side `half`.
     pub fn floor(host: &'a Host, half: f32, z: f32, color: Vec3) -> Fallible<Self> {
         let corner = |x: f32, y: f32| [[x, y, 0.0], [0.0, 0.0, 1.0]];
-        let square = [
-            (-1.0, -1.0),
-            (1.0, -1.0),
-            (1.0, 1.0),
-            (-1.0, -1.0),
-            (1.0, 1.0),
-            (-1.0, 1.0),
-        ];
-        let vertices: Vec<[[f32; 3]; 2]> = square.map(|(x, y)| corner(x, y)).to_vec();
+        let [a, c] = [corner(-1.0, -1.0), corner(1.0, 1.0)];
+        let vertices = [a, corner(1.0, -1.0), c, a, c, corner(-1.0, 1.0)];
         Self::of(host, &vertices, Vec4::new(0.0, 0.0, z, half), color)
     }
 
@@ -38,27 +31,15 @@ impl<'a> Mesh<'a> {
         color: Vec3,
     ) -> Fallible<Self> {
         let point = |i: u32, j: u32| {
-            let (theta, phi) = (
-                std::f32::consts::PI * j as f32 / n as f32,
-                std::f32::consts::PI * i as f32 / n as f32,
-            );
-            let p = Vec3::new(
-                theta.sin() * phi.cos(),
-                theta.sin() * phi.sin(),
-                theta.cos(),
-            );
-            [p.to_array(), p.to_array()]
+            let angle = |k: u32| (std::f32::consts::PI * k as f32 / n as f32).sin_cos();
+            let ((ring, z), (y, x)) = (angle(j), angle(i));
+            [[ring * x, ring * y, z]; 2]
         };
         let mut vertices = Vec::new();
         for j in 0..n {
             for i in 0..2 * n {
-                let [a, b, c, d] = [
-                    point(i, j),
-                    point(i, j + 1),
-                    point(i + 1, j + 1),
-                    point(i + 1, j),
-                ];
-                vertices.extend([a, b, c, a, c, d]);
+                let (a, c) = (point(i, j), point(i + 1, j + 1));
+                vertices.extend([a, point(i, j + 1), c, a, c, point(i + 1, j)]);
             }
         }
         Self::of(host, &vertices, middle.extend(radius), color)

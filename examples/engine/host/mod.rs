@@ -30,6 +30,15 @@ pub struct Options {
     pub reversed: bool,
 }
 
+impl Options {
+    pub fn extent(&self) -> vk::Extent2D {
+        vk::Extent2D {
+            width: self.width,
+            height: self.height,
+        }
+    }
+}
+
 pub const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub const FRAMES: usize = 2;
@@ -55,11 +64,9 @@ unsafe extern "system" fn keep(
 ) -> vk::Bool32 {
     // SAFETY: the layers hand over a live message, and the store that was registered with it.
     unsafe {
-        let text = CStr::from_ptr((*data).p_message)
-            .to_string_lossy()
-            .into_owned();
+        let text = CStr::from_ptr((*data).p_message).to_string_lossy();
         if let Ok(mut all) = (*store.cast::<Mutex<Vec<String>>>()).lock() {
-            all.push(text);
+            all.push(text.into_owned());
         }
     }
     vk::FALSE
@@ -95,7 +102,8 @@ impl Host {
             }
             let instance = entry.create_instance(&info, None)?;
             let messages = Box::<Mutex<Vec<String>>>::default();
-            let messenger = if validate {
+            let mut messenger = None;
+            if validate {
                 let functions = ext::debug_utils::Instance::new(&entry, &instance);
                 type Severity = vk::DebugUtilsMessageSeverityFlagsEXT;
                 type Kind = vk::DebugUtilsMessageTypeFlagsEXT;
@@ -104,11 +112,9 @@ impl Host {
                     .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
                     .pfn_user_callback(Some(keep))
                     .user_data((&raw const *messages).cast_mut().cast());
-                let messenger = functions.create_debug_utils_messenger(&info, None)?;
-                Some((functions, messenger))
-            } else {
-                None
-            };
+                let made = functions.create_debug_utils_messenger(&info, None)?;
+                messenger = Some((functions, made));
+            }
             let mut refused: Box<dyn Error> = "no Vulkan device".into();
             for physical in instance.enumerate_physical_devices()? {
                 let (family, features) = match requirements(&instance, physical) {
@@ -148,9 +154,8 @@ impl Host {
 
     /// What the validation layers have said since the last call.
     pub fn take_messages(&self) -> Vec<String> {
-        self.messages
-            .lock()
-            .map(|mut all| std::mem::take(&mut *all))
+        let all = self.messages.lock();
+        all.map(|mut all| std::mem::take(&mut *all))
             .unwrap_or_default()
     }
 
@@ -161,15 +166,16 @@ impl Host {
     ) -> Fallible<vk::DeviceMemory> {
         // SAFETY: plain query and creation.
         unsafe {
-            let all = self
-                .instance
-                .get_physical_device_memory_properties(self.physical);
-            let kind = (0..all.memory_type_count)
-                .find(|&n| {
-                    needs.memory_type_bits & (1 << n) != 0
-                        && all.memory_types[n as usize].property_flags.contains(wanted)
-                })
-                .ok_or("no such memory")?;
+            let instance = &self.instance;
+            let all = instance.get_physical_device_memory_properties(self.physical);
+            let fits = |n: &u32| {
+                needs.memory_type_bits & (1 << n) != 0
+                    && all.memory_types[*n as usize]
+                        .property_flags
+                        .contains(wanted)
+            };
+            let kind = (0..all.memory_type_count).find(fits);
+            let kind = kind.ok_or("no such memory")?;
             let info = vk::MemoryAllocateInfo::default()
                 .allocation_size(needs.size)
                 .memory_type_index(kind);
@@ -202,10 +208,9 @@ pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMa
     let (near, far) = (0.1, 50.0);
     let focal = 1.0 / 20f64.to_radians().tan();
     let aspect = f64::from(options.width) / f64::from(options.height);
-    let (z, w) = if options.reversed {
-        (0.0, near)
-    } else {
-        (far / (near - far), near * far / (near - far))
+    let (z, w) = match options.reversed {
+        true => (0.0, near),
+        false => (far / (near - far), near * far / (near - far)),
     };
     let projection = DMat4::from_cols(
         DVec4::new(focal / aspect, 0.0, 0.0, 0.0),

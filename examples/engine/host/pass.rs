@@ -17,10 +17,7 @@ impl Stage<'_> {
                 .initial_layout(vk::ImageLayout::UNDEFINED)
                 .final_layout(layout)
         };
-        let (color, depth) = (
-            vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
-            vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-        );
+        let (color, depth) = (self.color.drawn(), self.depth.drawn());
         let mut attachments = vec![
             attachment(COLOR, samples, color),
             attachment(DEPTH, samples, depth),
@@ -104,10 +101,9 @@ impl Stage<'_> {
             let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
             let samples = vk::PipelineMultisampleStateCreateInfo::default()
                 .rasterization_samples(vk::SampleCountFlags::from_raw(self.options.samples));
-            let nearer = if self.options.reversed {
-                vk::CompareOp::GREATER
-            } else {
-                vk::CompareOp::LESS
+            let nearer = match self.options.reversed {
+                true => vk::CompareOp::GREATER,
+                false => vk::CompareOp::LESS,
             };
             let depth = vk::PipelineDepthStencilStateCreateInfo::default()
                 .depth_test_enable(true)

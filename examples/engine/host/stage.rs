@@ -15,10 +15,8 @@ struct Pushed {
     towards_light: [f32; 4],
 }
 
-struct InFlight {
-    commands: vk::CommandBuffer,
-    fence: vk::Fence,
-}
+/// The commands of a frame in flight, and what tells that they have run.
+type InFlight = (vk::CommandBuffer, vk::Fence);
 
 /// The images of a frame, the pass that draws into them, and commands for the frames in flight.
 pub struct Stage<'a> {
@@ -44,11 +42,8 @@ impl<'a> Stage<'a> {
         let device = &host.device;
         let pixels = (options.width * options.height) as usize;
         let color = HostImage::new(host, &options, COLOR, 1)?;
-        let multisampled = if options.samples > 1 {
-            Some(HostImage::new(host, &options, COLOR, options.samples)?)
-        } else {
-            None
-        };
+        let several = || HostImage::new(host, &options, COLOR, options.samples);
+        let multisampled = (options.samples > 1).then(several).transpose()?;
         let depth = HostImage::new(host, &options, DEPTH, options.samples)?;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let read = [
@@ -68,7 +63,7 @@ impl<'a> Stage<'a> {
             let mut frames = Vec::new();
             for commands in device.allocate_command_buffers(&info)? {
                 let fence = device.create_fence(&signaled, None)?;
-                frames.push(InFlight { commands, fence });
+                frames.push((commands, fence));
             }
             let push = [vk::PushConstantRange::default()
                 .stage_flags(vk::ShaderStageFlags::VERTEX)
@@ -111,10 +106,7 @@ impl<'a> Stage<'a> {
         let device = &self.host.device;
         let slot = self.next;
         self.next = (slot + 1) % FRAMES;
-        let InFlight {
-            commands: cmd,
-            fence,
-        } = self.frames[slot];
+        let (cmd, fence) = self.frames[slot];
         // SAFETY: the fence tells that the commands have run; the rest is plain recording.
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
@@ -140,10 +132,19 @@ impl<'a> Stage<'a> {
             } else {
                 device.cmd_end_render_pass(cmd);
             }
+            self.submit((cmd, fence))
+        }
+    }
+
+    /// Ends commands and submits them.
+    unsafe fn submit(&self, (cmd, fence): InFlight) -> Fallible<()> {
+        let device = &self.host.device;
+        let buffers = [cmd];
+        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        // SAFETY: the commands are recording, outside of a pass.
+        unsafe {
             device.end_command_buffer(cmd)?;
             device.reset_fences(&[fence])?;
-            let buffers = [cmd];
-            let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
             device.queue_submit(self.host.queue, &submits, fence)?;
         }
         Ok(())
@@ -151,14 +152,7 @@ impl<'a> Stage<'a> {
 
     unsafe fn begin_pass(&self, cmd: vk::CommandBuffer) {
         let device = &self.host.device;
-        let extent = vk::Extent2D {
-            width: self.options.width,
-            height: self.options.height,
-        };
-        let area = vk::Rect2D {
-            offset: vk::Offset2D::default(),
-            extent,
-        };
+        let area = vk::Rect2D::default().extent(self.options.extent());
         let color = vk::ClearValue {
             color: vk::ClearColorValue {
                 float32: [0.2, 0.25, 0.3, 1.0],
@@ -174,30 +168,27 @@ impl<'a> Stage<'a> {
         // SAFETY: `cmd` is recording; the images live as long as `self`.
         unsafe {
             // The frame before is over with the images: its writes, and the copies that read them.
-            self.barrier(cmd, vk::ImageLayout::UNDEFINED);
+            let images = [&self.color, &self.depth];
+            let images = images.into_iter().chain(&self.multisampled);
+            let barriers = images.map(|i| i.barrier(vk::ImageLayout::UNDEFINED, i.drawn()));
+            self.barrier(cmd, &barriers.collect::<Vec<_>>());
             if self.options.dynamic {
-                let attachment = |view, layout, clear| {
+                let attachment = |image: &HostImage, clear| {
                     vk::RenderingAttachmentInfo::default()
-                        .image_view(view)
-                        .image_layout(layout)
+                        .image_view(image.view)
+                        .image_layout(image.drawn())
                         .load_op(vk::AttachmentLoadOp::CLEAR)
                         .store_op(vk::AttachmentStoreOp::STORE)
                         .clear_value(clear)
                 };
-                let layout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
-                let mut drawn = attachment(self.color.view, layout, color);
+                let mut drawn = attachment(&self.color, color);
                 if let Some(several) = &self.multisampled {
-                    drawn = attachment(several.view, layout, color)
+                    drawn = attachment(several, color)
                         .resolve_mode(vk::ResolveModeFlags::AVERAGE)
                         .resolve_image_view(self.color.view)
-                        .resolve_image_layout(layout);
+                        .resolve_image_layout(self.color.drawn());
                 }
-                let colors = [drawn];
-                let depths = attachment(
-                    self.depth.view,
-                    vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                    depth,
-                );
+                let (colors, depths) = ([drawn], attachment(&self.depth, depth));
                 let info = vk::RenderingInfo::default()
                     .render_area(area)
                     .layer_count(1)
@@ -214,148 +205,58 @@ impl<'a> Stage<'a> {
                 device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE);
             }
             let viewport = vk::Viewport {
-                x: 0.0,
-                y: 0.0,
-                width: extent.width as f32,
-                height: extent.height as f32,
-                min_depth: 0.0,
+                width: area.extent.width as f32,
+                height: area.extent.height as f32,
                 max_depth: 1.0,
+                ..Default::default()
             };
             device.cmd_set_viewport(cmd, 0, &[viewport]);
             device.cmd_set_scissor(cmd, 0, &[area]);
         }
     }
 
-    /// All images from what they were to attachments.
-    unsafe fn barrier(&self, cmd: vk::CommandBuffer, from: vk::ImageLayout) {
-        use vk::AccessFlags as A;
-        use vk::PipelineStageFlags as S;
-        let of = |image: &HostImage, aspect, layout, access| {
-            let range = vk::ImageSubresourceRange::default()
-                .aspect_mask(aspect)
-                .level_count(1)
-                .layer_count(1);
-            vk::ImageMemoryBarrier::default()
-                .image(image.raw)
-                .subresource_range(range)
-                .old_layout(from)
-                .new_layout(layout)
-                .src_access_mask(A::COLOR_ATTACHMENT_WRITE | A::DEPTH_STENCIL_ATTACHMENT_WRITE)
-                .dst_access_mask(access)
-        };
-        let color = |image| {
-            of(
-                image,
-                vk::ImageAspectFlags::COLOR,
-                vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
-                A::COLOR_ATTACHMENT_WRITE | A::COLOR_ATTACHMENT_READ,
-            )
-        };
-        let mut barriers = vec![
-            color(&self.color),
-            of(
-                &self.depth,
-                vk::ImageAspectFlags::DEPTH,
-                vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE,
-            ),
-        ];
-        barriers.extend(self.multisampled.as_ref().map(color));
-        let tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
-        let drawing = S::COLOR_ATTACHMENT_OUTPUT | tests;
+    /// Records barriers of images, between all stages.
+    unsafe fn barrier(&self, cmd: vk::CommandBuffer, images: &[vk::ImageMemoryBarrier]) {
+        let (all, none) = (
+            vk::PipelineStageFlags::ALL_COMMANDS,
+            vk::DependencyFlags::empty(),
+        );
+        let device = &self.host.device;
         // SAFETY: `cmd` is recording, outside of a pass.
-        unsafe {
-            let none = vk::DependencyFlags::empty();
-            self.host.device.cmd_pipeline_barrier(
-                cmd,
-                drawing | S::TRANSFER,
-                drawing,
-                none,
-                &[],
-                &[],
-                &barriers,
-            );
-        }
+        unsafe { device.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], images) };
     }
 
     /// Waits for all frames and reads the last: sRGB bytes; of one sample, depths, too.
     pub fn read(&self) -> Fallible<(Vec<u8>, Vec<f32>)> {
         let device = &self.host.device;
-        let InFlight {
-            commands: cmd,
-            fence,
-        } = self.frames[self.next];
+        let (cmd, fence) = self.frames[self.next];
+        let copied = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        let has_depths = self.options.samples == 1;
+        let images = [Some(&self.color), has_depths.then_some(&self.depth)];
         // SAFETY: all frames are waited for; the copies are waited for, too.
         unsafe {
             device.device_wait_idle()?;
             device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
-            let copied = [
-                (
-                    &self.color,
-                    vk::ImageAspectFlags::COLOR,
-                    vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
-                ),
-                (
-                    &self.depth,
-                    vk::ImageAspectFlags::DEPTH,
-                    vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                ),
-            ];
-            let count = if self.options.samples == 1 { 2 } else { 1 };
-            for ((image, aspect, layout), to) in copied.into_iter().zip(&self.read).take(count) {
-                let range = vk::ImageSubresourceRange::default()
-                    .aspect_mask(aspect)
-                    .level_count(1)
-                    .layer_count(1);
-                let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-                let barrier = vk::ImageMemoryBarrier::default()
-                    .image(image.raw)
-                    .subresource_range(range)
-                    .old_layout(layout)
-                    .new_layout(source)
-                    .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-                    .dst_access_mask(vk::AccessFlags::TRANSFER_READ);
-                let (all, transfer) = (
-                    vk::PipelineStageFlags::ALL_COMMANDS,
-                    vk::PipelineStageFlags::TRANSFER,
-                );
-                let none = vk::DependencyFlags::empty();
-                device.cmd_pipeline_barrier(cmd, all, transfer, none, &[], &[], &[barrier]);
-                let region = vk::BufferImageCopy::default()
-                    .image_subresource(
-                        vk::ImageSubresourceLayers::default()
-                            .aspect_mask(aspect)
-                            .layer_count(1),
-                    )
-                    .image_extent(vk::Extent3D {
-                        width: self.options.width,
-                        height: self.options.height,
-                        depth: 1,
-                    });
-                device.cmd_copy_image_to_buffer(cmd, image.raw, source, to.raw, &[region]);
+            for (image, to) in images.into_iter().flatten().zip(&self.read) {
+                self.barrier(cmd, &[image.barrier(image.drawn(), copied)]);
+                let region = [image.region(&self.options)];
+                device.cmd_copy_image_to_buffer(cmd, image.raw, copied, to.raw, &region);
             }
-            let barrier = vk::MemoryBarrier::default()
+            let barrier = [vk::MemoryBarrier::default()
                 .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-                .dst_access_mask(vk::AccessFlags::HOST_READ);
+                .dst_access_mask(vk::AccessFlags::HOST_READ)];
             let (transfer, host) = (
                 vk::PipelineStageFlags::TRANSFER,
                 vk::PipelineStageFlags::HOST,
             );
             let none = vk::DependencyFlags::empty();
-            device.cmd_pipeline_barrier(cmd, transfer, host, none, &[barrier], &[], &[]);
-            device.end_command_buffer(cmd)?;
-            device.reset_fences(&[fence])?;
-            let buffers = [cmd];
-            let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
-            device.queue_submit(self.host.queue, &submits, fence)?;
+            device.cmd_pipeline_barrier(cmd, transfer, host, none, &barrier, &[], &[]);
+            self.submit((cmd, fence))?;
             device.wait_for_fences(&[fence], true, u64::MAX)?;
         }
-        let depths = if self.options.samples == 1 {
-            bytemuck::pod_collect_to_vec(&self.read[1].bytes())
-        } else {
-            Vec::new()
-        };
-        Ok((self.read[0].bytes(), depths))
+        let [colors, depths] = self.read.each_ref().map(HostBuffer::bytes);
+        let depths = if has_depths { &depths[..] } else { &[] };
+        Ok((colors, bytemuck::pod_collect_to_vec(depths)))
     }
 
     /// Waits until the device is done with all frames.
@@ -371,8 +272,8 @@ impl Drop for Stage<'_> {
         // SAFETY: the device is waited for; null handles may be destroyed.
         unsafe {
             let _ = device.device_wait_idle();
-            for frame in &self.frames {
-                device.destroy_fence(frame.fence, None);
+            for (_, fence) in &self.frames {
+                device.destroy_fence(*fence, None);
             }
             device.destroy_command_pool(self.pool, None);
             device.destroy_pipeline(self.pipeline, None);

@@ -13,17 +13,15 @@ impl Recorder {
         if cmd.is_null() {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
-        let slot = slot as usize;
         // SAFETY: the caller of the entry point has promised it.
-        let frame = unsafe { self.renderer.prepare(cmd, slot, view) };
-        if let Some(prepared) = self.prepared.get_mut(slot) {
-            *prepared = None;
+        let (frame, error) = match unsafe { self.renderer.prepare(cmd, slot as usize, view) } {
+            Ok(frame) => (Some(frame), Ok(())),
+            Err(error) => (None, Err(error.into())),
+        };
+        if let Some(prepared) = self.prepared.get_mut(slot as usize) {
+            *prepared = frame;
         }
-        let frame = frame?;
-        if let Some(prepared) = self.prepared.get_mut(slot) {
-            *prepared = Some(frame);
-        }
-        Ok(())
+        error
     }
 
     /// The frame of a slot.
@@ -32,11 +30,9 @@ impl Recorder {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
         let prepared = self.prepared.get(slot as usize);
-        prepared.and_then(Option::as_ref).ok_or_else(|| {
-            Fault::usage(format!(
-                "slot {slot} is not prepared; call revmap_renderer_prepare first"
-            ))
-        })
+        let message = || format!("slot {slot} is not prepared; call revmap_renderer_prepare first");
+        let frame = prepared.and_then(Option::as_ref);
+        frame.ok_or_else(|| Fault::usage(message()))
     }
 }
 
@@ -111,9 +107,8 @@ pub unsafe extern "C" fn revmap_renderer_record(
         with(renderer, |r| {
             let frame = r.frame(command_buffer, slot)?;
             if !r.in_pass {
-                return Err(Fault::usage(
-                    "this renderer computes; call revmap_renderer_record_compute",
-                ));
+                let message = "this renderer computes; call revmap_renderer_record_compute";
+                return Err(Fault::usage(message));
             }
             // SAFETY: the slot was prepared; the rest the caller has promised.
             Ok(unsafe { r.renderer.record(command_buffer, frame) }?)
@@ -142,9 +137,8 @@ pub unsafe extern "C" fn revmap_renderer_record_compute(
         with(renderer, |r| {
             let frame = r.frame(command_buffer, slot)?;
             if r.in_pass {
-                return Err(Fault::usage(
-                    "this renderer draws in a pass; call revmap_renderer_record",
-                ));
+                let message = "this renderer draws in a pass; call revmap_renderer_record";
+                return Err(Fault::usage(message));
             }
             // SAFETY: the slot was prepared; the rest the caller has promised.
             Ok(unsafe { r.renderer.record_compute(command_buffer, frame) }?)

@@ -52,11 +52,7 @@ pub extern "C" fn revmap_renderer_remove(
     renderer: *mut RevmapRenderer,
     object: RevmapObject,
 ) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            Ok(r.renderer.remove(ObjectId::from_bits(object))?)
-        })
-    })
+    enter(|| with_object(renderer, object, Renderer::remove))
 }
 
 /// Gives an object other values, all of them. Values that are equal cost nothing.
@@ -109,9 +105,8 @@ pub unsafe extern "C" fn revmap_renderer_set_placement(
     enter(|| {
         // SAFETY: the caller's pointer.
         let placement = unsafe { take(placement, "placement") }?;
-        with_object(renderer, object, |r, id| {
-            r.set_placement(id, placement.into())
-        })
+        let placement = placement.into();
+        with_object(renderer, object, |r, id| r.set_placement(id, placement))
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::{RevmapRenderer, with};
 use crate::fault::{RevmapResult, enter};
-use crate::handle::{Handle, handle};
+use crate::handle::{Handle, create, handle};
 use crate::pointers::put;
 use ash::vk;
 use revmap::gpu::Prewarm;
@@ -23,12 +23,12 @@ pub unsafe extern "C" fn revmap_renderer_prewarm(
     prewarm: *mut *mut RevmapPrewarm,
 ) -> RevmapResult {
     // SAFETY: the caller's pointer.
-    enter(|| unsafe {
-        put(prewarm, "prewarm", || {
+    unsafe {
+        create(prewarm, || {
             let listed = with(renderer, |r| Ok(r.renderer.prewarm()?))?;
-            Ok(Handle::create(Arc::new(listed)))
+            Ok(Arc::new(listed))
         })
-    })
+    }
 }
 
 /// Compiles those that are not compiled yet. The renderer must live until this returns.

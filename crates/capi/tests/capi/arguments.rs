@@ -1,5 +1,6 @@
 //! Wrong arguments give errors, and leave what was there as it was.
 
+use crate::text;
 use revmap_capi::device::*;
 use revmap_capi::enums::*;
 use revmap_capi::fault::*;
@@ -12,17 +13,6 @@ use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 
 type Is = RevmapResult;
-
-fn text() -> String {
-    // SAFETY: it lasts until this thread's next failure.
-    let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
-    text.to_string_lossy().into_owned()
-}
-
-#[track_caller]
-fn ok(result: RevmapResult) {
-    assert_eq!(result, Is::Ok, "{}", text());
-}
 
 /// The call has failed so, and its text says this.
 fn fails(call: &str, result: RevmapResult, wanted: RevmapResult, part: &str) {
@@ -42,17 +32,6 @@ macro_rules! fail {
     };
 }
 
-macro_rules! defaults {
-    ($function:ident, $name:ident) => {{
-        // SAFETY: plain numbers and null pointers.
-        let mut value: $name = unsafe { zeroed() };
-        value.size = size_of::<$name>() as u32;
-        // SAFETY: a live structure.
-        ok(unsafe { $function(&mut value) });
-        value
-    }};
-}
-
 mod pictures;
 mod renderers;
 
@@ -60,14 +39,18 @@ fn spindle() -> *mut RevmapProfile {
     let points = [[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]];
     let mut profile = null_mut();
     // SAFETY: live points.
-    ok(unsafe { revmap_profile_from_points(points.as_ptr(), 3, 0.5, &mut profile) });
+    unsafe {
+        ok! { revmap_profile_from_points(points.as_ptr(), 3, 0.5, &mut profile); }
+    }
     profile
 }
 
 fn device() -> *mut RevmapDevice {
     let mut device = null_mut();
     // SAFETY: a null choice is allowed.
-    ok(unsafe { revmap_device_open(null(), 1, &mut device) });
+    unsafe {
+        ok! { revmap_device_open(null(), 1, &mut device); }
+    }
     device
 }
 
@@ -92,20 +75,17 @@ fn profiles_and_textures() {
         }
         assert!(profile.is_null(), "a failure has written a handle");
         let axis = RevmapAxis::Left as u32;
-        ok(revmap_profile_from_bytes(
-            svg.as_ptr().cast(),
-            svg.len(),
-            axis,
-            &mut profile,
-        ));
+        ok! { revmap_profile_from_bytes(svg.as_ptr().cast(), svg.len(), axis, &mut profile); }
         let mut radius = 0.0;
-        ok(revmap_profile_radius(profile, &mut radius));
+        ok! { revmap_profile_radius(profile, &mut radius); }
         assert_eq!(radius, 0.5);
         fail! {
             Usage, "null": revmap_profile_radius(profile, null_mut());
         }
-        ok(revmap_profile_destroy(profile));
-        ok(revmap_profile_destroy(null_mut()));
+        ok! {
+            revmap_profile_destroy(profile);
+            revmap_profile_destroy(null_mut());
+        }
         fail! {
             Handle, "the profile was destroyed": revmap_profile_destroy(profile);
             Handle, "the profile was destroyed": revmap_profile_radius(profile, &mut radius);
@@ -120,17 +100,12 @@ fn profiles_and_textures() {
             Usage, "RevmapSlopeFilter": revmap_height_map_from_heights(1, 1, &0.5, 2, &mut heights);
             File, "": revmap_color_map_from_file(c"/".as_ptr(), &mut colors);
         }
-        ok(revmap_color_map_from_texels(
-            1,
-            1,
-            &[1, 2, 3, 4],
-            &mut colors,
-        ));
+        ok! { revmap_color_map_from_texels(1, 1, &[1, 2, 3, 4], &mut colors); }
         // A handle of another kind.
         fail! {
             Handle, "the height map": revmap_height_map_destroy(colors.cast());
         }
-        ok(revmap_color_map_destroy(colors));
+        ok! { revmap_color_map_destroy(colors); }
     }
 }
 
@@ -161,8 +136,7 @@ fn structures_and_devices() {
         fail! {
             Usage, "get_instance_proc_addr is null": revmap_device_borrow(&lent, &mut opened);
         }
-        let mut needs: RevmapRequirements = zeroed();
-        needs.size = size_of::<RevmapRequirements>() as u32;
+        let mut needs = sized!(RevmapRequirements);
         let nothing = lent.get_instance_proc_addr;
         fail! {
             Usage, "get_instance_proc_addr is null": revmap_requirements(nothing, ash::vk::Instance::null(), lent.physical_device, &mut needs);
@@ -175,27 +149,21 @@ fn structures_and_devices() {
             Usage, "RevmapDeviceInfo": revmap_device_info(device, &mut info);
         }
         info.size = size_of::<RevmapDeviceInfo>() as u32;
-        ok(revmap_device_info(device, &mut info));
+        ok! { revmap_device_info(device, &mut info); }
         assert_eq!(info.validated, 1);
         assert!(!CStr::from_ptr(info.name.as_ptr()).is_empty());
         let mut bytes = 0;
-        ok(revmap_device_pipeline_cache(device, null_mut(), &mut bytes));
+        ok! { revmap_device_pipeline_cache(device, null_mut(), &mut bytes); }
         let mut data = vec![0u8; bytes];
         fail! {
             Usage, "fit": revmap_device_pipeline_cache(device, data.as_mut_ptr().cast(), &mut 0);
         }
-        ok(revmap_device_pipeline_cache(
-            device,
-            data.as_mut_ptr().cast(),
-            &mut bytes,
-        ));
-        ok(revmap_device_add_pipeline_cache(
-            device,
-            data.as_ptr().cast(),
-            bytes,
-        ));
-        ok(revmap_device_check(device));
-        ok(revmap_device_destroy(device));
+        ok! {
+            revmap_device_pipeline_cache(device, data.as_mut_ptr().cast(), &mut bytes);
+            revmap_device_add_pipeline_cache(device, data.as_ptr().cast(), bytes);
+            revmap_device_check(device);
+            revmap_device_destroy(device);
+        }
         fail! {
             Handle, "the device was destroyed": revmap_device_check(device);
         }

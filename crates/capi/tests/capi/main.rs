@@ -2,6 +2,56 @@
 #![allow(unsafe_code, missing_docs)]
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may stop at what it did not expect
 
+use revmap_capi::fault::{RevmapResult, revmap_last_error_text};
+use std::ffi::CStr;
+
+/// The text of this thread's last failure.
+fn text() -> String {
+    // SAFETY: it lasts until this thread's next failure.
+    let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
+    text.to_string_lossy().into_owned()
+}
+
+#[track_caller]
+fn succeeds(call: &str, result: RevmapResult) {
+    assert_eq!(result, RevmapResult::Ok, "{call}: {}", text());
+}
+
+/// Calls that succeed.
+macro_rules! ok {
+    ($($call:expr;)*) => { $(crate::succeeds(stringify!($call), $call);)* };
+}
+
+/// A structure of the header, of plain numbers and null pointers.
+fn zeros<T: Copy>() -> T {
+    // SAFETY: all of them are valid as zeros.
+    unsafe { std::mem::zeroed() }
+}
+
+/// A structure that a function has filled in.
+fn filled<T>(mut value: T, fill: unsafe extern "C" fn(*mut T) -> RevmapResult) -> T {
+    // SAFETY: a live structure.
+    succeeds("defaults", unsafe { fill(&mut value) });
+    value
+}
+
+/// A structure of zeros that holds its size.
+macro_rules! sized {
+    ($name:ident) => {
+        $name {
+            size: size_of::<$name>() as u32,
+            ..crate::zeros()
+        }
+    };
+}
+
+/// A structure that a function fills in.
+macro_rules! defaults {
+    ($function:ident, $name:ident) => {
+        crate::filled(sized!($name), $function)
+    };
+}
+
 mod arguments;
 mod header;
 mod layout;

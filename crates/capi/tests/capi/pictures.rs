@@ -2,16 +2,12 @@
 
 use crate::host::{self, Options, Stage};
 use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
-use glam::{DMat4, DVec3, Vec3};
-use revmap::gpu::{
-    self, DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, View, Viewport,
-};
+use glam::{DMat4, DVec3};
+use revmap::gpu::{self, DepthOrder, Device, View};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
-use revmap_files::Picture;
-use revmap_files::ProfileAxis;
-use std::cell::RefCell;
+use revmap_files::{Picture, ProfileAxis};
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
@@ -63,59 +59,22 @@ fn view() -> View {
         [2.0625, 0.0, 0.0, 0.0,  0.0, -2.75, 0.0, 0.0,  0.0, 0.0, 0.0, -1.0,  0.0, 0.0, 0.1, 0.0],
     ]
     .map(|columns| DMat4::from_cols_array(&columns));
-    let viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(OPTIONS.width),
-        height: f64::from(OPTIONS.height),
-    };
+    let viewport = host::viewport(&OPTIONS);
     View::from_matrices(view, projection, viewport, DepthOrder::Reversed).unwrap()
 }
 
 /// What the Rust renderer draws of them: RGB.
 fn drawn() -> Vec<u8> {
     let host = host::open();
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe {
-        Device::borrow(&HostDevice {
-            queue: None,
-            ..host::lent(&host)
-        })
-    }
-    .unwrap();
-    let output = Output::Pass(PassFormats {
-        begun: PassKind::Dynamic {
-            color: vec![host::COLOR],
-            depth: host::DEPTH,
-            stencil: ash::vk::Format::UNDEFINED,
-        },
-        samples: 1,
-        depth: DepthOrder::Reversed,
-        planes: Planes::Color,
-    });
-    let mut renderer =
-        Renderer::new(&device, output, &SearchSettings::default(), host::FRAMES).unwrap();
+    let device = host::borrow(&host);
+    let mut stage = Stage::new(&host, OPTIONS).unwrap();
+    let search = SearchSettings::default();
+    let mut renderer = host::renderer(&device, &stage, &search, host::FRAMES);
     for object in objects() {
         renderer.add(object).unwrap();
     }
-    let mut stage = Stage::new(&host, OPTIONS).unwrap();
-    let (cell, view) = (RefCell::new(&mut renderer), view());
-    stage
-        .frame(
-            DMat4::IDENTITY,
-            Vec3::Z,
-            &[],
-            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-            |cmd, slot| Ok(unsafe { cell.borrow_mut().prepare(cmd, slot, &view) }?),
-            // SAFETY: the frame was prepared, the pass is of the output's formats.
-            |cmd, frame| Ok(unsafe { cell.borrow().record(cmd, frame) }?),
-        )
-        .unwrap();
+    host::frame(&mut stage, &mut renderer, &view(), DMat4::IDENTITY, &[]);
     let (rgba, _) = stage.read().unwrap();
-    drop(stage);
-    drop(renderer);
-    drop(device);
-    assert!(host.take_messages().is_empty());
     rgba.chunks_exact(4)
         .flat_map(|p| [p[0], p[1], p[2]])
         .collect()
@@ -158,20 +117,16 @@ fn the_picture_in_cpp_is_what_rust_draws() {
     let build = folder.path().join("build");
     let flags = STRICT.join(" ");
     run(Command::new("cmake")
-        .arg("-S")
-        .arg(root().join("examples/c"))
-        .arg("-B")
-        .arg(&build)
+        .args([Path::new("-S"), &root().join("examples/c")])
+        .args([Path::new("-B"), &build])
         .arg(format!("-DCMAKE_PREFIX_PATH={}", prefix().display()))
         .arg(format!("-DCMAKE_C_FLAGS={flags}"))
         .arg(format!("-DCMAKE_CXX_FLAGS={flags}")));
     run(Command::new("cmake").arg("--build").arg(&build));
     let drawing = root().join("assets/profiles/pawn.svg");
     let png = folder.path().join("pawn.png");
-    println!(
-        "{}",
-        run(validated(&build.join("picture")).arg(&drawing).arg(&png))
-    );
+    let said = run(validated(&build.join("picture")).args([&drawing, &png]));
+    println!("{said}");
     // The engine, which CMake has linked with the shared library.
     run(validated(&build.join("engine")).arg(folder.path().join("engine.ppm")));
 

@@ -24,9 +24,8 @@ pub fn folder() -> TempDir {
 /// Runs a command and gives its standard output. If it fails, so does the test, with all that it
 /// said.
 pub fn run(command: &mut Command) -> String {
-    let out = command
-        .output()
-        .unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let out = command.output();
+    let out = out.unwrap_or_else(|e| panic!("{command:?}: {e}"));
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (said, failed) = (text(&out.stdout), text(&out.stderr));
     assert!(out.status.success(), "{command:?}\n{said}{failed}");
@@ -38,15 +37,10 @@ pub fn prefix() -> &'static Path {
     // A static is never dropped: the folder goes with the target folder's own.
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
-        let deps = std::env::current_exe()
-            .unwrap()
-            .parent()
-            .unwrap()
-            .to_owned();
+        let program = std::env::current_exe().unwrap();
         let prefix = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi-prefix");
-        run(Command::new(root().join("scripts/install-c"))
-            .arg(&prefix)
-            .arg(deps));
+        let mut install = Command::new(root().join("scripts/install-c"));
+        run(install.args([prefix.as_path(), program.parent().unwrap()]));
         prefix
     })
 }
@@ -59,15 +53,20 @@ fn pkg_config(what: &str) -> Vec<String> {
     said.split_whitespace().map(str::to_owned).collect()
 }
 
+/// A compiler of C or C++, strict, that finds the library's headers.
+fn compiler(name: &str, standard: &str) -> Command {
+    let mut compiler = Command::new(name);
+    compiler.arg(format!("-std={standard}")).args(STRICT);
+    compiler.args(pkg_config("--cflags"));
+    compiler
+}
+
 /// Compiles C files to a program. The library is found by pkg-config.
 pub fn compile(standard: &str, flags: &[&str], sources: &[PathBuf], to: &Path) {
-    run(Command::new("cc")
-        .arg(format!("-std={standard}"))
-        .args(STRICT)
+    run(compiler("cc", standard)
         .args(flags)
         .arg("-I")
         .arg(root().join("examples/c"))
-        .args(pkg_config("--cflags"))
         .args(sources)
         .args(pkg_config("--libs"))
         .args(["-lvulkan", "-o"])
@@ -88,29 +87,22 @@ pub fn validated(program: &Path) -> Command {
 #[test]
 fn the_headers_alone_compile_in_every_standard() {
     let folder = folder();
-    for (compiler, standard, header) in [
+    for (name, standard, header) in [
         ("cc", "c99", "revmap.h"),
         ("cc", "c11", "revmap.h"),
         ("cc", "c17", "revmap.h"),
         ("c++", "c++17", "revmap.h"),
         ("c++", "c++17", "revmap.hpp"),
     ] {
-        let file = folder
-            .path()
-            .join(if compiler == "cc" { "one.c" } else { "one.cpp" });
-        std::fs::write(
-            &file,
-            format!("#include <{header}>\nint main(void) {{ return 0; }}\n"),
-        )
-        .unwrap();
-        run(Command::new(compiler)
-            .arg(format!("-std={standard}"))
-            .args(STRICT)
-            .args(pkg_config("--cflags"))
+        let source = if name == "cc" { "one.c" } else { "one.cpp" };
+        let [file, object] = [source, "one.o"].map(|name| folder.path().join(name));
+        let text = format!("#include <{header}>\nint main(void) {{ return 0; }}\n");
+        std::fs::write(&file, text).unwrap();
+        run(compiler(name, standard)
             .arg("-c")
             .arg(&file)
             .arg("-o")
-            .arg(folder.path().join("one.o")));
+            .arg(object));
     }
 }
 
@@ -135,20 +127,14 @@ fn two_thousand_cycles_leave_nothing_behind() {
     let folder = folder();
     let program = folder.path().join("cycles");
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c/cycles.c");
-    compile(
-        "gnu11",
-        &[],
-        &[own, root().join("examples/c/host.c")],
-        &program,
-    );
+    let sources = [own, root().join("examples/c/host.c")];
+    compile("gnu11", &[], &sources, &program);
     let mut command = Command::new(&program);
     command.env("LD_LIBRARY_PATH", prefix().join("lib"));
     command.env_remove("REVMAP_VALIDATION"); // the layers keep a record of what was
     command.env("MALLOC_ARENA_MAX", "1"); // the C library counts one arena alone
-    println!(
-        "{}",
-        run(command.arg(root().join("assets/profiles/pawn.svg")))
-    );
+    let said = run(command.arg(root().join("assets/profiles/pawn.svg")));
+    println!("{said}");
 }
 
 /// The examples of `docs/embedding.md` are whole files.
@@ -156,19 +142,12 @@ fn two_thousand_cycles_leave_nothing_behind() {
 fn the_documents_examples_compile() {
     let folder = folder();
     let text = std::fs::read_to_string(root().join("docs/embedding.md")).unwrap();
-    for (fence, compiler, standard) in [("c", "cc", "c99"), ("cpp", "c++", "c++17")] {
+    for (fence, name, standard) in [("c", "cc", "c99"), ("cpp", "c++", "c++17")] {
         let begin = format!("```{fence}\n");
-        let example = text
-            .split(&begin)
-            .nth(1)
-            .and_then(|rest| rest.split("```").next());
+        let rest = text.split(&begin).nth(1);
+        let example = rest.and_then(|rest| rest.split("```").next());
         let file = folder.path().join(format!("example.{fence}"));
         std::fs::write(&file, example.unwrap()).unwrap();
-        run(Command::new(compiler)
-            .arg(format!("-std={standard}"))
-            .args(STRICT)
-            .args(pkg_config("--cflags"))
-            .arg("-fsyntax-only")
-            .arg(&file));
+        run(compiler(name, standard).arg("-fsyntax-only").arg(&file));
     }
 }

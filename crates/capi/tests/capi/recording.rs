@@ -1,12 +1,12 @@
 //! Recording through the C interface into a render pass: what the Rust renderer draws.
 
-use crate::host::{Host, Options, Stage, lent, open};
+use crate::host::{Host, Options, Stage, borrow, frame, open, renderer};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
-use revmap::gpu::{DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::View;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Placement, Scene};
-use revmap::settings::{Planes, SearchSettings};
+use revmap::settings::SearchSettings;
 use revmap_capi::device::*;
 use revmap_capi::enums::*;
 use revmap_capi::fault::*;
@@ -17,8 +17,6 @@ use revmap_capi::renderer::objects::*;
 use revmap_capi::renderer::prewarm::*;
 use revmap_capi::renderer::*;
 use revmap_capi::values::*;
-use std::ffi::CStr;
-use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
 
@@ -33,13 +31,6 @@ const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8],
 const EYE: [f64; 3] = [2.0, 0.5, 1.5];
 const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
 pub const RANGE: [f64; 2] = [0.1, 10.0];
-
-#[track_caller]
-pub fn ok(result: RevmapResult) {
-    // SAFETY: the text lasts until this thread's next failure.
-    let text = unsafe { CStr::from_ptr(revmap_last_error_text()) };
-    assert_eq!(result, RevmapResult::Ok, "{}", text.to_string_lossy());
-}
 
 pub fn lend(host: &Host) -> *mut RevmapDevice {
     let mut device = null_mut();
@@ -59,7 +50,7 @@ pub fn lend(host: &Host) -> *mut RevmapDevice {
             features: &host.features,
             pipeline_cache: vk::PipelineCache::null(),
         };
-        ok(revmap_device_borrow(&lent, &mut device));
+        ok! { revmap_device_borrow(&lent, &mut device); }
     }
     device
 }
@@ -69,18 +60,13 @@ pub fn add(renderer: *mut RevmapRenderer) {
     // SAFETY: live values.
     unsafe {
         let (mut profile, mut object) = (null_mut(), 0);
-        ok(revmap_profile_from_points(
-            POINTS.as_ptr(),
-            POINTS.len(),
-            0.4,
-            &mut profile,
-        ));
-        let mut info: RevmapObjectInfo = zeroed();
-        info.size = size_of::<RevmapObjectInfo>() as u32;
-        ok(revmap_object_defaults(&mut info));
+        ok! { revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), 0.4, &mut profile); }
+        let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
         info.profile = profile;
-        ok(revmap_renderer_add(renderer, &info, &mut object));
-        ok(revmap_renderer_add(renderer, &info, &mut object));
+        ok! {
+            revmap_renderer_add(renderer, &info, &mut object);
+            revmap_renderer_add(renderer, &info, &mut object);
+        }
         let placement = RevmapPlacement {
             position: BESIDE,
             ..info.placement
@@ -89,13 +75,13 @@ pub fn add(renderer: *mut RevmapRenderer) {
             extend: 0.02,
             ..info.offset
         };
-        ok(revmap_renderer_set_instances(
-            renderer, object, &placement, 1,
-        ));
-        ok(revmap_renderer_set_instances(renderer, object, null(), 0));
-        ok(revmap_renderer_set_placement(renderer, object, &placement));
-        ok(revmap_renderer_set_offset(renderer, object, &offset));
-        ok(revmap_profile_destroy(profile));
+        ok! {
+            revmap_renderer_set_instances(renderer, object, &placement, 1);
+            revmap_renderer_set_instances(renderer, object, null(), 0);
+            revmap_renderer_set_placement(renderer, object, &placement);
+            revmap_renderer_set_offset(renderer, object, &offset);
+            revmap_profile_destroy(profile);
+        }
     }
 }
 
@@ -115,53 +101,22 @@ pub fn scene() -> Scene {
 }
 
 pub fn camera() -> RevmapCamera {
-    // SAFETY: plain numbers, a live structure.
-    unsafe {
-        let mut camera: RevmapCamera = zeroed();
-        camera.size = size_of::<RevmapCamera>() as u32;
-        ok(revmap_camera_defaults(&mut camera));
-        camera.eye = EYE;
-        camera
+    RevmapCamera {
+        eye: EYE,
+        ..defaults!(revmap_camera_defaults, RevmapCamera)
     }
 }
 
 /// What the Rust renderer records into the stage's pass.
 fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe {
-        Device::borrow(&HostDevice {
-            queue: None,
-            ..lent(host)
-        })
-    }
-    .unwrap();
-    let output = Output::Pass(PassFormats {
-        begun: PassKind::RenderPass {
-            pass: stage.pass,
-            subpass: 0,
-        },
-        samples: 1,
-        depth: DepthOrder::Normal,
-        planes: Planes::Color,
-    });
-    let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2).unwrap();
+    let device = borrow(host);
+    let mut renderer = renderer(&device, stage, &SearchSettings::default(), 2);
     let scene = scene();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
     let view = View::from_camera(&scene.camera, (OPTIONS.width, OPTIONS.height), RANGE).unwrap();
-    let cell = std::cell::RefCell::new(&mut renderer);
-    stage
-        .frame(
-            DMat4::IDENTITY,
-            Vec3::Z,
-            &[],
-            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-            |cmd, slot| Ok(unsafe { cell.borrow_mut().prepare(cmd, slot, &view) }?),
-            // SAFETY: the frame was prepared, the pass is of the output's formats.
-            |cmd, frame| Ok(unsafe { cell.borrow().record(cmd, frame) }?),
-        )
-        .unwrap();
+    frame(stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
     stage.read().unwrap().0
 }
 
@@ -174,55 +129,38 @@ fn a_render_pass_shows_what_rust_draws() {
     // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
     // the renderer's.
     unsafe {
-        let mut pass: RevmapPass = zeroed();
-        pass.size = size_of::<RevmapPass>() as u32;
+        let mut pass = sized!(RevmapPass);
         pass.kind = RevmapPassKind::RenderPass as u32;
         pass.samples = 1;
         pass.render_pass = stage.pass;
         let (mut renderer, mut prewarm) = (null_mut(), null_mut());
-        ok(revmap_renderer_create(
-            device,
-            &pass,
-            null(),
-            2,
-            &mut renderer,
-        ));
+        ok! { revmap_renderer_create(device, &pass, null(), 2, &mut renderer); }
         add(renderer);
-        ok(revmap_renderer_prewarm(renderer, &mut prewarm));
-        ok(revmap_prewarm_compile(prewarm));
-        ok(revmap_prewarm_destroy(prewarm));
+        ok! {
+            revmap_renderer_prewarm(renderer, &mut prewarm);
+            revmap_prewarm_compile(prewarm);
+            revmap_prewarm_destroy(prewarm);
+        }
         let compiled = || {
-            let mut info: RevmapDeviceInfo = zeroed();
-            info.size = size_of::<RevmapDeviceInfo>() as u32;
-            ok(revmap_device_info(device, &mut info));
+            let mut info = sized!(RevmapDeviceInfo);
+            ok! { revmap_device_info(device, &mut info); }
             info.pipelines_compiled
         };
         let before = compiled();
         for warms in [true, false, false] {
             let prepare = |cmd, slot: usize| {
                 let (w, h, [near, far]) = (OPTIONS.width, OPTIONS.height, RANGE);
-                ok(revmap_renderer_prepare_camera(
-                    renderer,
-                    cmd,
-                    slot as u32,
-                    &camera,
-                    w,
-                    h,
-                    near,
-                    far,
-                ));
+                ok! { revmap_renderer_prepare_camera(renderer, cmd, slot as u32, &camera, w, h, near, far); }
                 Ok(slot)
             };
             let record = |cmd, &slot: &usize| {
                 if warms {
-                    ok(revmap_renderer_record_prewarm(renderer, cmd, slot as u32));
+                    ok! { revmap_renderer_record_prewarm(renderer, cmd, slot as u32); }
                 } else {
-                    ok(revmap_renderer_record(renderer, cmd, slot as u32));
+                    ok! { revmap_renderer_record(renderer, cmd, slot as u32); }
                 }
-                assert_eq!(
-                    revmap_renderer_record_compute(renderer, cmd, slot as u32),
-                    RevmapResult::Usage
-                );
+                let refused = revmap_renderer_record_compute(renderer, cmd, slot as u32);
+                assert_eq!(refused, RevmapResult::Usage);
                 Ok(())
             };
             stage
@@ -230,19 +168,13 @@ fn a_render_pass_shows_what_rust_draws() {
                 .unwrap();
         }
         assert!(stage.read().unwrap().0 == wanted, "pixels differ");
-        assert!(
-            wanted
-                .chunks_exact(4)
-                .filter(|p| *p != &wanted[..4])
-                .count()
-                > 3000
-        );
+        let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);
+        assert!(solid.count() > 3000);
         // No frame has compiled anything.
         assert_eq!((before > 0, compiled()), (true, before));
-        ok(revmap_renderer_destroy(renderer));
-        ok(revmap_device_destroy(device));
+        ok! {
+            revmap_renderer_destroy(renderer);
+            revmap_device_destroy(device);
+        }
     }
-    drop(stage);
-    let messages = host.take_messages();
-    assert!(messages.is_empty(), "{messages:?}");
 }

@@ -1,16 +1,16 @@
 //! Executes the requests of the controls and the pointer.
 
-use super::app::{App, title};
+use super::app::App;
 use super::controls::Asked;
 use super::keys::Action;
+use super::picture::colors;
 use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
 use revmap::error::{self, Error, Result};
-use revmap::settings::Planes;
+use revmap::settings::{Planes, Settings};
 use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
-use winit::event::MouseButton;
 
 /// The number of changes that can be undone.
 const UNDOS: usize = 100;
@@ -122,17 +122,15 @@ impl App {
     }
 
     fn write_turned(&mut self, folder: &Path) -> Result<()> {
-        let Some(open) = &mut self.open else {
-            return Ok(());
+        let settings = Settings {
+            planes: Planes::Color,
+            ..self.shown.settings(self.framing.window)
         };
-        let size = open.window.inner_size();
-        let settings = self
-            .shown
-            .settings((size.width, size.height), Planes::Color);
         for n in 0..saved::TURNTABLE {
             let turned = saved::turned(&self.shown, n);
-            let frame = open.inspector.draw(&turned, settings, &open.stage.device)?;
-            revmap_files::write_png(&frame, folder.join(format!("frame-{n:04}.png")))?;
+            let (drawn, _) = self.painter.draw(&turned, settings)?;
+            let file = folder.join(format!("frame-{n:04}.png"));
+            colors(drawn, &settings)?.write_png(file)?;
         }
         Ok(())
     }
@@ -149,28 +147,20 @@ impl App {
                 (self.source, self.file) = (path.to_owned(), file);
                 self.problem = None;
                 self.change();
-                if let Some(open) = &self.open {
-                    open.window.set_title(&title(path));
-                }
             }
             Err(error) => self.problem = Some(error.to_string()),
         }
     }
 
-    /// Handles a move of the pointer, with a drag if a button is held.
-    pub fn drag(&mut self, to: [f64; 2]) {
-        let by = [to[0] - self.pointer[0], to[1] - self.pointer[1]];
-        self.pointer = to;
-        let Some(button) = self.held.filter(|_| by != [0.0; 2]) else {
-            return;
-        };
+    /// Turns the camera by a drag in pixels, or shifts it.
+    pub fn drag(&mut self, by: [f64; 2], turns: bool) {
         self.remember(Change::Held, self.shown.clone());
         self.change();
         let height = self.framing.height();
         let camera = &mut self.shown.scene.camera;
-        match button {
-            MouseButton::Left => orbit::turn(camera, by),
-            _ => orbit::shift(camera, by, height),
+        match turns {
+            true => orbit::turn(camera, by),
+            false => orbit::shift(camera, by, height),
         }
     }
 

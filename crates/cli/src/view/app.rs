@@ -1,60 +1,54 @@
-//! The window's events.
+//! The window: its events, its controls and its frames.
 
-use super::View;
 use super::actions::Change;
+use super::controls::{self, Asked, Told};
 use super::framing::Framing;
-use super::inspect::Inspector;
+use super::picture::Painter;
 #[cfg(feature = "shaderc")]
 use super::reload::Reload;
-use super::saved;
-use super::shown::Shown;
-use super::stage::Stage;
+use super::shown::{Inspected, Shown};
 use super::times::Times;
-use revmap::error::{self, Error, Result};
-use revmap_files::SceneFile;
+use super::{View, keys, overlay, saved};
+use crate::output;
+use eframe::egui::{
+    Color32, Context, Event, Id, MouseWheelUnit, Panel, PointerButton, Popup, RawInput, Rect,
+    ScrollArea, Sense, Shape, Ui, Vec2, ViewportCommand, pos2,
+};
+use revmap::error::Result;
+use revmap_files::{Picture, SceneFile};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
-use std::time::{Duration, Instant};
-use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
-use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
-use winit::window::{Window, WindowId};
+use std::time::Instant;
 
-/// Longer delays from the controls are ignored.
-const SOON: Duration = Duration::from_secs(5);
-
-/// The window and its contents. The stage is dropped before the window, and objects made on its
-/// device before the stage.
-pub(super) struct Open {
-    pub inspector: Inspector,
-    #[cfg(feature = "shaderc")]
-    pub reload: Option<Reload>,
-    pub stage: Stage,
-    pub gui: egui_winit::State,
-    pub window: Rc<Window>,
-}
+/// Width of the panel at the start, points.
+const PANEL: f32 = 316.0;
+/// Shown until the help has been shown.
+const HINT: &str = "H: help";
 
 pub struct App {
-    pub(super) options: View,
-    /// Requests a frame from another thread.
-    pub(super) wake: EventLoopProxy<()>,
+    options: View,
     /// The file of the shown scene.
     pub(super) source: PathBuf,
     pub(super) file: SceneFile,
     pub(super) first: Shown,
     pub(super) shown: Shown,
+    /// The shown state before the controls of this frame, and their requests.
+    before: Shown,
+    asked: Asked,
     /// Counts changes of the shown state.
     pub(super) version: u64,
     pub(super) undo: Vec<Shown>,
     /// The change in progress: all of it is undone at once.
     pub(super) changing: Option<Change>,
-    pub(super) open: Option<Open>,
-    pub(super) times: Times,
+    pub(super) painter: Painter,
+    #[cfg(feature = "shaderc")]
+    reload: Option<Reload>,
+    times: Times,
+    /// Time that the last frame took for its picture, milliseconds.
+    drawing_ms: f64,
     pub(super) problem: Option<String>,
     /// Report of the last written file, until the next change.
     pub(super) written: String,
-    /// True to write the next frame as a picture.
+    /// True to write the next picture into a file.
     pub(super) keep: bool,
     pub(super) panel: bool,
     pub(super) help: bool,
@@ -64,28 +58,31 @@ pub struct App {
     pub(super) quit: bool,
     /// The framing of the last frame.
     pub(super) framing: Framing,
-    pub(super) pointer: [f64; 2],
-    pub(super) held: Option<MouseButton>,
-    pub(super) drawn: u32,
+    drawn: u32,
     ended: Result<()>,
 }
 
 impl App {
-    pub fn new(options: View, file: SceneFile, shown: Shown, wake: EventLoopProxy<()>) -> Self {
+    pub fn new(options: View, file: SceneFile, shown: Shown) -> Result<Self> {
         let mut times = Times::default();
         times.kept = options.times.is_some().then(Vec::new);
-        Self {
+        Ok(Self {
+            painter: Painter::open(options.device.as_deref(), &shown, options.size)?,
             source: options.scene.clone(),
+            framing: Framing::new(options.size, 0),
             options,
-            wake,
             file,
             first: shown.clone(),
+            before: shown.clone(),
             shown,
+            asked: Asked::default(),
             version: 0,
             undo: Vec::new(),
             changing: None,
-            open: None,
+            #[cfg(feature = "shaderc")]
+            reload: None,
             times,
+            drawing_ms: 0.0,
             problem: None,
             written: String::new(),
             keep: false,
@@ -93,154 +90,239 @@ impl App {
             help: false,
             hint: true,
             quit: false,
-            framing: Framing::default(),
-            pointer: [0.0; 2],
-            held: None,
             drawn: 0,
             ended: Ok(()),
-        }
-    }
-
-    /// The result of the window.
-    pub fn end(mut self) -> Result<()> {
-        let checked = self.open.take().map_or(Ok(()), |open| {
-            let host = open.stage.host.clone();
-            drop(open);
-            host.check()
-        });
-        if let (Some(path), Some(kept)) = (&self.options.times, &self.times.kept) {
-            saved::write_times(path, kept)?;
-        }
-        self.ended.and(checked)
-    }
-
-    fn open(&self, events: &ActiveEventLoop) -> Result<Open> {
-        let (width, height) = self.options.size;
-        let attributes = Window::default_attributes()
-            .with_title(title(&self.source))
-            .with_inner_size(PhysicalSize::new(width, height));
-        let window = events.create_window(attributes);
-        let window = window
-            .map_err(|e| Error::new(error::ErrorKind::Unsupported, format!("no window: {e}")))?;
-        let stage = Stage::new(&window, self.options.device.as_deref(), &self.shown)?;
-        let scale = window.scale_factor() as f32;
-        let id = egui::ViewportId::ROOT;
-        let gui = egui_winit::State::new(
-            egui::Context::default(),
-            id,
-            &window,
-            Some(scale),
-            None,
-            None,
-        );
-        #[cfg(feature = "shaderc")]
-        let reload = self.options.watch_shaders.as_deref();
-        Ok(Open {
-            inspector: Inspector::default(),
-            #[cfg(feature = "shaderc")]
-            reload: reload.map(|folder| Reload::new(folder, self.wake.clone())),
-            stage,
-            gui,
-            window: Rc::new(window),
         })
     }
 
-    fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
-        self.ended = Err(error);
-        events.exit();
+    /// Starts what needs the window's context.
+    pub fn begin(&mut self, context: &Context) {
+        #[cfg(feature = "shaderc")]
+        if let Some(folder) = &self.options.watch_shaders {
+            self.reload = Some(Reload::new(folder, context.clone()));
+        }
+        let (width, height) = self.options.size;
+        let size = Vec2::new(width as f32, height as f32) / context.pixels_per_point();
+        context.send_viewport_cmd(ViewportCommand::InnerSize(size));
+    }
+
+    /// The result of the window.
+    pub fn end(self) -> Result<()> {
+        if let (Some(path), Some(kept)) = (&self.options.times, &self.times.kept) {
+            saved::write_times(path, kept)?;
+        }
+        self.ended.and(self.painter.device().check())
+    }
+
+    /// Shows the panel. Returns the points at the left that it covers.
+    fn controls(&mut self, ui: &mut Ui, notes: [&str; 2]) -> f32 {
+        if !self.panel {
+            return 0.0;
+        }
+        let told = Told {
+            times: &self.times,
+            problem: self.problem.as_deref(),
+            notes,
+            undos: self.undo.len(),
+            draw_paths: &self.painter.draw_paths,
+        };
+        let (shown, asked) = (&mut self.shown, &mut self.asked);
+        let panel = Panel::left("panel").default_size(PANEL).show(ui, |ui| {
+            let all = ScrollArea::vertical().auto_shrink(false);
+            all.show(ui, |ui| controls::show(ui, shown, &told, asked));
+        });
+        panel.response.rect.right()
+    }
+
+    /// Turns the camera by the pointer over the free part, and loads files that were dropped.
+    fn pointer(&mut self, ui: &Ui, free: Rect) {
+        let (context, solid) = (ui.ctx(), ui.interact(free, Id::new("solid"), Sense::drag()));
+        let pixels = context.pixels_per_point();
+        let by = solid.drag_delta() * pixels;
+        if solid.dragged() && by != Vec2::ZERO {
+            let turns = solid.dragged_by(PointerButton::Primary);
+            self.drag([by.x.into(), by.y.into()], turns);
+        }
+        let (wheel, dropped) = context.input(|input| {
+            let steps = |event: &Event| match event {
+                Event::MouseWheel { unit, delta, .. } if solid.contains_pointer() => match unit {
+                    MouseWheelUnit::Point => Some(delta.y * pixels / 50.0),
+                    _ => Some(delta.y),
+                },
+                _ => None,
+            };
+            let wheel: Vec<_> = input.events.iter().filter_map(steps).collect();
+            (wheel, input.raw.dropped_files.clone())
+        });
+        wheel.into_iter().for_each(|steps| self.zoom(steps.into()));
+        for file in dropped {
+            self.load(file.path());
+            context.send_viewport_cmd(ViewportCommand::Title(title(&self.source)));
+        }
+        if !context.input(|input| input.pointer.any_down()) && self.changing == Some(Change::Held) {
+            self.changing = None;
+        }
+    }
+
+    /// Shows scale and words over the free part.
+    fn overlay(&self, context: &Context, free: Rect, notes: [&str; 2]) {
+        if let Some(legend) = self.painter.texture().and(self.painter.legend.as_ref()) {
+            overlay::legend(context, free, legend);
+        }
+        let hidden = |text| if self.panel { "" } else { text };
+        let [numbers, shaders] = notes.map(hidden);
+        let problem = hidden(self.problem.as_deref().unwrap_or_default());
+        let hint = if self.hint { HINT } else { "" };
+        let lines = [problem, numbers, shaders, &self.written, hint];
+        overlay::lines(context, free, &lines);
+        if self.help {
+            overlay::help(context, free);
+        }
+        #[cfg(feature = "shaderc")]
+        if let Some(text) = self.reload.as_ref().and_then(|r| r.problem.as_deref()) {
+            controls::shader_problem(context, text);
+        }
+    }
+
+    /// Draws the picture if the shown state has changed, and writes it where that was requested.
+    fn draw(&mut self, context: &Context, painting_ms: f64) {
+        if self.options.frames.is_some() && self.shown.inspected == Inspected::Color {
+            self.version += 1; // counted frames are drawn, even if nothing moves
+        }
+        let drawn = self
+            .painter
+            .update(&self.shown, self.version, &self.framing, context);
+        match drawn {
+            Ok(Some(mut cost)) => {
+                cost.present += painting_ms;
+                self.times.push(cost);
+            }
+            Ok(None) => {}
+            Err(error) => self.problem = Some(error.to_string()),
+        }
+        if self.keep
+            && let Some(picture) = self.painter.free_part(&self.framing)
+        {
+            self.keep = false;
+            let path = saved::beside(&self.source, ".png");
+            let written = picture.write_png(&path);
+            self.say(written.map(|()| path));
+            context.request_repaint();
+        }
+    }
+
+    /// Counts the frame, and ends after the last one that the options want.
+    fn count(&mut self, context: &Context) {
+        self.drawn += 1;
+        let Some(frames) = self.options.frames else {
+            return;
+        };
+        context.request_repaint();
+        let Some(file) = &self.options.screenshot else {
+            self.quit |= self.drawn >= frames;
+            return;
+        };
+        if self.drawn == frames {
+            context.send_viewport_cmd(ViewportCommand::Screenshot(Default::default()));
+        }
+        let image = context.input(|input| {
+            let image = |event: &Event| match event {
+                Event::Screenshot { image, .. } => Some(image.clone()),
+                _ => None,
+            };
+            input.events.iter().find_map(image)
+        });
+        if let Some(image) = image {
+            let [width, height] = image.size.map(|n| n as u32);
+            let rgba = image.pixels.iter().map(Color32::to_array).collect();
+            let picture = Picture {
+                width,
+                height,
+                rgba,
+            };
+            self.ended = picture.write_png(file);
+            if self.ended.is_ok() {
+                output::result(&format!("{}: frame {frames}", file.display()));
+            }
+            self.quit = true;
+        }
+    }
+
+    /// Draws with changed shaders when they compile. Returns the state of their compilation.
+    #[cfg(feature = "shaderc")]
+    fn reload_shaders(&mut self) -> &'static str {
+        let Some(reload) = &mut self.reload else {
+            return "";
+        };
+        let device = self.painter.device();
+        if let Some(device) = reload.take(device, &self.shown, self.framing.window) {
+            self.painter.take(device);
+        }
+        match reload.is_busy() {
+            true => "the shaders are being compiled",
+            false => "",
+        }
+    }
+
+    #[cfg(not(feature = "shaderc"))]
+    fn reload_shaders(&mut self) -> &'static str {
+        ""
     }
 }
 
 /// The title of a window that shows this file.
-pub(super) fn title(source: &Path) -> String {
+pub fn title(source: &Path) -> String {
     format!("revmap: {}", source.display())
 }
 
-impl ApplicationHandler for App {
-    fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.open.is_some() {
-            return;
-        }
-        match self.open(events) {
-            Ok(open) => {
-                open.window.request_redraw();
-                self.open = Some(open);
+impl eframe::App for &mut App {
+    fn raw_input_hook(&mut self, context: &Context, input: &mut RawInput) {
+        if !context.text_edit_focused() && !Popup::is_any_open(context) {
+            for action in keys::take(&mut input.events) {
+                self.press(action);
             }
-            Err(error) => self.fail(events, error),
         }
+        (self.before, self.asked) = (self.shown.clone(), Asked::default());
     }
 
-    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let Some(open) = &mut self.open else {
-            return;
-        };
-        let window = open.window.clone();
-        let answer = open.gui.on_window_event(&window, &event);
-        // The answer to `RedrawRequested` also requests a repaint, which would redraw the window
-        // forever.
-        if answer.repaint && !matches!(event, WindowEvent::RedrawRequested) {
-            window.request_redraw();
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        let whole = context.content_rect();
+        let background = ui.painter().add(Shape::Noop);
+        let shaders = self.reload_shaders();
+        let words = self.painter.words.clone();
+        let covered = self.controls(ui, [&words, shaders]);
+        if context.will_discard() {
+            return; // the same frame comes again, laid out better
         }
-        match event {
-            WindowEvent::CloseRequested => events.exit(),
-            WindowEvent::Resized(size) if size.width > 0 && size.height > 0 => {
-                if let Err(error) = open.stage.resize((size.width, size.height)) {
-                    self.fail(events, error);
-                }
-                window.request_redraw();
-            }
-            WindowEvent::DroppedFile(file) => {
-                self.load(&file);
-                window.request_redraw();
-            }
-            WindowEvent::CursorMoved { position, .. } => {
-                self.drag([position.x, position.y]);
-                if self.held.is_some() {
-                    window.request_redraw();
-                }
-            }
-            WindowEvent::MouseInput { state, button, .. } => {
-                let pressed = state == ElementState::Pressed && !answer.consumed;
-                self.held = pressed.then_some(button);
-            }
-            WindowEvent::MouseWheel { delta, .. } if !answer.consumed => {
-                let steps = match delta {
-                    MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
-                    MouseScrollDelta::PixelDelta(pixels) => pixels.y / 50.0,
-                };
-                self.zoom(steps);
-                window.request_redraw();
-            }
-            WindowEvent::RedrawRequested => match self.frame() {
-                Err(error) => self.fail(events, error),
-                Ok(_) if self.quit => events.exit(),
-                Ok(None) => events.set_control_flow(ControlFlow::Wait),
-                Ok(_) if self.options.frames.is_some_and(|n| self.drawn >= n) => events.exit(),
-                Ok(_) if self.options.frames.is_some() => window.request_redraw(),
-                Ok(Some(Duration::ZERO)) => window.request_redraw(),
-                Ok(Some(pause)) if pause < SOON => {
-                    events.set_control_flow(ControlFlow::WaitUntil(Instant::now() + pause))
-                }
-                Ok(_) => events.set_control_flow(ControlFlow::Wait),
-            },
-            _ => {}
+        let free = whole.with_min_x(covered);
+        self.pointer(ui, free);
+        let (asked, before) = (self.asked, self.before.clone());
+        if asked != Asked::default() {
+            context.request_repaint();
         }
-    }
-
-    /// Handles a wake-up from another thread.
-    fn user_event(&mut self, _: &ActiveEventLoop, (): ()) {
-        if let Some(open) = &self.open {
-            open.window.request_redraw();
+        self.take(asked, before);
+        let pixels = context.pixels_per_point();
+        let size = (whole.size() * pixels).round();
+        let size = (size.x as u32, size.y as u32);
+        let framing = Framing::new(size, (covered * pixels).round() as u32);
+        if framing != self.framing {
+            (self.framing, self.version) = (framing, self.version + 1);
         }
-    }
-
-    /// Handles the end of a delay of the controls.
-    fn new_events(&mut self, events: &ActiveEventLoop, cause: winit::event::StartCause) {
-        if let (winit::event::StartCause::ResumeTimeReached { .. }, Some(open)) =
-            (cause, &self.open)
-        {
-            events.set_control_flow(ControlFlow::Wait);
-            open.window.request_redraw();
+        // The frame before was painted after its picture was drawn.
+        let cpu_ms = f64::from(frame.info().cpu_usage.unwrap_or_default()) * 1e3;
+        let start = Instant::now();
+        self.draw(&context, (cpu_ms - self.drawing_ms).max(0.0));
+        self.drawing_ms = start.elapsed().as_secs_f64() * 1e3;
+        if let Some(id) = self.painter.texture() {
+            let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            let picture = Shape::image(id, whole, all, Color32::WHITE);
+            ui.painter().set(background, picture);
+        }
+        self.overlay(&context, free, [&words, shaders]);
+        self.count(&context);
+        if self.quit {
+            context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
 }

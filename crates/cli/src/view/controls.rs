@@ -2,7 +2,7 @@
 
 use super::shown::{Inspected, Shown};
 use super::times::Times;
-use egui::{CollapsingHeader, ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::Projection;
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
@@ -34,16 +34,15 @@ pub struct Asked {
     pub turntable: bool,
 }
 
-/// Shows all controls.
-pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
-    let mut asked = Asked::default();
+/// Shows all controls, and adds their requests to `asked`: a frame may be laid out twice.
+pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told, asked: &mut Asked) {
     ui.horizontal(|ui| {
         let undo = egui::Button::new("Undo");
-        asked.undo = ui.add_enabled(told.undos > 0, undo).clicked();
-        asked.reset = ui.button("Reset").clicked();
-        asked.save = ui.button("Save").clicked();
-        asked.screenshot = ui.button("Screenshot").clicked();
-        asked.turntable = ui.button("Turntable").clicked();
+        asked.undo |= ui.add_enabled(told.undos > 0, undo).clicked();
+        asked.reset |= ui.button("Reset").clicked();
+        asked.save |= ui.button("Save").clicked();
+        asked.screenshot |= ui.button("Screenshot").clicked();
+        asked.turntable |= ui.button("Turntable").clicked();
     });
     if let Some(text) = told.problem {
         ui.colored_label(egui::Color32::LIGHT_RED, text);
@@ -58,10 +57,8 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
     });
     let Shown { scene, search, .. } = shown;
     for (n, one) in scene.objects.iter_mut().enumerate() {
-        let path = told
-            .draw_paths
-            .get(n)
-            .map_or(String::new(), |p| format!(" ({p:?})"));
+        let path = told.draw_paths.get(n);
+        let path = path.map_or(String::new(), |p| format!(" ({p:?})"));
         let title = format!("{n}: {}{path}", one.name);
         CollapsingHeader::new(title)
             .id_salt(("object", n))
@@ -74,7 +71,6 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told) -> Asked {
         let angle = Slider::new(&mut scene.camera.fov_y, 5.0..=120.0).text("fov_y");
         asked.changed |= ui.add(angle).changed();
     });
-    asked
 }
 
 /// Number of lines of the compiler that are shown.
@@ -104,51 +100,31 @@ fn object(ui: &mut Ui, object: &mut Object) -> bool {
     slide(ui, &mut object.offset.bevel, 0.0..=2.0, "bevel b");
     slide(ui, &mut object.offset.chamfer, 0.0..=1.0, "chamfer c");
     slide(ui, &mut object.texturing.bump, 0.0..=3.0, "bump a");
-    for (value, name) in object
-        .placement
-        .scale
-        .as_mut()
-        .iter_mut()
-        .zip(["scale x", "scale y", "scale z"])
-    {
+    let scale = object.placement.scale.as_mut();
+    for (value, name) in scale.iter_mut().zip(["scale x", "scale y", "scale z"]) {
         slide(ui, value, 0.1..=4.0, name);
     }
     for (value, name) in object.axis.iter_mut().zip(["axis x", "axis y"]) {
         slide(ui, value, 0.0..=1.0, name);
     }
     changed |= row(ui, "repeat", |ui| {
-        any(object.repeat.iter_mut().map(|n| {
-            ui.add(DragValue::new(n).range(1..=16).speed(0.05))
-                .changed()
-        }))
+        let count = |n| DragValue::new(n).range(1..=16).speed(0.05);
+        any(object.repeat.iter_mut().map(|n| ui.add(count(n)).changed()))
     });
     changed |= row(ui, "mirror", |ui| {
-        any(object
-            .mirror
-            .iter_mut()
-            .zip(["x", "y", "z"])
-            .map(|(flag, name)| ui.checkbox(flag, name).changed()))
+        let flags = object.mirror.iter_mut().zip(["x", "y", "z"]);
+        any(flags.map(|(flag, name)| ui.checkbox(flag, name).changed()))
     });
     let place = object.placement.position.as_mut();
-    changed |= row(ui, "position", |ui| {
-        any(place
-            .iter_mut()
-            .map(|v| ui.add(DragValue::new(v).speed(0.01)).changed()))
-    });
+    changed |= row(ui, "position", |ui| coordinates(ui, place));
     changed |= row(ui, "colour", |ui| {
         ui.color_edit_button_rgb(&mut object.color).changed()
     });
     let (specular, texturing) = (&mut object.specular, &mut object.texturing);
-    changed |= ui
-        .add(Slider::new(&mut specular.strength, 0.0..=1.0).text("specular"))
-        .changed();
-    changed |= ui
-        .add(
-            Slider::new(&mut specular.shininess, 1.0..=256.0)
-                .logarithmic(true)
-                .text("shininess"),
-        )
-        .changed();
+    let strength = Slider::new(&mut specular.strength, 0.0..=1.0);
+    changed |= ui.add(strength.text("specular")).changed();
+    let shininess = Slider::new(&mut specular.shininess, 1.0..=256.0).logarithmic(true);
+    changed |= ui.add(shininess.text("shininess")).changed();
     changed |= choice(ui, "clip", &mut object.clip, &Clip::NAMES);
     changed |= choice(
         ui,
@@ -166,10 +142,7 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
     });
     for (n, light) in scene.lights.iter_mut().enumerate() {
         changed |= row(ui, &format!("light {n}"), |ui| {
-            let direction = light.direction.as_mut();
-            let turned = any(direction
-                .iter_mut()
-                .map(|v| ui.add(DragValue::new(v).speed(0.01)).changed()));
+            let turned = coordinates(ui, light.direction.as_mut());
             let colored = ui.color_edit_button_rgb(&mut light.color).changed();
             let radius = DragValue::new(&mut light.radius)
                 .range(0.0..=Light::LARGEST_RADIUS)
@@ -207,6 +180,11 @@ fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
     changed | optional(ui, "max steps", &mut search.max_steps, 64, 1..=1024)
 }
 
+fn coordinates(ui: &mut Ui, values: &mut [f64; 3]) -> bool {
+    let value = |v| DragValue::new(v).speed(0.01);
+    any(values.iter_mut().map(|v| ui.add(value(v)).changed()))
+}
+
 /// A number that may be left to the program.
 fn optional(
     ui: &mut Ui,
@@ -221,19 +199,16 @@ fn optional(
         if switched {
             *value = given.then_some(first);
         }
-        let moved = value
-            .as_mut()
-            .is_some_and(|n| ui.add(Slider::new(n, range).logarithmic(true)).changed());
+        let slider = |n| Slider::new(n, range).logarithmic(true);
+        let moved = value.as_mut().is_some_and(|n| ui.add(slider(n)).changed());
         switched | moved
     })
 }
 
 fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(&str, T)]) -> bool {
     let before = *value;
-    let known = all
-        .iter()
-        .find(|(_, v)| *v == before)
-        .map_or("", |(name, _)| name);
+    let known = all.iter().find(|(_, v)| *v == before);
+    let known = known.map_or("", |(name, _)| name);
     ComboBox::from_label(name)
         .selected_text(known)
         .show_ui(ui, |ui| {

@@ -4,7 +4,7 @@ use revmap::scene::Camera;
 use revmap_files::Picture;
 
 /// Pixels of the window, and those at its left that the panel covers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Framing {
     pub window: (u32, u32),
     left: u32,
@@ -44,14 +44,18 @@ impl Framing {
         f64::from(self.window.1) / self.shrinking()
     }
 
-    /// The free part of a picture of the window.
-    pub fn crop(&self, picture: &Picture) -> Picture {
-        let left = self.left.min(picture.width.saturating_sub(1));
-        let rows = picture.rgba.chunks_exact(picture.width as usize);
+    /// The free part of the window, shown by a picture whose pixels have `side` of the window's
+    /// pixels at each side.
+    pub fn crop(&self, picture: &Picture, side: u32) -> Picture {
+        let (width, height) = self.free();
+        let pixel = |n: u32| {
+            let (x, y) = ((self.left + n % width) / side, n / width / side);
+            picture.rgba[(y * picture.width + x) as usize]
+        };
         Picture {
-            width: picture.width - left,
-            height: picture.height,
-            rgba: rows.flat_map(|row| row[left as usize..].to_vec()).collect(),
+            width,
+            height,
+            rgba: (0..width * height).map(pixel).collect(),
         }
     }
 }
@@ -95,10 +99,15 @@ mod tests {
             height: 2,
             rgba,
         };
-        let framing = Framing::new((6, 2), 4);
-        let cut = framing.crop(&picture);
-        assert_eq!((cut.width, cut.height), (2, 2));
-        let reds: Vec<_> = cut.rgba.iter().map(|p| p[0]).collect();
-        assert_eq!(reds, [4, 5, 10, 11]);
+        let reds = |framing: Framing, side| {
+            let cut = framing.crop(&picture, side);
+            assert_eq!((cut.width, cut.height), framing.free());
+            cut.rgba.iter().map(|p| p[0]).collect::<Vec<_>>()
+        };
+        assert_eq!(reds(Framing::new((6, 2), 4), 1), [4, 5, 10, 11]);
+        assert_eq!(
+            reds(Framing::new((12, 3), 8), 2),
+            [4, 4, 5, 5, 4, 4, 5, 5, 10, 10, 11, 11]
+        );
     }
 }

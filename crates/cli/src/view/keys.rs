@@ -1,7 +1,7 @@
 //! The keys of the window: one table of what they do and of what the help says.
 
 use super::shown::Inspected;
-use egui::{Event, Key};
+use eframe::egui::{Event, Key};
 use revmap::settings::DrawStage;
 
 /// The effect of a key.
@@ -31,61 +31,30 @@ const fn key(keys: &'static [Key], action: Action, help: [&'static str; 2]) -> B
 }
 
 /// All keys, in the order of the help.
-pub const KEYS: [Binding; 13] = [
-    key(
-        &[Key::H, Key::Questionmark, Key::F1],
-        Action::Help,
-        ["H or ?", "show or hide this help"],
-    ),
-    key(
-        &[Key::Tab],
-        Action::Panel,
-        ["Tab", "show or hide the panel"],
-    ),
-    key(
-        &[Key::Num1],
-        Action::Show(Inspected::Color),
-        ["1", "lit colours"],
-    ),
-    key(&[Key::Num2], Action::Show(Inspected::Depth), ["2", "depth"]),
-    key(
-        &[Key::Num3],
-        Action::Show(Inspected::Normals),
-        ["3", "normals"],
-    ),
-    key(
-        &[Key::Num4],
-        Action::Show(Inspected::Steps),
-        ["4", "steps of each pixel's search"],
-    ),
-    key(
-        &[Key::Num5],
-        Action::Show(Inspected::Error),
-        ["5", "depth error against the reference (takes seconds)"],
-    ),
-    key(
-        &[Key::F],
-        Action::Stage(DrawStage::Fragment),
-        ["F", "trace in the fragment stage"],
-    ),
-    key(
-        &[Key::C],
-        Action::Stage(DrawStage::Compute),
-        ["C", "trace in the compute stage"],
-    ),
-    key(&[Key::R], Action::ResetCamera, ["R", "reset the camera"]),
-    key(
-        &[Key::P],
-        Action::Screenshot,
-        ["P", "save the picture as PNG beside the scene"],
-    ),
-    key(&[Key::Z], Action::Undo, ["Ctrl+Z", "undo"]),
-    key(
-        &[Key::Escape],
-        Action::Close,
-        ["Esc", "close this help, or quit"],
-    ),
-];
+pub const KEYS: [Binding; 13] = {
+    use Action::*;
+    use Inspected::*;
+    use Key::{C, Escape, F, F1, H, Num1, Num2, Num3, Num4, Num5, P, Questionmark, R, Tab, Z};
+    let [fragment, compute] = [Stage(DrawStage::Fragment), Stage(DrawStage::Compute)];
+    let error = "depth error against the reference (takes seconds)";
+    let save = "save the picture as PNG beside the scene";
+    let help = ["H or ?", "show or hide this help"];
+    [
+        key(&[H, Questionmark, F1], Help, help),
+        key(&[Tab], Panel, ["Tab", "show or hide the panel"]),
+        key(&[Num1], Show(Color), ["1", "lit colours"]),
+        key(&[Num2], Show(Depth), ["2", "depth"]),
+        key(&[Num3], Show(Normals), ["3", "normals"]),
+        key(&[Num4], Show(Steps), ["4", "steps of each pixel's search"]),
+        key(&[Num5], Show(Error), ["5", error]),
+        key(&[F], fragment, ["F", "trace in the fragment stage"]),
+        key(&[C], compute, ["C", "trace in the compute stage"]),
+        key(&[R], ResetCamera, ["R", "reset the camera"]),
+        key(&[P], Screenshot, ["P", save]),
+        key(&[Z], Undo, ["Ctrl+Z", "undo"]),
+        key(&[Escape], Close, ["Esc", "close this help, or quit"]),
+    ]
+};
 
 /// Takes the keys of the table out of the events, and returns the effects of those pressed.
 pub fn take(events: &mut Vec<Event>) -> Vec<Action> {
@@ -116,7 +85,7 @@ pub fn take(events: &mut Vec<Event>) -> Vec<Action> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui::Modifiers;
+    use eframe::egui::Modifiers;
 
     fn event(key: Key, modifiers: Modifiers, pressed: bool, repeat: bool) -> Event {
         Event::Key {
@@ -138,10 +107,8 @@ mod tests {
             let shows = |one: &&Binding| one.action == Action::Show(inspected);
             assert_eq!(KEYS.iter().filter(shows).count(), 1, "{inspected:?}");
         }
-        assert!(
-            KEYS.iter()
-                .all(|one| one.help.iter().all(|h| !h.is_empty()))
-        );
+        let told = |one: &Binding| one.help.iter().all(|h| !h.is_empty());
+        assert!(KEYS.iter().all(told));
     }
 
     #[test]
@@ -157,10 +124,8 @@ mod tests {
             event(Key::R, ctrl, true, false),
             event(Key::A, none, true, false),
         ];
-        assert_eq!(
-            take(&mut events),
-            [Action::Panel, Action::Help, Action::Undo]
-        );
+        let taken = take(&mut events);
+        assert_eq!(taken, [Action::Panel, Action::Help, Action::Undo]);
         // Keys without an effect are left to the controls.
         let left = |e: &Event| match e {
             Event::Key { key, .. } => Some(*key),

@@ -2,37 +2,26 @@
 
 mod actions;
 mod app;
-mod barriers;
 mod controls;
-mod frames;
 mod framing;
-mod inspect;
 mod keys;
 mod legend;
-mod memory;
 mod orbit;
 mod overlay;
-mod redraw;
+mod picture;
 #[cfg(feature = "shaderc")]
 mod reload;
 mod saved;
-mod scene_renderer;
-mod screen;
-mod screenshot;
 mod shown;
-mod stage;
-mod swapchain;
 mod times;
-mod traced;
-mod vulkan;
 
 use super::output;
 use clap::Args;
+use eframe::egui::{ViewportBuilder, vec2};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use revmap_files::SceneFile;
 use std::path::PathBuf;
-use winit::event_loop::EventLoop;
 
 /// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to
 /// go nearer; drop a file to see it; H shows all keys
@@ -84,29 +73,39 @@ pub struct View {
 
 impl View {
     pub fn run(self) -> Result<()> {
-        let files: Vec<_> = self.screenshot.iter().cloned().collect();
-        output::check(&files, "--screenshot", &["png"], &[&self.scene])?;
+        output::check(&self.screenshot, "--screenshot", &["png"], &[&self.scene])?;
         let mut file = SceneFile::open(&self.scene)?;
         let scene = file.scene(&self.set)?;
-        output::spare(file.files(), &files, "--screenshot")?;
-        let times: Vec<_> = self.times.iter().cloned().collect();
-        output::check(&times, "--times", &["csv"], &[&self.scene])?;
+        output::spare(file.files(), &self.screenshot, "--screenshot")?;
+        output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         let search = SearchSettings {
             solver: self.solver,
             tolerance: self.tolerance,
             ..SearchSettings::default()
         };
-        let screen = |e| {
-            Error::new(
-                ErrorKind::Unsupported,
-                format!("no screen ({e}); set DISPLAY or WAYLAND_DISPLAY"),
-            )
+        let shown = shown::Shown {
+            scene,
+            search,
+            stage: self.stage,
+            inspected: self.show,
         };
-        let events = EventLoop::new().map_err(screen)?;
-        let mut shown = shown::Shown::new(scene, search);
-        (shown.stage, shown.inspected) = (self.stage, self.show);
-        let mut app = app::App::new(self, file, shown, events.create_proxy());
-        events.run_app(&mut app).map_err(screen)?;
+        let (title, (width, height)) = (app::title(&self.scene), self.size);
+        let mut app = app::App::new(self, file, shown)?;
+        let window = eframe::NativeOptions {
+            viewport: ViewportBuilder::default()
+                .with_title(title)
+                .with_inner_size(vec2(width as f32, height as f32)),
+            ..Default::default()
+        };
+        let shown = &mut app;
+        let creator: eframe::AppCreator = Box::new(|cc| {
+            shown.begin(&cc.egui_ctx);
+            Ok(Box::new(shown))
+        });
+        eframe::run_native("revmap", window, creator).map_err(|e| {
+            let message = format!("no screen ({e}); set DISPLAY or WAYLAND_DISPLAY");
+            Error::new(ErrorKind::Unsupported, message)
+        })?;
         app.end()
     }
 }

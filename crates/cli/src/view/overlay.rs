@@ -2,9 +2,9 @@
 
 use super::keys::KEYS;
 use super::legend::{Bar, Legend};
-use egui::{
-    Align2, Area, Color32, Context, Frame, Grid, Id, Order, Rect, RichText, Sense, TextStyle, Ui,
-    Vec2, pos2, vec2,
+use eframe::egui::{
+    self, Align2, Area, Color32, Context, Frame, Grid, Id, Order, Rect, RichText, Sense, TextStyle,
+    Ui, Vec2, pos2, vec2,
 };
 
 /// Uses of the pointer, and their effect.

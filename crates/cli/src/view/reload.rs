@@ -1,14 +1,13 @@
 //! Shaders that are reloaded from their sources while the window is open. A thread watches the GLSL
 //! files. After a change, the window's shaders are compiled in the background and used once all of
 //! them compile. Until then the former shaders stay in use.
+#![allow(unsafe_code)] // pipelines of other shaders
 
-use super::scene_renderer::SceneRenderer;
 use super::shown::Shown;
-use super::vulkan::Vulkan;
 use crate::output;
-use ash::vk;
+use eframe::egui::Context;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::gpu::{Device, ShaderSource};
+use revmap::gpu::{Device, Offscreen, ShaderSource};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,7 +15,6 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
-use winit::event_loop::EventLoopProxy;
 
 /// The default folder to watch: that of the source tree.
 pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders-glsl");
@@ -36,26 +34,23 @@ struct Sources {
     texts: HashMap<String, String>,
 }
 
-/// A device and a renderer on it with their own shaders.
-type Made = (Device, SceneRenderer);
-
 pub struct Reload {
     changed: Receiver<Result<Sources>>,
     /// The latest change since the start of the current compilation.
     next: Option<Sources>,
-    making: Option<JoinHandle<Result<Made>>>,
+    making: Option<JoinHandle<Result<Device>>>,
     /// True to make the compiling thread give up.
     given_up: Arc<AtomicBool>,
-    wake: EventLoopProxy<()>,
+    context: Context,
     /// The reason why the last sources are not in use.
     pub problem: Option<String>,
 }
 
 impl Reload {
     /// Watches a folder, and wakes the window after a change.
-    pub fn new(folder: &Path, wake: EventLoopProxy<()>) -> Self {
+    pub fn new(folder: &Path, context: Context) -> Self {
         let (send, changed) = channel();
-        let (folder, call) = (folder.to_owned(), wake.clone());
+        let (folder, wake) = (folder.to_owned(), context.clone());
         std::thread::spawn(move || {
             let mut before = None;
             loop {
@@ -63,9 +58,10 @@ impl Reload {
                 if before.as_ref() != Some(&now) {
                     before = Some(now);
                     let sources = Sources::read(&folder);
-                    if send.send(sources).is_err() || call.send_event(()).is_err() {
+                    if send.send(sources).is_err() {
                         return; // the window is closed
                     }
+                    wake.request_repaint();
                 }
                 std::thread::sleep(PAUSE);
             }
@@ -75,7 +71,7 @@ impl Reload {
             next: None,
             making: None,
             given_up: Arc::default(),
-            wake,
+            context,
             problem: None,
         }
     }
@@ -85,9 +81,9 @@ impl Reload {
         self.making.is_some()
     }
 
-    /// The device and the renderer with new shaders, if there are any. `format` is that of the
-    /// window's pictures.
-    pub fn take(&mut self, host: &Vulkan, format: vk::Format, shown: &Shown) -> Option<Made> {
+    /// The device with new shaders, if there are any. A window of this size then draws without
+    /// compiling.
+    pub fn take(&mut self, device: &Device, shown: &Shown, size: (u32, u32)) -> Option<Device> {
         while let Ok(sources) = self.changed.try_recv() {
             match sources {
                 Ok(sources) => self.next = Some(sources),
@@ -109,7 +105,7 @@ impl Reload {
         if self.making.is_none()
             && let Some(sources) = self.next.take()
         {
-            match self.make(host, sources, format, shown.clone()) {
+            match self.make(device, sources, shown.clone(), size) {
                 Ok(thread) => self.making = Some(thread),
                 Err(error) => self.fail(error.to_string()),
             }
@@ -126,25 +122,21 @@ impl Reload {
     /// Starts to compile the shaders of the shown scene.
     fn make(
         &self,
-        host: &Vulkan,
+        device: &Device,
         sources: Sources,
-        format: vk::Format,
         shown: Shown,
-    ) -> Result<JoinHandle<Result<Made>>> {
-        let device = host.lend(Some(sources.compiled(self.given_up.clone())?))?;
-        let wake = self.wake.clone();
+        size: (u32, u32),
+    ) -> Result<JoinHandle<Result<Device>>> {
+        let shaders = sources.compiled(self.given_up.clone())?;
+        // SAFETY: the shaders are those of the source tree, as somebody works on them.
+        let device = unsafe { device.with_shaders(shaders) }?;
+        let context = self.context.clone();
         Ok(std::thread::spawn(move || {
-            let make = || {
-                let by = (shown.stage, shown.search);
-                let mut drawn = SceneRenderer::new(&device, format, by)?;
-                drawn.set(&shown.scene)?;
-                drawn.renderer.prewarm()?.compile()?;
-                Ok(drawn)
-            };
-            let made = make();
-            // A failed send is ignored: the window was closed meanwhile.
-            let _ = wake.send_event(());
-            made.map(|drawn| (device, drawn))
+            let settings = shown.settings(size);
+            let made = Offscreen::new(&device, &shown.scene, &settings);
+            let compiled = made.and_then(|mut made| made.prewarm());
+            context.request_repaint();
+            compiled.map(|()| device)
         }))
     }
 }
@@ -231,11 +223,8 @@ fn names(folder: &Path) -> Result<Vec<String>> {
     for part in PARTS {
         let within = folder.join(part);
         for entry in std::fs::read_dir(&within).map_err(|e| unreadable(&within, &e))? {
-            let name = entry
-                .map_err(|e| unreadable(&within, &e))?
-                .file_name()
-                .to_string_lossy()
-                .into_owned();
+            let name = entry.map_err(|e| unreadable(&within, &e))?.file_name();
+            let name = name.to_string_lossy();
             if ENDINGS.iter().any(|e| name.ends_with(&format!(".{e}"))) {
                 let slash = if part.is_empty() { "" } else { "/" };
                 names.push(format!("{part}{slash}{name}"));
@@ -253,11 +242,8 @@ fn stamps(folder: &Path) -> Vec<(String, Option<(SystemTime, u64)>)> {
         let stamp = file.and_then(|f| Ok((f.modified()?, f.len()))).ok();
         (name, stamp)
     };
-    names(folder)
-        .unwrap_or_default()
-        .into_iter()
-        .map(stamp)
-        .collect()
+    let names = names(folder).unwrap_or_default();
+    names.into_iter().map(stamp).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::shown::Shown;
 use super::times::Cost;
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
-use revmap::scene::{BumpForm, Clip, Object, Scene, Shadow};
+use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
 use revmap::settings::name_of;
 use revmap_files::SceneFile;
 use revmap_files::write_bytes;
@@ -54,12 +54,8 @@ pub fn turned(shown: &Shown, n: u32) -> Shown {
 pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
     let mut text = String::from("frame,prepare_ms,gpu_ms,present_ms,pipelines_compiled\n");
     for (n, cost) in all.iter().enumerate() {
-        let Cost {
-            prepare,
-            device,
-            present,
-            compiled,
-        } = cost;
+        let [prepare, device, present] = [cost.prepare, cost.device, cost.present];
+        let compiled = cost.compiled;
         text += &format!("{n},{prepare:.4},{device:.4},{present:.4},{compiled}\n");
     }
     write_bytes(path, text.as_bytes())
@@ -75,41 +71,31 @@ fn assignments(scene: &Scene) -> Vec<String> {
         format!("ambient={:?}", scene.ambient),
         format!("shadow={:?}", name_of(&Shadow::NAMES, &scene.shadow)),
     ];
-    let lights: Vec<String> = scene
-        .lights
-        .iter()
-        .map(|light| {
-            let direction = light.direction.to_array();
-            let (color, radius) = (light.color, light.radius);
-            format!("{{direction = {direction:?}, color = {color:?}, radius = {radius:?}}}")
-        })
-        .collect();
+    let light = |light: &Light| {
+        let direction = light.direction.to_array();
+        let (color, radius) = (light.color, light.radius);
+        format!("{{direction = {direction:?}, color = {color:?}, radius = {radius:?}}}")
+    };
+    let lights: Vec<String> = scene.lights.iter().map(light).collect();
     all.push(format!("light=[{}]", lights.join(", ")));
     for (n, object) in scene.objects.iter().enumerate() {
-        let mut set =
-            |key: &str, value: &dyn Debug| all.push(format!("object.{n}.{key}={value:?}"));
-        of_object(object, &mut set);
+        of_object(object, |key, value| {
+            all.push(format!("object.{n}.{key}={value:?}"))
+        });
     }
     all
 }
 
-fn of_object(object: &Object, set: &mut dyn FnMut(&str, &dyn Debug)) {
-    let Object {
-        offset,
-        texturing,
-        specular,
-        placement,
-        ..
-    } = object;
+fn of_object(object: &Object, mut set: impl FnMut(&str, &dyn Debug)) {
+    let (offset, placement) = (object.offset, object.placement);
+    let (texturing, specular) = (&object.texturing, &object.specular);
     set("extend", &offset.extend);
     set("bevel", &offset.bevel);
     set("chamfer", &offset.chamfer);
     set("clip", &name_of(&Clip::NAMES, &object.clip));
     set("bump", &texturing.bump);
-    set(
-        "bump_form",
-        &name_of(&BumpForm::NAMES, &texturing.bump_form),
-    );
+    let form = name_of(&BumpForm::NAMES, &texturing.bump_form);
+    set("bump_form", &form);
     set("projection", &texturing.projection.name());
     set("axis", &object.axis);
     set("repeat", &object.repeat);
@@ -159,7 +145,12 @@ mod tests {
         let scene = SceneFile::parse(TEXT, ".")
             .and_then(|mut file| file.scene(&[]))
             .unwrap();
-        let shown = Shown::new(scene, revmap::settings::SearchSettings::default());
+        let shown = Shown {
+            scene,
+            search: revmap::settings::SearchSettings::default(),
+            stage: revmap::settings::DrawStage::Fragment,
+            inspected: super::super::shown::Inspected::Color,
+        };
         let quarter = turned(&shown, TURNTABLE / 4).scene.camera.eye;
         assert!((quarter - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12);
         let round = turned(&shown, TURNTABLE).scene.camera.eye;

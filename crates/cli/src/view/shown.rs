@@ -39,23 +39,16 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// The lit scene, by the fragment stage.
-    pub fn new(scene: Scene, search: SearchSettings) -> Self {
-        Self {
-            scene,
-            search,
-            stage: DrawStage::Fragment,
-            inspected: Inspected::Color,
-        }
-    }
-
-    /// Settings of an off-screen frame of the shown state.
-    pub fn settings(&self, (width, height): (u32, u32), planes: Planes) -> Settings {
+    /// Settings of a frame of this size with what is inspected.
+    pub fn settings(&self, (width, height): (u32, u32)) -> Settings {
         Settings {
             width,
             height,
             stage: self.stage,
-            planes,
+            planes: match self.inspected {
+                Inspected::Color => Planes::Color,
+                _ => Planes::All,
+            },
             ..Settings::from(&self.search)
         }
     }

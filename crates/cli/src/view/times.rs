@@ -1,6 +1,6 @@
 //! The graph of frame times.
 
-use egui::{Color32, Rect, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Color32, Rect, Sense, Stroke, Ui, pos2, vec2};
 use std::collections::VecDeque;
 
 /// Number of frames in the graph.
@@ -11,9 +11,9 @@ const SHOWN: usize = 120;
 pub struct Cost {
     /// CPU time to apply changes and to record, milliseconds.
     pub prepare: f64,
-    /// Device time of an earlier frame in the same slot, milliseconds.
+    /// Device time, milliseconds.
     pub device: f64,
-    /// Time to submit and to present, milliseconds.
+    /// CPU time to read the picture back and to paint the window, milliseconds.
     pub present: f64,
     /// Number of compiled pipelines.
     pub compiled: u64,

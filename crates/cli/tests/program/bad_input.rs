@@ -1,7 +1,7 @@
 //! Whatever is wrong with the files that the program is given: the exit code, one line that says
 //! where, and no output file.
 
-use crate::run::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, lines, table};
 
 /// The reference, which needs no Vulkan: what is wrong here is wrong before any device is looked
 /// for.
@@ -10,55 +10,35 @@ const RENDER: &str = "render scene.toml -o out.png --stage reference --size 16x1
 #[test]
 fn profiles_that_are_none() {
     let bench = Bench::new();
-    let profile = |name: &str| bench.object(&format!("profile = {name:?}"));
-    let refused =
-        |words: &[&str]| bench.refused(RENDER, 1, &[&["object.0.profile"], words].concat());
-
-    profile("missing.svg");
-    refused(&["missing.svg"]);
-    profile("missing.png");
-    refused(&["missing.png"]);
-
-    std::fs::create_dir(bench.path("folder")).unwrap();
-    profile("folder");
-    refused(&["folder"]);
-    std::fs::create_dir(bench.path("folder.png")).unwrap();
-    profile("folder.png");
-    refused(&["folder.png"]);
-
+    let refused = |name: &str| {
+        bench.object(&format!("profile = {name:?}"));
+        bench.refused(RENDER, 1, &["object.0.profile", name]);
+    };
+    refused("missing.svg");
+    refused("missing.png");
+    for folder in ["folder", "folder.png"] {
+        std::fs::create_dir(bench.path(folder)).unwrap();
+        refused(folder);
+    }
     bench.grey("whole.png", 64, 64, |x, y| ((x * 37 + y * 101) % 256) as u8);
-    let whole = std::fs::read(bench.path("whole.png")).unwrap();
-    bench.file("truncated.png", &whole[..whole.len() / 2]);
-    profile("truncated.png");
-    refused(&["truncated.png"]);
-    bench.file("header.png", &whole[..20]);
-    profile("header.png");
-    refused(&["header.png"]);
-    bench.file("empty.png", []);
-    profile("empty.png");
-    refused(&["empty.png"]);
-    bench.file("text.png", "this is no picture");
-    profile("text.png");
-    refused(&["text.png"]);
-
-    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='10' height='20'></svg>";
-    bench.file("empty.svg", svg);
-    profile("empty.svg");
-    refused(&["empty.svg"]);
-    bench.file("broken.svg", &svg[..40]);
-    profile("broken.svg");
-    refused(&["broken.svg"]);
-
-    bench.grey("white.png", 20, 20, |_, _| 255);
-    profile("white.png");
-    refused(&["white.png"]);
-    bench.grey("black.png", 20, 20, |_, _| 0);
-    profile("black.png");
-    refused(&["black.png"]);
-    for shade in [0, 255] {
-        bench.grey("dot.png", 1, 1, |_, _| shade);
-        profile("dot.png");
-        refused(&["dot.png"]);
+    let whole = bench.read("whole.png");
+    let svg = b"<svg xmlns='http://www.w3.org/2000/svg' width='10' height='20'></svg>";
+    for (name, content) in [
+        ("truncated.png", &whole[..whole.len() / 2]),
+        ("header.png", &whole[..20]),
+        ("empty.png", &[]),
+        ("text.png", b"this is no picture"),
+        ("empty.svg", svg),
+        ("broken.svg", &svg[..40]),
+    ] {
+        bench.file(name, content);
+        refused(name);
+    }
+    for (name, side) in [("even.png", 20), ("dot.png", 1)] {
+        for shade in [0, 255] {
+            bench.grey(name, side, side, |_, _| shade);
+            refused(name);
+        }
     }
 }
 
@@ -108,177 +88,116 @@ fn polygons_that_turn_into_nothing() {
 #[test]
 fn scenes_with_slips() {
     let bench = Bench::new();
-    for (lines, words) in [
-        ("bevle = 1", ["object.0.bevle", "`bevel`"]),
-        ("bevel = \"steep\"", ["object.0.bevel", "a number"]),
-        ("bevel = -1", ["object.0.bevel", "-1"]),
-        ("bevel = nan", ["object.0.bevel", "NaN"]),
-        ("chamfer = 2", ["object.0.chamfer", "2"]),
-        ("chamfer = -0.1", ["object.0.chamfer", "-0.1"]),
-        ("chamfer = nan", ["object.0.chamfer", "NaN"]),
-        ("bevel = inf", ["object.0.bevel", "inf"]),
-        ("extend = inf", ["object.0.extend", "inf"]),
-        ("extend = nan", ["object.0.extend", "NaN"]),
-        ("bump = nan", ["object.0.bump", "NaN"]),
-        ("bump_form = \"steep\"", ["object.0.bump_form", "papers"]),
-        (
-            "projection = \"conic\"",
-            ["object.0.projection", "spherical"],
-        ),
-        ("texture_repeat = [0, 1]", ["object.0.texture_repeat", "0"]),
-        (
-            "texture_repeat = [1, -2]",
-            ["object.0.texture_repeat", "-2"],
-        ),
-        ("axis = [1.5, 0.5]", ["object.0.axis", "1.5"]),
-        ("axis = [nan, 0.5]", ["object.0.axis", "NaN"]),
-        ("repeat = [2, -1, 1]", ["object.0.repeat", "-1"]),
-        ("mirror = [1, 0, 0]", ["object.0.mirror", "true"]),
-        ("repeat = [1, 1, 0]", ["object.0.repeat", "0"]),
-        ("repeat = [10000, 1, 1]", ["object.0.repeat", "10000"]),
-        ("scale = [1, 1, 0]", ["object.0.scale", "0"]),
-        ("scale = [0, 0, 0]", ["object.0.scale", "0"]),
-        ("scale = 0", ["object.0.scale", "3 numbers"]),
-        ("map_rows = 0", ["object.0.map_rows", "0"]),
-        (
-            "rotation = [0, 0, 0, 0]",
-            ["object.0.rotation", "quaternion"],
-        ),
-        (
-            "height_map = \"none.png\"",
-            ["object.0.height_map", "none.png"],
-        ),
-    ] {
-        bench.file("scene.toml", format!("{CAMERA}{CONE}{lines}\n"));
-        bench.refused(RENDER, 1, &words);
+    for row in table(
+        r#"bevle = 1                 | object.0.bevle          | `bevel`
+           bevel = "steep"           | object.0.bevel          | a number
+           bevel = -1                | object.0.bevel          | -1
+           bevel = nan               | object.0.bevel          | NaN
+           chamfer = 2               | object.0.chamfer        | 2
+           chamfer = -0.1            | object.0.chamfer        | -0.1
+           chamfer = nan             | object.0.chamfer        | NaN
+           bevel = inf               | object.0.bevel          | inf
+           extend = inf              | object.0.extend         | inf
+           extend = nan              | object.0.extend         | NaN
+           bump = nan                | object.0.bump           | NaN
+           bump_form = "steep"       | object.0.bump_form      | papers
+           projection = "conic"      | object.0.projection     | spherical
+           texture_repeat = [0, 1]   | object.0.texture_repeat | 0
+           texture_repeat = [1, -2]  | object.0.texture_repeat | -2
+           axis = [1.5, 0.5]         | object.0.axis           | 1.5
+           axis = [nan, 0.5]         | object.0.axis           | NaN
+           repeat = [2, -1, 1]       | object.0.repeat         | -1
+           mirror = [1, 0, 0]        | object.0.mirror         | true
+           repeat = [1, 1, 0]        | object.0.repeat         | 0
+           repeat = [10000, 1, 1]    | object.0.repeat         | 10000
+           scale = [1, 1, 0]         | object.0.scale          | 0
+           scale = [0, 0, 0]         | object.0.scale          | 0
+           scale = 0                 | object.0.scale          | 3 numbers
+           map_rows = 0              | object.0.map_rows       | 0
+           rotation = [0, 0, 0, 0]   | object.0.rotation       | quaternion
+           height_map = "none.png"   | object.0.height_map     | none.png"#,
+    ) {
+        bench.file("scene.toml", format!("{CAMERA}{CONE}{}\n", row[0]));
+        bench.refused(RENDER, 1, &row[1..]);
     }
-    for (old, new, words) in [
-        (
-            "eye = [2, 0, 0.5]",
-            "eye = [0, 0, 0.5]",
-            ["camera.target", "eye"],
-        ),
-        ("eye = [2, 0, 0.5]", "", ["camera.eye", "missing"]),
-        (
-            "eye = [2, 0, 0.5]",
-            "eye = [2, 0]",
-            ["camera.eye", "3 numbers"],
-        ),
-        (
-            "eye = [2, 0, 0.5]",
-            "eye = [0, 0, 9]",
-            ["camera.up", "parallel"],
-        ),
-        ("eye", "fov_y = 0\neye", ["camera.fov_y", "0"]),
-        ("eye", "fov_y = 180\neye", ["camera.fov_y", "180"]),
-        ("eye", "eyes = 2\neye", ["camera.eyes", "`eye`"]),
-        ("[camera]", "[camera", ["line 1", "TOML"]),
-        ("[camera]", "[[camera]]", ["camera", "a table"]),
-    ] {
-        bench.file(
-            "scene.toml",
-            format!("{CAMERA}{CONE}").replacen(old, new, 1),
-        );
-        bench.refused(RENDER, 1, &[&["scene.toml"], &words[..]].concat());
+    for row in table(
+        "eye = [2, 0, 0.5] | eye = [0, 0, 0.5] | camera.target | eye
+         eye = [2, 0, 0.5] |                   | camera.eye | missing
+         eye = [2, 0, 0.5] | eye = [2, 0]      | camera.eye | 3 numbers
+         eye = [2, 0, 0.5] | eye = [0, 0, 9]   | camera.up | parallel
+         eye =             | fov_y = 0; eye =   | camera.fov_y | 0
+         eye =             | fov_y = 180; eye = | camera.fov_y | 180
+         eye =             | eyes = 2; eye =    | camera.eyes | `eye`
+         [camera]          | [camera           | line 1 | TOML
+         [camera]          | [[camera]]        | camera | a table",
+    ) {
+        let changed = format!("{CAMERA}{CONE}").replacen(row[0], &row[1].replace("; ", "\n"), 1);
+        bench.file("scene.toml", changed);
+        bench.refused(RENDER, 1, &[&["scene.toml"], &row[2..]].concat());
     }
     bench.file("scene.toml", [0xff, 0xfe, 0x00]);
     bench.refused(RENDER, 1, &["scene.toml"]);
-    bench.refused(
-        "render none.toml -o out.png --stage reference",
+    bench.refuses(
         1,
-        &["none.toml"],
+        "render none.toml -o out.png --stage reference | none.toml
+         render .         -o out.png --stage reference | .",
     );
-    bench.refused("render . -o out.png --stage reference", 1, &["."]);
 }
 
 #[test]
 fn baking_what_is_no_profile() {
     let bench = Bench::new();
-    bench.grey(
-        "half.png",
-        20,
-        40,
-        |x, y| {
-            if x < 12 && y > 5 { 0 } else { 255 }
-        },
-    );
+    bench.half("half.png");
     bench.grey("black.png", 20, 20, |_, _| 0);
-    for (arguments, code, words) in [
-        (
-            "bake none.svg -o map.png",
-            1,
-            ["none.svg", "does not exist"],
-        ),
-        ("bake black.png -o map.png", 1, ["black.png", "white"]),
-        ("bake scene.toml -o map.png", 1, ["scene.toml", "PNG"]),
-        ("bake half.png -o map.bmp", 2, ["map.bmp", ".png, .exr"]),
-        ("bake half.png -o half.png", 2, ["half.png", "another file"]),
-        (
-            "bake half.png -o no/map.png",
-            1,
-            ["no/map.png", "does not exist"],
-        ),
-        (
-            "bake half.png -o map.png --map-rows 1",
-            2,
-            ["--map-rows", "1"],
-        ),
-        (
-            "bake half.png -o map.arc.png --projection planar",
-            2,
-            ["map.arc.png", "--projection"],
-        ),
-        (
-            "bake half.png -o map.png --projection mercator",
-            2,
-            ["--projection", "spherical"],
-        ),
-        (
-            "bake half.png -o map.png --height-map none.png",
-            1,
-            ["none.png", "height"],
-        ),
-    ] {
-        bench.refused(arguments, code, &words);
-    }
+    bench.refuses(
+        1,
+        "bake none.svg   -o map.png                       | none.svg   | does not exist
+         bake black.png  -o map.png                       | black.png  | white
+         bake scene.toml -o map.png                       | scene.toml | PNG
+         bake half.png   -o no/map.png                    | no/map.png | does not exist
+         bake half.png   -o map.png --height-map none.png | none.png   | height",
+    );
+    bench.refuses(
+        2,
+        "bake half.png -o map.bmp                          | map.bmp      | .png, .exr
+         bake half.png -o half.png                         | half.png     | another file
+         bake half.png -o map.png --map-rows 1             | --map-rows   | 1
+         bake half.png -o map.arc.png --projection planar  | map.arc.png  | --projection
+         bake half.png -o map.png --projection mercator    | --projection | spherical",
+    );
 }
 
 #[test]
 fn comparing_what_is_no_frame() {
     let bench = Bench::new();
-    bench.done("render scene.toml -o a.exr --stage reference --size 16x12 -q");
-    bench.done("render scene.toml -o b.exr --stage reference --size 16x13 -q");
-    bench.done(
-        "render scene.toml -o c.exr --stage reference --size 16x12 -q --set object.0.extend=0.05",
-    );
-    let whole = std::fs::read(bench.path("a.exr")).unwrap();
+    let render = "render scene.toml --stage reference -q -o";
+    bench.done(&format!("{render} a.exr --size 16x12"));
+    bench.done(&format!("{render} b.exr --size 16x13"));
+    bench.done(&format!(
+        "{render} c.exr --size 16x12 --set object.0.extend=0.05"
+    ));
+    let whole = bench.read("a.exr");
     bench.file("half.exr", &whole[..whole.len() / 2]);
-    for (arguments, code, words) in [
-        ("compare a.exr none.exr", 1, ["none.exr", "EXR"]),
-        ("compare a.exr half.exr", 1, ["half.exr", "EXR"]),
-        ("compare a.exr b.exr", 1, ["b.exr", "16x13"]),
-        ("compare a.exr scene.toml", 2, ["scene.toml", ".exr"]),
-        ("compare a.exr c.exr --heat heat.jpg", 2, ["--heat", ".png"]),
-        ("compare a.exr c.exr --texel 0", 2, ["--texel", "above 0"]),
-    ] {
-        bench.refused(arguments, code, &words);
-    }
-    let same = bench.done("compare a.exr a.exr --exact --heat heat.png");
-    assert!(
-        String::from_utf8(same.stdout)
-            .unwrap()
-            .contains("equal in every channel")
+    bench.refuses(
+        1,
+        "compare a.exr none.exr | none.exr | EXR
+         compare a.exr half.exr | half.exr | EXR
+         compare a.exr b.exr    | b.exr    | 16x13",
     );
-    assert!(bench.path("heat.png").exists());
+    bench.refuses(
+        2,
+        "compare a.exr scene.toml            | scene.toml | .exr
+         compare a.exr c.exr --heat heat.jpg | --heat     | .png
+         compare a.exr c.exr --texel 0       | --texel    | above 0",
+    );
+    let same = bench.said("compare a.exr a.exr --exact --heat heat.png");
+    assert!(same.contains("equal in every channel"));
+    bench.has(&["heat.png"]);
     // A difference is a result, unless equality was asked for.
-    let other = bench.done("compare a.exr c.exr");
-    assert!(
-        String::from_utf8(other.stdout)
-            .unwrap()
-            .contains("differ, first in")
-    );
+    let other = bench.said("compare a.exr c.exr");
+    assert!(other.contains("differ, first in"));
     let output = bench
-        .command(["compare", "a.exr", "c.exr", "--exact"])
+        .command("compare a.exr c.exr --exact")
         .output()
         .unwrap();
     assert_eq!((output.status.code(), lines(&output).len()), (Some(1), 1));

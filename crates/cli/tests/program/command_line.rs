@@ -1,98 +1,47 @@
 //! What a command line asks for: made under the names that it gives, or refused by exit code and
 //! one line, before any file is written.
 
-use crate::run::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, SVG, lines};
 use std::path::Path;
+
+fn size(bench: &Bench, picture: &str) -> (u32, u32) {
+    image::image_dimensions(bench.path(picture)).unwrap()
+}
 
 #[test]
 fn wrong_usage() {
     let bench = Bench::new();
-    for (arguments, words) in [
-        ("render scene.toml -o a.png --size 0x0", ["--size", "0"]),
-        (
-            "render scene.toml -o a.png --size 100000x100000",
-            ["--size", "100000"],
-        ),
-        (
-            "render scene.toml -o a.png --size 16385x1",
-            ["--size", "16385"],
-        ),
-        (
-            "render scene.toml -o a.png --size 800",
-            ["--size", "800x600"],
-        ),
-        (
-            "render scene.toml -o a.png --stage vertex",
-            ["--stage", "compute"],
-        ),
-        (
-            "render scene.toml -o a.png --solver magic",
-            ["--solver", "circle"],
-        ),
-        (
-            "bench scene.toml --solver exact,magic",
-            ["mesh:SEGMENTSxRINGS, floor", "circle"],
-        ),
-        (
-            "chart scene.toml --solver magic",
-            ["mesh:SEGMENTSxRINGS, floor", "default, "],
-        ),
-        (
-            "render scene.toml -o a.png --solver mesh:2x1",
-            ["--solver", "3 segments"],
-        ),
-        (
-            "render scene.toml -o a.png --solver mesh:99999999x9",
-            ["--solver", "at most"],
-        ),
-        (
-            "render scene.toml -o a.png --solver mesh:axb",
-            ["--solver", "mesh:64x128"],
-        ),
-        (
-            "render scene.toml -o a.png --map-format r8",
-            ["--map-format", "rgba8"],
-        ),
-        (
-            "render scene.toml -o a.png --map-source guess",
-            ["--map-source", "coverage"],
-        ),
-        (
-            "render scene.toml -o a.png --map-rows 0",
-            ["--map-rows", "0"],
-        ),
-        (
-            "render scene.toml -o a.png --max-steps 0",
-            ["--max-steps", "0"],
-        ),
-        (
-            "render scene.toml -o a.png --siez 1x1",
-            ["--siez", "'--size'"],
-        ),
-        (
-            "render scene.toml -o a.png --quiet --verbose",
-            ["--quiet", "--verbose"],
-        ),
-        (
-            "render scene.toml -o a.png --set bevel",
-            ["--set", "key=value"],
-        ),
-        (
-            "render scene.toml -o a.png --set object.7.bevel=1",
-            ["--set object.7.bevel", "has 1"],
-        ),
-        ("render scene.toml -o a.gif", ["a.gif", ".png, .exr"]),
-        ("render scene.toml -o a", ["--output", ".png, .exr"]),
-        ("render scene.toml -o a.png -o a.png", ["a.png", "twice"]),
-        ("render scene.toml", ["--output", "<FILE>"]),
-        ("render -o a.png", ["<SCENE>", "--help"]),
-        ("draw scene.toml", ["draw", "--help"]),
-        ("bake", ["<PROFILE>", "--help"]),
-        ("compare a.exr", ["<B>", "--help"]),
-    ] {
-        bench.refused(arguments, 2, &words);
-    }
-    bench.refused_by(&mut bench.command::<&str>([]), 2, &["render", "--help"]);
+    bench.refuses(
+        2,
+        "render scene.toml -o a.png --size 0x0               | --size | 0
+         render scene.toml -o a.png --size 100000x100000     | --size | 100000
+         render scene.toml -o a.png --size 16385x1           | --size | 16385
+         render scene.toml -o a.png --size 800               | --size | 800x600
+         render scene.toml -o a.png --stage vertex           | --stage | compute
+         render scene.toml -o a.png --solver magic           | --solver | circle
+         bench scene.toml --solver exact,magic               | mesh:SEGMENTSxRINGS, floor | circle
+         chart scene.toml --solver magic                     | mesh:SEGMENTSxRINGS, floor | default,
+         render scene.toml -o a.png --solver mesh:2x1        | --solver | 3 segments
+         render scene.toml -o a.png --solver mesh:99999999x9 | --solver | at most
+         render scene.toml -o a.png --solver mesh:axb        | --solver | mesh:64x128
+         render scene.toml -o a.png --map-format r8          | --map-format | rgba8
+         render scene.toml -o a.png --map-source guess       | --map-source | coverage
+         render scene.toml -o a.png --map-rows 0             | --map-rows | 0
+         render scene.toml -o a.png --max-steps 0            | --max-steps | 0
+         render scene.toml -o a.png --siez 1x1               | --siez | '--size'
+         render scene.toml -o a.png --quiet --verbose        | --quiet | --verbose
+         render scene.toml -o a.png --set bevel              | --set | key=value
+         render scene.toml -o a.png --set object.7.bevel=1   | --set object.7.bevel | has 1
+         render scene.toml -o a.gif                          | a.gif | .png, .exr
+         render scene.toml -o a                              | --output | .png, .exr
+         render scene.toml -o a.png -o a.png                 | a.png | twice
+         render scene.toml                                   | --output | <FILE>
+         render -o a.png                                     | <SCENE> | --help
+         draw scene.toml                                     | draw | --help
+         bake                                                | <PROFILE> | --help
+         compare a.exr                                       | <B> | --help
+                                                             | render | --help",
+    );
 }
 
 #[test]
@@ -104,18 +53,16 @@ fn outputs_that_cannot_be_written() {
         bench.refused(&command, 1, &[name, "--output"]);
     }
     // The second of two: the first must not be written either.
-    let command =
-        "render scene.toml -o first.png -o nowhere/out.exr --stage reference --size 16x12";
-    bench.refused(command, 1, &["nowhere/out.exr"]);
+    bench.refuses(
+        1,
+        "render scene.toml -o first.png -o nowhere/out.exr --stage reference | nowhere/out.exr",
+    );
     // A scene is looked at after its outputs, but before any is written.
     bench.object("polygon = 1");
-    std::fs::write(bench.path("kept.png"), "as it was").unwrap();
-    bench.refused(
-        "render scene.toml -o kept.png --stage reference",
-        1,
-        &["object.0.polygon"],
-    );
-    assert_eq!(std::fs::read(bench.path("kept.png")).unwrap(), b"as it was");
+    bench.file("kept.png", "as it was");
+    let command = "render scene.toml -o kept.png --stage reference";
+    bench.refused(command, 1, &["object.0.polygon"]);
+    assert_eq!(bench.read("kept.png"), b"as it was");
 }
 
 #[test]
@@ -124,22 +71,18 @@ fn devices_that_are_not_there() {
     let render = "render scene.toml -o out.png --size 16x12";
     for device in ["99", "no-such-card"] {
         bench.refused(&format!("{render} --device {device}"), 2, &[device]);
-        let mut command = bench.command(render.split(' '));
+        let mut command = bench.command(render);
         bench.refused_by(command.env("REVMAP_DEVICE", device), 2, &[device]);
     }
     // Without any driver: that, and nothing else, is exit code 3.
-    for arguments in [render, "devices"] {
-        for stage in ["", " --stage compute"] {
-            if arguments == "devices" && !stage.is_empty() {
-                continue;
-            }
-            let mut command = bench.command(format!("{arguments}{stage}").split(' '));
-            let nothing = Path::new("/nonexistent/driver.json");
-            command
-                .env("VK_DRIVER_FILES", nothing)
-                .env("VK_ICD_FILENAMES", nothing);
-            bench.refused_by(&mut command, 3, &["Vulkan"]);
-        }
+    let compute = format!("{render} --stage compute");
+    for arguments in [render, &compute, "devices"] {
+        let mut command = bench.command(arguments);
+        let nothing = Path::new("/nonexistent/driver.json");
+        command
+            .env("VK_DRIVER_FILES", nothing)
+            .env("VK_ICD_FILENAMES", nothing);
+        bench.refused_by(&mut command, 3, &["Vulkan"]);
     }
 }
 
@@ -147,26 +90,20 @@ fn devices_that_are_not_there() {
 fn good_input_makes_what_was_asked_for() {
     let bench = Bench::new();
     let output = bench.done("render scene.toml -o a.png -o a.exr --stage reference --size 32x24");
-    assert_eq!(
-        image::image_dimensions(bench.path("a.png")).unwrap(),
-        (32, 24)
-    );
+    assert_eq!(size(&bench, "a.png"), (32, 24));
     let results = String::from_utf8(output.stdout.clone()).unwrap();
     let results: Vec<&str> = results.lines().collect();
     assert_eq!(results.len(), 2, "{results:?}");
     assert!(results[0].starts_with("a.png: 32x24, reference") && results[1].starts_with("a.exr: "));
-    assert!(
-        lines(&output)[0].starts_with("device: "),
-        "{:?}",
-        lines(&output)
-    );
+    let said = lines(&output);
+    assert!(said[0].starts_with("device: "), "{said:?}");
     assert_eq!(bench.names(), ["a.exr", "a.png", "scene.toml"]);
 
     // The same again is the same file, in place of the old one.
-    let first = std::fs::read(bench.path("a.exr")).unwrap();
+    let first = bench.read("a.exr");
     let quiet = bench.done("render scene.toml -o a.exr --stage reference --size 32x24 --quiet");
     assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
-    assert_eq!(std::fs::read(bench.path("a.exr")).unwrap(), first);
+    assert_eq!(bench.read("a.exr"), first);
 
     // A value set on the command line is a value in the file.
     bench.done("render scene.toml -o set.exr --stage reference --size 32x24 -q --set object.0.extend=0.1 --set camera.fov_y=50");
@@ -175,53 +112,32 @@ fn good_input_makes_what_was_asked_for() {
         format!("{CAMERA}{CONE}extend = 0.1\n").replacen("[camera]", "[camera]\nfov_y = 50", 1),
     );
     bench.done("render same.toml -o same.exr --stage reference --size 32x24 -q");
-    let set = std::fs::read(bench.path("set.exr")).unwrap();
-    assert_eq!(set, std::fs::read(bench.path("same.exr")).unwrap());
+    let set = bench.read("set.exr");
+    assert_eq!(set, bench.read("same.exr"));
     assert_ne!(set, first);
 }
 
 #[test]
 fn maps_are_baked_under_the_names_that_were_asked_for() {
     let bench = Bench::new();
-    bench.grey(
-        "half.png",
-        20,
-        40,
-        |x, y| {
-            if x < 12 && y > 5 { 0 } else { 255 }
-        },
-    );
+    bench.half("half.png");
     bench.grey("waves.png", 32, 16, |x, _| (x * 8) as u8);
     bench.done(
         "bake half.png -o map.png --profile-axis left --map-rows 80 --map-source binary --height-map waves.png \
          --projection spherical",
     );
     bench.done("bake half.png -o map.exr --profile-axis left --map-rows 80 -q");
-    assert_eq!(
-        bench.names(),
-        [
-            "half.png",
-            "map.displacement.png",
-            "map.exr",
-            "map.spherical.png",
-            "scene.toml",
-            "waves.png"
-        ]
-    );
-    let size = image::image_dimensions(bench.path("map.spherical.png")).unwrap();
-    assert_eq!(size, (40, 80));
-    let size = image::image_dimensions(bench.path("map.displacement.png")).unwrap();
-    assert_eq!(size, (32, 16));
+    let made = "half.png map.displacement.png map.exr map.spherical.png scene.toml waves.png";
+    assert_eq!(bench.names().join(" "), made);
+    assert_eq!(size(&bench, "map.spherical.png"), (40, 80));
+    assert_eq!(size(&bench, "map.displacement.png"), (32, 16));
 }
 
 #[test]
 fn paths_in_a_scene_are_relative_to_it() {
     let bench = Bench::new();
     std::fs::create_dir(bench.path("below")).unwrap();
-    bench.file(
-        "below/half.svg",
-        "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M0,5h12v35h-12z'/></svg>",
-    );
+    bench.file("below/half.svg", SVG);
     let scene = format!("{CAMERA}[[object]]\nprofile = \"half.svg\"\nprofile_axis = \"left\"\n");
     bench.file("below/s.toml", scene);
     bench.done("render below/s.toml -o out.png --stage reference --size 32x24 --quiet");
@@ -235,19 +151,15 @@ fn paths_in_a_scene_are_relative_to_it() {
 fn a_build_without_the_window_says_how_to_get_it() {
     let bench = Bench::new();
     let how = "`cargo install --path crates/cli --features viewer`";
-    for arguments in [
-        "view",
-        "view scene.toml",
-        "view scene.toml --show steps --frames 3",
-    ] {
-        bench.refused(arguments, 2, &[how]);
+    for arguments in ["", " scene.toml", " scene.toml --show steps --frames 3"] {
+        bench.refused(&format!("view{arguments}"), 2, &[how]);
     }
 }
 
 #[test]
 fn the_version_names_the_commit() {
     let bench = Bench::new();
-    let version = String::from_utf8(bench.done("--version").stdout).unwrap();
+    let version = bench.said("--version");
     let git = |arguments: &[&str]| {
         let mut git = std::process::Command::new("git");
         let git = git.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
@@ -265,34 +177,16 @@ fn the_version_names_the_commit() {
 #[test]
 fn help_and_version_are_no_failures() {
     let bench = Bench::new();
-    for arguments in [
-        "--help",
-        "render --help",
-        "bake --help",
-        "compare --help",
-        "devices --help",
-        "--version",
-    ] {
-        let output = bench.done(arguments);
-        assert!(
-            output.stderr.is_empty() && !output.stdout.is_empty(),
-            "{arguments}"
-        );
+    for command in ["", "render", "bake", "compare", "devices"] {
+        let output = bench.done(&format!("{command} --help"));
+        let silent = output.stderr.is_empty();
+        assert!(silent && !output.stdout.is_empty(), "{command}");
     }
-    let output = bench.done("render --help");
-    let help = String::from_utf8(output.stdout).unwrap();
-    for option in [
-        "--size",
-        "--stage",
-        "--solver",
-        "--max-steps",
-        "--map-rows",
-        "--map-source",
-        "--map-format",
-        "--device",
-        "--set",
-        "--quiet",
-    ] {
+    let output = bench.done("--version");
+    assert!(output.stderr.is_empty() && !output.stdout.is_empty());
+    let help = bench.said("render --help");
+    let options = "--size --stage --solver --max-steps --map-rows --map-source --map-format --device --set --quiet";
+    for option in options.split(' ') {
         assert!(help.contains(option), "{option}");
     }
 }

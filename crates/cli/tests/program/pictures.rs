@@ -1,76 +1,37 @@
 //! Pictures and maps of the scenes that come with the program, as it is run: what it refuses, warns
 //! of and says.
 
+use crate::run::{Bench, asset, lines};
+use revmap::frame::Frame;
 use revmap::maps::{DisplacementMap, SlopeFilter};
 use revmap_files::read_exr;
-use std::path::PathBuf;
-use std::process::Command;
 
-fn asset(name: &str) -> String {
-    let assets = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets");
-    assets.join(name).to_str().unwrap().to_owned()
-}
+const PAWN: &str = "render @scenes/pawn.toml -q";
 
 #[test]
 fn a_search_that_does_not_apply_is_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let picture = folder.path().join("goblet.png");
-    let run = |scene: &str| {
-        Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args([
-                "render",
-                &asset(scene),
-                "--size",
-                "80x60",
-                "--solver",
-                "cone",
-                "-o",
-            ])
-            .arg(&picture)
-            .output()
-            .unwrap()
-    };
-    let output = run("scenes/goblet.toml");
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(
-        said.lines().count() == 1 && said.contains("object.0.profile"),
-        "{said}"
-    );
-    assert!(!picture.exists());
-    let output = run("scenes/sphere.toml");
-    assert!(output.status.success(), "{output:?}");
+    let bench = Bench::new();
+    let render = |scene| format!("render @scenes/{scene}.toml --size 80x60 --solver cone -o a.png");
+    bench.refused(&render("goblet"), 1, &["object.0.profile"]);
+    bench.done(&render("sphere"));
 }
 
 #[test]
 fn rays_out_of_steps_are_warned_of() {
-    let folder = tempfile::tempdir().unwrap();
-    let picture = folder.path().join("pawn.png");
-    let said = |options: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args([
-                "render",
-                &asset("scenes/pawn.toml"),
-                "--size",
-                "160x120",
-                "-o",
-            ])
-            .arg(&picture)
-            .args(options)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{options:?}");
-        String::from_utf8(output.stderr).unwrap()
+    let bench = Bench::new();
+    let said = |options: &str| {
+        let render = format!("render @scenes/pawn.toml --size 160x120 -o pawn.png {options}");
+        lines(&bench.done(&render)).join("\n")
     };
-    let few = ["--solver", "live", "--max-steps", "3"];
-    assert!(said(&few).contains("pixels ran out of steps"));
-    assert_eq!(said(&[&few[..], &["--quiet"]].concat()), "");
-    let enough = said(&["--solver", "live"]);
+    let few = "--solver live --max-steps 3";
+    assert!(said(few).contains("pixels ran out of steps"));
+    assert_eq!(said(&format!("{few} --quiet")), "");
+    let enough = said("--solver live");
     assert!(!enough.contains("out of steps"), "{enough}");
-    let told = said(&["--solver", "live", "--verbose"]);
+    let told = said("--solver live --verbose");
     assert!(told.contains("no pixel ran out of steps"), "{told}");
     // The default has none to run out of.
-    let default = said(&["--verbose"]);
+    let default = said("--verbose");
     assert!(!default.contains("out of steps"), "{default}");
 }
 
@@ -78,48 +39,21 @@ fn rays_out_of_steps_are_warned_of() {
 /// take.
 #[test]
 fn maps_are_written_and_weighed() {
-    let folder = tempfile::tempdir().unwrap();
-    let revmap = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args(arguments)
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{said}");
-        said
-    };
-    let (bottle, brick) = (asset("profiles/bottle.png"), asset("heights/brick.png"));
-    revmap(&["bake", &bottle, "-o", "bottle.png", "--height-map", &brick]);
-    let baked = revmap_files::displacement_map(
-        folder.path().join("bottle.displacement.png"),
-        SlopeFilter::default(),
-    )
-    .unwrap();
-    let own = revmap_files::displacement_map(&brick, SlopeFilter::default()).unwrap();
+    let bench = Bench::new();
+    bench.done("bake @profiles/bottle.png -o bottle.png --height-map @heights/brick.png");
+    let read = |file| revmap_files::displacement_map(file, SlopeFilter::default()).unwrap();
+    let baked = read(bench.path("bottle.displacement.png"));
+    let own = read(asset("heights/brick.png").into());
     assert_eq!(baked.size(), own.size());
     let values = |m: &DisplacementMap| m.levels[0].texels.concat();
     let (a, b) = (values(&baked), values(&own));
     let largest = b.iter().fold(0.0f32, |m, v| m.max(v.abs()));
-    assert!(
-        a.iter()
-            .zip(&b)
-            .all(|(a, b)| (a - b).abs() <= largest / 65_000.0)
-    );
+    let near = |(a, b): (&f32, &f32)| (a - b).abs() <= largest / 65_000.0;
+    assert!(a.iter().zip(&b).all(near));
 
-    let scene = asset("gallery/bumps.toml");
-    let said = revmap(&[
-        "render",
-        &scene,
-        "-o",
-        "bumps.png",
-        "--size",
-        "64x20",
-        "--solver",
-        "live",
-        "--verbose",
-    ]);
-    let line = said.lines().find(|l| l.contains("shape maps")).unwrap();
+    let render = "render @gallery/bumps.toml -o bumps.png --size 64x20 --solver live --verbose";
+    let said = lines(&bench.done(render));
+    let line = said.iter().find(|l| l.contains("shape maps")).unwrap();
     let numbers: Vec<f64> = line.split(' ').filter_map(|w| w.parse().ok()).collect();
     assert!(
         matches!(numbers[..], [shapes, covers] if shapes > 0.1 && shapes <= 10.0 && covers > 1.0 && covers <= 4.0),
@@ -131,51 +65,35 @@ fn maps_are_written_and_weighed() {
 /// channels are the plain picture's.
 #[test]
 fn silhouettes_are_smoothed_in_pictures_and_not_in_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let draw = |name: &str, options: &[&str]| {
-        let file = folder.path().join(name);
-        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args(["render", &asset("scenes/pawn.toml"), "-q", "-o"])
-            .arg(&file)
-            .args(["--size", "64x48"])
-            .args(options)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{output:?}");
-        std::fs::read(&file).unwrap()
+    let bench = Bench::new();
+    let draw = |name: &str, options: &str| {
+        bench.done(&format!("{PAWN} -o {name} --size 64x48 {options}"));
+        bench.read(name)
     };
     for stage in ["fragment", "compute", "reference"] {
-        let png = |how: &[&str]| draw("picture.png", &[&["--stage", stage], how].concat());
-        let [on, off] = ["on", "off"].map(|how| png(&["--antialias", how]));
+        let png = |how: &str| draw("picture.png", &format!("--stage {stage} {how}"));
+        let [on, off] = ["--antialias on", "--antialias off"].map(png);
         assert!(on != off, "{stage}");
         let default = if stage == "reference" { &off } else { &on };
-        assert!(png(&[]) == *default, "{stage}");
-        assert!(png(&["--samples", "4"]) == png(&["--samples", "4", "--antialias", "off"]));
+        assert!(png("") == *default, "{stage}");
+        assert!(png("--samples 4") == png("--samples 4 --antialias off"));
     }
-    let [plain, on] = [&[][..], &["--antialias", "on"]].map(|how| draw("frame.exr", how));
-    assert!(plain == draw("frame.exr", &["--antialias", "off"]));
+    let [plain, on] = ["", "--antialias on"].map(|how| draw("frame.exr", how));
+    assert!(plain == draw("frame.exr", "--antialias off"));
     assert!(plain != on);
 }
 
 #[test]
 fn samples_average_colours_alone() {
-    let folder = tempfile::tempdir().unwrap();
-    let draw = |name: &str, options: &[&str]| {
-        let file = folder.path().join(name);
-        let output = Command::new(env!("CARGO_BIN_EXE_revmap"))
-            .args(["render", &asset("scenes/pawn.toml"), "-q", "-o"])
-            .arg(&file)
-            .args(options)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{output:?}");
-        read_exr(&file).unwrap()
+    let bench = Bench::new();
+    let draw = |options: &str| -> Frame {
+        bench.done(&format!("{PAWN} -o a.exr --size {options}"));
+        read_exr(bench.path("a.exr")).unwrap()
     };
-    let large = draw("large.exr", &["--size", "512x384"]);
-    let plain = draw("plain.exr", &["--size", "64x48"]);
+    let (large, plain) = (draw("512x384"), draw("64x48"));
     let mut error = Vec::new();
     for samples in ["4", "64"] {
-        let mut averaged = draw("averaged.exr", &["--size", "64x48", "--samples", samples]);
+        let mut averaged = draw(&format!("64x48 --samples {samples}"));
         let (mut total, mut between) = (0.0, 0);
         for (index, color) in averaged.color.iter().enumerate() {
             let (x, y) = (index % 64 * 8, index / 64 * 8);

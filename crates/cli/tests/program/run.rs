@@ -1,11 +1,12 @@
 //! Runs of the program in a folder of their own.
 
-use std::ffi::OsStr;
-use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 pub const CAMERA: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
+/// A drawing of half a profile.
+pub const SVG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M0,5h12v35h-12z'/></svg>";
 pub const CONE: &str = "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n";
 
 /// A folder with the files of one case, and runs of the program in it.
@@ -41,11 +42,20 @@ impl Bench {
             .unwrap();
     }
 
-    pub fn command<I: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = I>) -> Command {
+    /// A picture of half a profile.
+    pub fn half(&self, name: &str) {
+        let solid = |x, y| x < 12 && y > 5;
+        self.grey(name, 20, 40, |x, y| if solid(x, y) { 0 } else { 255 });
+    }
+
+    /// The program with a command line. Its word `@NAME` is a file of `assets/`.
+    pub fn command(&self, arguments: &str) -> Command {
+        let word = |word: &str| word.strip_prefix('@').map_or(word.to_owned(), asset);
         let mut command = Command::new(env!("CARGO_BIN_EXE_revmap"));
         command
-            .args(arguments)
+            .args(arguments.split_whitespace().map(word))
             .current_dir(self.folder.path())
+            .stdin(Stdio::null())
             .env_remove("RUST_BACKTRACE")
             .env_remove("REVMAP_DEVICE");
         command
@@ -65,7 +75,15 @@ impl Bench {
     /// standard output, and no file made.
     #[track_caller]
     pub fn refused(&self, arguments: &str, code: i32, words: &[&str]) {
-        self.refused_by(&mut self.command(arguments.split(' ')), code, words);
+        self.refused_by(&mut self.command(arguments), code, words);
+    }
+
+    /// Wants each line of a table refused: a command line, then words of the message.
+    #[track_caller]
+    pub fn refuses(&self, code: i32, lines: &str) {
+        for row in table(lines) {
+            self.refused(row[0], code, &row[1..]);
+        }
     }
 
     #[track_caller]
@@ -85,10 +103,40 @@ impl Bench {
 
     #[track_caller]
     pub fn done(&self, arguments: &str) -> Output {
-        let output = self.command(arguments.split(' ')).output().unwrap();
+        let output = self.command(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
         output
     }
+
+    /// What a run that is done wrote to standard output.
+    #[track_caller]
+    pub fn said(&self, arguments: &str) -> String {
+        String::from_utf8(self.done(arguments).stdout).unwrap()
+    }
+
+    /// Wants files in the folder.
+    #[track_caller]
+    pub fn has(&self, files: &[&str]) {
+        for file in files {
+            assert!(self.path(file).exists(), "{file}");
+        }
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+}
+
+/// A file of `assets/`.
+pub fn asset(name: &str) -> String {
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    assets.join(name).to_str().unwrap().to_owned()
+}
+
+/// The rows of a table: a line each, with `|` between cells.
+pub fn table(lines: &str) -> impl Iterator<Item = Vec<&str>> {
+    let cells = |line| str::split(line, '|').map(str::trim).collect();
+    lines.trim().lines().map(cells)
 }
 
 /// What a run wrote to standard error.

@@ -23,15 +23,9 @@ fn manifest() -> PathBuf {
         .iter()
         .chain(&folders)
         .filter_map(|folder| std::fs::read_dir(folder.join("vulkan/icd.d")).ok());
-    let found = entries
-        .flatten()
-        .map(|entry| entry.unwrap().path())
-        .find(|path| {
-            path.file_name()
-                .unwrap()
-                .to_string_lossy()
-                .starts_with("radeon_icd")
-        });
+    let named = |path: &PathBuf| path.to_string_lossy().contains("/radeon_icd");
+    let mut files = entries.flatten().map(|entry| entry.unwrap().path());
+    let found = files.find(named);
     found.unwrap_or_else(|| {
         panic!("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
     })
@@ -63,7 +57,7 @@ fn compiled() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
         let output = Bench::new()
-            .command(["shaders", "--csv"])
+            .command("shaders --csv")
             .env("VK_DRIVER_FILES", manifest())
             .env("VK_ICD_FILENAMES", manifest())
             .env("RADV_FORCE_FAMILY", "navi21")

@@ -1,6 +1,6 @@
 //! What looks unintended is said in one line each, and changes no exit code.
 
-use crate::run::{Bench, CAMERA, lines};
+use crate::run::{Bench, CAMERA, CONE, SVG, lines};
 
 const RENDER: &str = "render scene.toml -o out.png --size 32x24";
 
@@ -13,6 +13,17 @@ fn warned(bench: &Bench, arguments: &str) -> Vec<String> {
         .collect()
 }
 
+/// Wants one warning with all of `words`.
+#[track_caller]
+fn warned_once(bench: &Bench, arguments: &str, words: &[&str]) {
+    let found = warned(bench, arguments);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        words.iter().all(|word| found[0].contains(word)),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn scenes_that_look_unintended() {
     let bench = Bench::new();
@@ -23,8 +34,7 @@ fn scenes_that_look_unintended() {
         ("camera.target=[9,0,0.5]", "nothing is in view"),
     ] {
         let arguments = format!("{RENDER} --set {set}");
-        let found = warned(&bench, &arguments);
-        assert!(found.len() == 1 && found[0].contains(words), "{found:?}");
+        warned_once(&bench, &arguments, &[words]);
         assert!(lines(&bench.done(&format!("{arguments} --quiet"))).is_empty());
     }
 }
@@ -46,20 +56,14 @@ fn options_that_are_passed_over() {
         ),
         ("--solver cone --map-rows 64", None),
     ] {
-        let found = warned(&bench, &format!("{RENDER} {options}"));
+        let arguments = format!("{RENDER} {options}");
         match words {
-            Some(words) => assert!(found.len() == 1 && found[0].contains(words), "{found:?}"),
-            None => assert_eq!(found, [""; 0], "{options}"),
+            Some(words) => warned_once(&bench, &arguments, &[words]),
+            None => assert_eq!(warned(&bench, &arguments), [""; 0], "{options}"),
         }
     }
-    let found = warned(
-        &bench,
-        "animate scene.toml --frames 1 --size 32x24 --samples 4",
-    );
-    assert!(
-        found.len() == 1 && found[0].contains("--samples"),
-        "{found:?}"
-    );
+    let animate = "animate scene.toml --frames 1 --size 32x24 --samples 4";
+    warned_once(&bench, animate, &["--samples"]);
 }
 
 #[test]
@@ -67,31 +71,20 @@ fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
     let bench = Bench::new();
     let ball = |x: u32, y: u32| (f64::from(x) - 31.5).hypot(f64::from(y) - 31.5) < 20.0;
     bench.grey("light.png", 64, 64, |x, y| if ball(x, y) { 255 } else { 0 });
-    let found = warned(&bench, "render light.png -o out.png --size 32x24");
-    assert!(
-        found.len() == 1 && found[0].contains("object.0.profile: "),
-        "{found:?}"
-    );
-    assert!(found[0].contains("profile_invert = true"), "{found:?}");
+    let words = ["object.0.profile: ", "profile_invert = true"];
+    warned_once(&bench, "render light.png -o out.png --size 32x24", &words);
     let mended = "render light.png -o out.png --size 32x24 --set object.0.profile_invert=true";
     assert_eq!(warned(&bench, mended), [""; 0]);
 
-    let found = warned(&bench, "bake light.png -o map.png --map-rows 64");
-    assert!(
-        found.len() == 1 && found[0].contains("profile_invert"),
-        "{found:?}"
-    );
-    bench.done("bake light.png -o map.png --map-rows 64 --profile-invert");
-    bench.refused(
-        "bake light.png -o map2.png --profile-threshold 2",
-        1,
-        &["light.png", "profile_threshold"],
-    );
+    let bake = "bake light.png -o map.png --map-rows 64";
+    warned_once(&bench, bake, &["profile_invert"]);
+    bench.done(&format!("{bake} --profile-invert"));
+    let bake = "bake light.png -o map2.png --profile-threshold 2";
+    bench.refused(bake, 1, &["light.png", "profile_threshold"]);
 
     bench.object("profile = \"light.png\"\nprofile_smooth = -1");
     bench.refused(RENDER, 1, &["object.0.profile_smooth", "0 to 100"]);
-    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M0,5h12v35h-12z'/></svg>";
-    bench.file("a.svg", svg);
+    bench.file("a.svg", SVG);
     bench.object("profile = \"a.svg\"\nprofile_invert = true");
     bench.refused(RENDER, 1, &["object.0.profile_invert", "pictures"]);
 }
@@ -106,19 +99,15 @@ fn noisy_pictures_are_named_and_smoothed() {
         grey as u8 + noise as u8
     });
     bench.object("profile = \"noisy.png\"");
-    let found = warned(&bench, RENDER);
-    assert!(
-        found.len() == 1 && found[0].contains("object.0.profile: the outline is rough"),
-        "{found:?}"
-    );
-    assert!(found[0].contains("profile_smooth = \"auto\""), "{found:?}");
+    let words = [
+        "object.0.profile: the outline is rough",
+        "profile_smooth = \"auto\"",
+    ];
+    warned_once(&bench, RENDER, &words);
     let auto = format!("{RENDER} --set object.0.profile_smooth=auto");
     assert_eq!(warned(&bench, &auto), [""; 0]);
-    bench.refused(
-        &format!("{RENDER} --set object.0.profile_smooth=much"),
-        1,
-        &["object.0.profile_smooth", "\"auto\""],
-    );
+    let much = format!("{RENDER} --set object.0.profile_smooth=much");
+    bench.refused(&much, 1, &["object.0.profile_smooth", "\"auto\""]);
     // A picture in place of a scene is smoothed.
     let alone = "render noisy.png -o out.png --size 32x24";
     assert_eq!(warned(&bench, alone), [""; 0]);
@@ -134,13 +123,10 @@ fn noisy_pictures_are_named_and_smoothed() {
 #[test]
 fn faults_of_instances_name_file_and_line() {
     let bench = Bench::new();
-    let cone =
-        "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\ninstances = \"copies.csv\"\n";
-    bench.file("scene.toml", format!("{CAMERA}{cone}"));
-    bench.file(
-        "copies.csv",
-        "\u{feff}x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n0,0,0,0,0,0,1,1,1,1\r\n",
-    );
+    let scene = format!("{CAMERA}{CONE}instances = \"copies.csv\"\n");
+    bench.file("scene.toml", scene);
+    let copies = "\u{feff}x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n0,0,0,0,0,0,1,1,1,1\r\n";
+    bench.file("copies.csv", copies);
     bench.done(RENDER);
     for (row, words) in [
         ("1,2", "has 2 values"),

@@ -3,33 +3,17 @@
 use crate::run::Bench;
 use serde_json::Value;
 
-const COMMANDS: [&str; 12] = [
-    "render",
-    "animate",
-    "bake",
-    "bench",
-    "chart",
-    "stability",
-    "shaders",
-    "devices",
-    "compare",
-    "view",
-    "completions",
-    "man",
-];
-
-fn text(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes).unwrap()
-}
+const COMMANDS: &str =
+    "render animate bake bench chart stability shaders devices compare view completions man";
 
 /// Every example is a command line that the program takes.
 #[test]
 fn every_help_has_examples() {
     let bench = Bench::new();
     // Without the window there is nothing to try.
-    let tried = |command: &&&str| **command != "view" || cfg!(feature = "viewer");
-    for command in COMMANDS.iter().filter(tried) {
-        let help = text(bench.done(&format!("{command} --help")).stdout);
+    let tried = |command: &&str| *command != "view" || cfg!(feature = "viewer");
+    for command in COMMANDS.split(' ').filter(tried) {
+        let help = bench.said(&format!("{command} --help"));
         let examples = help.split("Examples:\n").nth(1).unwrap();
         let lines: Vec<_> = examples
             .lines()
@@ -54,18 +38,18 @@ fn every_help_has_examples() {
 fn shells_and_man_know_every_command() {
     let bench = Bench::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = text(bench.done(&format!("completions {shell}")).stdout);
-        for command in COMMANDS {
+        let script = bench.said(&format!("completions {shell}"));
+        for command in COMMANDS.split(' ') {
             assert!(script.contains(command), "{shell}: {command}");
         }
     }
-    let page = text(bench.done("man").stdout);
+    let page = bench.said("man");
     assert!(
         page.contains(".TH revmap") && page.contains("render"),
         "{page}"
     );
     bench.done("man -o pages");
-    for command in COMMANDS {
+    for command in COMMANDS.split(' ') {
         let page = bench.path(&format!("pages/revmap-{command}.1"));
         assert!(std::fs::read_to_string(page).unwrap().contains("Examples"));
     }
@@ -74,14 +58,12 @@ fn shells_and_man_know_every_command() {
 #[test]
 fn programs_get_json() {
     let bench = Bench::new();
-    let json = |arguments: &str| -> Value {
-        serde_json::from_slice(&bench.done(arguments).stdout).unwrap()
-    };
+    let json = |arguments: &str| -> Value { serde_json::from_str(&bench.said(arguments)).unwrap() };
     let devices = json("devices --json");
     let all = devices.as_array().unwrap();
     let preferred: Vec<_> = all.iter().filter(|d| d["preferred"] == true).collect();
     assert_eq!(preferred.len(), 1, "{devices}");
-    let listed = text(bench.done("devices").stdout);
+    let listed = bench.said("devices");
     let marked: Vec<_> = listed
         .lines()
         .filter(|l| l.contains("taken unless"))
@@ -120,7 +102,7 @@ fn programs_get_json() {
     ] {
         assert_eq!(number(&found, "depth_p99_h512"), other);
     }
-    let said = text(bench.done("compare truth.exr a.exr").stdout);
+    let said = bench.said("compare truth.exr a.exr");
     assert!(
         said.contains("texels of 0.001953 world units")
             && said.contains("h/512 (height h = 1 world unit)"),

@@ -23,38 +23,17 @@ enum Fault {
 }
 
 /// Words that are difficult for parsers.
-const WORDS: [&str; 22] = [
-    "nan",
-    "inf",
-    "-inf",
-    "1e308",
-    "-1e-320",
-    "1e999",
-    "0",
-    "-1",
-    "4294967296",
-    "18446744073709551616",
-    "\"",
-    "'",
-    "[",
-    "]]",
-    "{",
-    "=",
-    ",",
-    "\n",
-    "\u{0}",
-    "\u{feff}",
-    "é",
-    "../../x",
-];
+const WORDS: &str = "nan inf -inf 1e308 -1e-320 1e999 0 -1 4294967296 18446744073709551616 \" ' [ ]] { \
+                     = , \u{0} \u{feff} é ../../x";
 
 fn faults() -> impl Strategy<Value = Vec<Fault>> {
+    let words: Vec<&str> = WORDS.split(' ').chain(["\n"]).collect();
     let fault = prop_oneof![
         (0.0..1.0, any::<u8>()).prop_map(|(at, to)| Fault::Byte(at, to)),
         (0.0..1.0, 0u8..8).prop_map(|(at, bit)| Fault::Bit(at, bit)),
         (0.0..1.0, 1usize..40).prop_map(|(at, n)| Fault::Cut(at, n)),
         (0.0..1.0, 1usize..40).prop_map(|(at, n)| Fault::Repeat(at, n)),
-        (0.0..1.0, prop::sample::select(&WORDS[..])).prop_map(|(at, word)| Fault::Word(at, word)),
+        (0.0..1.0, prop::sample::select(words)).prop_map(|(at, word)| Fault::Word(at, word)),
         (0.0..1.0).prop_map(Fault::End),
     ];
     prop::collection::vec(fault, 1..6)
@@ -63,27 +42,17 @@ fn faults() -> impl Strategy<Value = Vec<Fault>> {
 fn damaged(sound: &[u8], faults: &[Fault]) -> Vec<u8> {
     let mut bytes = sound.to_vec();
     for fault in faults {
-        let place =
-            |at: f64| ((at * bytes.len() as f64) as usize).min(bytes.len().saturating_sub(1));
-        let range = |at: f64, n: usize| place(at)..(place(at) + n).min(bytes.len());
+        let length = bytes.len();
+        let place = |at: f64| ((at * length as f64) as usize).min(length.saturating_sub(1));
+        let range = |at: f64, n: usize| place(at)..(place(at) + n).min(length);
         match *fault {
             _ if bytes.is_empty() => {}
-            Fault::Byte(at, to) => {
-                let at = place(at);
-                bytes[at] = to;
-            }
-            Fault::Bit(at, bit) => {
-                let at = place(at);
-                bytes[at] ^= 1 << bit;
-            }
-            Fault::Cut(at, n) => {
-                let range = range(at, n);
-                bytes.drain(range);
-            }
+            Fault::Byte(at, to) => bytes[place(at)] = to,
+            Fault::Bit(at, bit) => bytes[place(at)] ^= 1 << bit,
+            Fault::Cut(at, n) => drop(bytes.drain(range(at, n))),
             Fault::Repeat(at, n) => {
                 let part = bytes[range(at, n)].to_vec();
-                let at = place(at);
-                bytes.splice(at..at, part);
+                bytes.splice(place(at)..place(at), part);
             }
             Fault::Word(at, word) => {
                 // Replaces the text between two separators, such as a number.
@@ -102,27 +71,16 @@ fn damaged(sound: &[u8], faults: &[Fault]) -> Vec<u8> {
 static SOUND: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    image::GrayImage::from_fn(18, 26, |x, y| {
-        image::Luma([
-            if (x as i32 - 9).pow(2) * 3 + (y as i32 - 13).pow(2) < 130 {
-                20
-            } else {
-                230
-            },
-        ])
-    })
-    .save(at("grey.png"))
-    .unwrap();
-    image::RgbaImage::from_fn(7, 5, |x, y| {
-        image::Rgba([x as u8 * 30, y as u8 * 40, 90, 200])
-    })
-    .save(at("colours.png"))
-    .unwrap();
-    image::ImageBuffer::<image::Luma<u16>, _>::from_fn(9, 9, |x, y| {
-        image::Luma([(x * y * 900) as u16])
-    })
-    .save(at("heights.png"))
-    .unwrap();
+    let ball = |x, y| (x as i32 - 9).pow(2) * 3 + (y as i32 - 13).pow(2) < 130;
+    let grey = |x, y| image::Luma([if ball(x, y) { 20u8 } else { 230 }]);
+    let picture = image::ImageBuffer::from_fn(18, 26, grey);
+    picture.save(at("grey.png")).unwrap();
+    let color = |x, y| image::Rgba([x as u8 * 30, y as u8 * 40, 90, 200]);
+    let picture = image::ImageBuffer::from_fn(7, 5, color);
+    picture.save(at("colours.png")).unwrap();
+    let height = |x, y| image::Luma([(x * y * 900) as u16]);
+    let picture = image::ImageBuffer::from_fn(9, 9, height);
+    picture.save(at("heights.png")).unwrap();
     image::GrayImage::from_fn(24, 16, |x, _| image::Luma([x as u8 * 10]))
         .save(at("grey.jpg"))
         .unwrap();
@@ -202,23 +160,13 @@ fn read_scene(file: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-fn read_map(file: &Path) -> Result<(), Error> {
-    revmap_files::shape_map(file).map(|_| ())
-}
-
-fn read_colours(file: &Path) -> Result<(), Error> {
-    revmap_files::color_map(file).map(|_| ())
-}
-
-fn read_heights(file: &Path) -> Result<(), Error> {
-    revmap_files::displacement_map(file, SlopeFilter::default()).map(|_| ())
-}
-
-fn read_frame(file: &Path) -> Result<(), Error> {
-    read_exr(file).map(|_| ())
-}
-
 type Reader = fn(&Path) -> Result<(), Error>;
+
+const READ_MAP: Reader = |file| revmap_files::shape_map(file).map(drop);
+const READ_COLOURS: Reader = |file| revmap_files::color_map(file).map(drop);
+const READ_HEIGHTS: Reader =
+    |file| revmap_files::displacement_map(file, SlopeFilter::default()).map(drop);
+const READ_FRAME: Reader = |file| read_exr(file).map(drop);
 
 /// Each valid file with its reader.
 const READERS: [(&str, Reader); 12] = [
@@ -227,12 +175,12 @@ const READERS: [(&str, Reader); 12] = [
     ("grey.jpg", read_profile),
     ("scene.toml", read_scene),
     ("copies.csv", read_scene),
-    ("map.png", read_map),
-    ("map.exr", read_map),
-    ("colours.png", read_colours),
-    ("grey.jpg", read_colours),
-    ("heights.png", read_heights),
-    ("frame.exr", read_frame),
+    ("map.png", READ_MAP),
+    ("map.exr", READ_MAP),
+    ("colours.png", READ_COLOURS),
+    ("grey.jpg", READ_COLOURS),
+    ("heights.png", READ_HEIGHTS),
+    ("frame.exr", READ_FRAME),
     ("vase.svg", read_scene),
 ];
 
@@ -240,29 +188,19 @@ const READERS: [(&str, Reader); 12] = [
 fn read(name: &str, reader: Reader, bytes: &[u8]) -> Result<(), Error> {
     let folder = tempfile::tempdir().unwrap();
     if name.ends_with("toml") || name.ends_with("csv") {
-        for other in [
-            "grey.png",
-            "colours.png",
-            "heights.png",
-            "copies.csv",
-            "scene.toml",
-        ] {
+        let beside = "grey.png colours.png heights.png copies.csv scene.toml";
+        for other in beside.split(' ') {
             std::fs::copy(SOUND.path().join(other), folder.path().join(other)).unwrap();
         }
     }
     let file = folder.path().join(name);
     std::fs::write(&file, bytes).unwrap();
     // Copies are read by the scene that names them.
-    let asked = if name == "copies.csv" {
-        folder.path().join("scene.toml")
-    } else {
-        file
-    };
+    let scene = folder.path().join("scene.toml");
+    let asked = if name == "copies.csv" { scene } else { file };
     reader(&asked).inspect_err(|error| {
-        let named = error
-            .file
-            .as_ref()
-            .is_some_and(|named: &PathBuf| named.starts_with(folder.path()));
+        let within = |named: &PathBuf| named.starts_with(folder.path());
+        let named = error.file.as_ref().is_some_and(within);
         assert!(named, "{name}: no file is named: {error}");
         assert!(!error.message.contains('\n'), "{name}: {error}");
     })
@@ -287,14 +225,11 @@ fn promises_that_no_file_keeps_are_refused() {
     refused("vase.svg", read_profile, far.as_bytes(), "times its height");
     let dashed = SVG.replace("2 1\"", "1e-9 1e-9\"");
     refused("vase.svg", read_profile, dashed.as_bytes(), "dashes");
-    for (name, reader) in [("frame.exr", read_frame as Reader), ("map.exr", read_map)] {
+    for (name, reader) in [("frame.exr", READ_FRAME), ("map.exr", READ_MAP)] {
         let mut bytes = std::fs::read(SOUND.path().join(name)).unwrap();
         let window = b"dataWindow\0box2i\0\x10\0\0\0";
-        let at = bytes
-            .windows(window.len())
-            .position(|w| w == window)
-            .unwrap()
-            + window.len();
+        let found = bytes.windows(window.len()).position(|w| w == window);
+        let at = found.unwrap() + window.len();
         for (side, last) in [(8, 15_999i32), (12, 7_999)] {
             bytes[at + side..at + side + 4].copy_from_slice(&last.to_le_bytes());
         }

@@ -27,15 +27,13 @@ fn binary_is_what_the_papers_have() {
 #[test]
 fn coverage_is_sub_texel() {
     let e = errors(COVERAGE, 512);
+    assert!(e.mean.abs() <= 0.001 && e.rms <= 0.004, "{e:?}");
+    assert!(e.max <= 0.03 && e.gradient_rms <= 0.25, "{e:?}");
     assert!(
-        e.mean.abs() <= 0.001 && e.rms <= 0.004 && e.max <= 0.03,
+        e.gradient_max <= 2.5 && e.stored_gradient_rms <= 0.25,
         "{e:?}"
     );
-    assert!(e.gradient_rms <= 0.25 && e.gradient_max <= 2.5, "{e:?}");
-    assert!(
-        e.stored_gradient_rms <= 0.25 && e.stored_gradient_max <= 1.5,
-        "{e:?}"
-    );
+    assert!(e.stored_gradient_max <= 1.5, "{e:?}");
 }
 
 #[test]

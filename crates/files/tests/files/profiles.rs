@@ -38,11 +38,8 @@ fn what_cannot_be_read_is_refused_in_one_line() {
         assert!(refusal(&file("cut.png", &bottle[..part])).contains("damaged"));
     }
     // A file is read by its content, not its name.
-    let renamed = file("bottle.svg", &bottle);
-    assert_eq!(
-        revmap_files::profile(renamed, ProfileAxis::Center).unwrap(),
-        asset("bottle.png")
-    );
+    let renamed = revmap_files::profile(file("bottle.svg", &bottle), ProfileAxis::Center);
+    assert_eq!(renamed.unwrap(), asset("bottle.png"));
 }
 
 /// Every real profile touches its axis, is inside its box, and is one patch of plausible size.
@@ -78,23 +75,16 @@ fn an_image_of_a_drawing_gives_its_distances() {
         let columns = (drawing.radius * f64::from(rows)).ceil() as u32;
         let image = pictured(&drawing, columns, rows, 256).unwrap();
         for rows in [300, 512, 600] {
-            let exact =
-                ShapeMap::bake(&drawing, &BakeOptions::new(MapSource::EXACT, rows)).unwrap();
-            let traced = ShapeMap::bake(&image, &BakeOptions::new(MapSource::EXACT, rows)).unwrap();
-            let errors = exact.distance.iter().zip(&traced.distance);
-            let errors: Vec<f64> = errors
-                .map(|(a, b)| f64::from(a - b).abs() * 600.0)
-                .collect();
+            let options = BakeOptions::new(MapSource::EXACT, rows);
+            let [exact, traced] = [&drawing, &image].map(|p| ShapeMap::bake(p, &options).unwrap());
+            let pairs = exact.distance.iter().zip(&traced.distance);
+            let errors: Vec<f64> = pairs.map(|(a, b)| f64::from(a - b).abs() * 600.0).collect();
             let max = errors.iter().copied().fold(0.0, f64::max);
             // The bottom of a sharp notch is beyond the last pixel that is half covered. It is the
             // nearest point of whole wedges inside the solid.
             assert!(max < 1.7, "{name} at {rows}: {max} pixels");
-            let outside: Vec<f64> = errors
-                .iter()
-                .zip(&exact.form)
-                .filter(|(_, s)| !**s)
-                .map(|(e, _)| *e)
-                .collect();
+            let outside = errors.iter().zip(&exact.form).filter(|(_, s)| !**s);
+            let outside: Vec<f64> = outside.map(|(e, _)| *e).collect();
             let rms = (outside.iter().map(|e| e * e).sum::<f64>() / outside.len() as f64).sqrt();
             assert!(rms < 0.045, "{name} at {rows}: rms {rms} pixels");
         }

@@ -31,8 +31,8 @@ fn rims(scene: &Scene) -> Vec<DVec3> {
                 for k in 0..64 {
                     let turn = DVec2::from_angle(f64::from(k) / 64.0 * std::f64::consts::TAU);
                     let local = (circle.x * turn).extend(circle.y);
-                    points
-                        .push(placement.position + placement.rotation * (placement.scale * local));
+                    let turned = placement.rotation * (placement.scale * local);
+                    points.push(placement.position + turned);
                 }
             }
         }
@@ -98,9 +98,6 @@ fn light_and_dark_pieces_share_their_profiles() {
         assert_eq!(found.len(), 2, "{name}");
         std::sync::Arc::ptr_eq(&found[0].profile, &found[1].profile)
     };
-    assert!(
-        ["pawn.svg", "rook.svg", "bishop.svg", "king.svg"]
-            .iter()
-            .all(|name| find(name))
-    );
+    let names = ["pawn.svg", "rook.svg", "bishop.svg", "king.svg"];
+    assert!(names.into_iter().all(find));
 }

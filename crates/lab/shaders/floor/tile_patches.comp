@@ -15,15 +15,13 @@ void main()
     float a = dot(v.xy, v.xy);
     float b = dot(o.xy, v.xy);
     float inside = b * b - a * (dot(o.xy, o.xy) - solid.bounds.y * solid.bounds.y);
-    Nearest nearest;
-    nearest.hit.t = -(b + sqrt(max(inside, 0.0))) / a;
-    nearest.hit.point = o + nearest.hit.t * v;
-    nearest.hit.normal = vec3(nearest.hit.point.xy, 0.0);
-    nearest.hit.sense = vec3(1.0);
-    nearest.hit.at_border = false;
-    nearest.instance = 0u;
-    nearest.steps = 0u;
-    nearest.exhausted = false;
-    nearest.depth = depth_of(tile_rays.base + nearest.hit.t);
-    store_tile(pixel, true, nearest);
+    Hit hit;
+    hit.t = -(b + sqrt(max(inside, 0.0))) / a;
+    hit.point = o + hit.t * v;
+    hit.normal = vec3(hit.point.xy, 0.0);
+    hit.sense = vec3(1.0);
+    hit.at_border = false;
+    hit.steps = 0u;
+    hit.exhausted = false;
+    store_tile(pixel, true, hit);
 }

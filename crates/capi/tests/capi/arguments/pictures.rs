@@ -33,22 +33,18 @@ fn off_screen_pictures() {
         fail! {
             Usage, "pixels": revmap_offscreen_create(device, &empty, &scene, &mut offscreen);
         }
-        ok(revmap_offscreen_create(
-            device,
-            &picture,
-            &scene,
-            &mut offscreen,
-        ));
+        ok! { revmap_offscreen_create(device, &picture, &scene, &mut offscreen); }
         let mut pixels = vec![[0u8; 4]; 64 * 48];
         let bytes = size_of_val(&pixels[..]);
         let at = pixels.as_mut_ptr().cast();
         fail! {
             Usage, "nothing is drawn yet": revmap_offscreen_read(offscreen, 0, at, bytes);
         }
-        let mut times: RevmapTimes = zeroed();
-        times.size = size_of::<RevmapTimes>() as u32;
-        ok(revmap_offscreen_prewarm(offscreen));
-        ok(revmap_offscreen_draw(offscreen, &mut times));
+        let mut times = sized!(RevmapTimes);
+        ok! {
+            revmap_offscreen_prewarm(offscreen);
+            revmap_offscreen_draw(offscreen, &mut times);
+        }
         assert!(times.frame_ms > 0.0);
         fail! {
             Usage, "give room for as many": revmap_offscreen_read(offscreen, 0, at, bytes - 1);
@@ -60,7 +56,7 @@ fn off_screen_pictures() {
             Usage, "colours alone": revmap_offscreen_read(offscreen, distance, at, bytes);
             File, "/missing/a.png": revmap_offscreen_write_png(offscreen, c"/missing/a.png".as_ptr());
         }
-        ok(revmap_offscreen_read(offscreen, 0, at, bytes));
+        ok! { revmap_offscreen_read(offscreen, 0, at, bytes); }
         let hit = pixels.iter().filter(|p| p[3] == 255).count();
         assert!(hit > 100, "{hit}");
 
@@ -69,11 +65,11 @@ fn off_screen_pictures() {
         fail! {
             Content, "camera.target": revmap_offscreen_update(offscreen, &scene);
         }
-        ok(revmap_offscreen_draw(offscreen, null_mut()));
+        ok! { revmap_offscreen_draw(offscreen, null_mut()); }
         let before = pixels.clone();
-        ok(revmap_offscreen_read(offscreen, 0, at, bytes));
+        ok! { revmap_offscreen_read(offscreen, 0, at, bytes); }
         assert_eq!(before, pixels);
-        ok(revmap_offscreen_destroy(offscreen));
+        ok! { revmap_offscreen_destroy(offscreen); }
         fail! {
             Handle, "was destroyed": revmap_offscreen_draw(offscreen, null_mut());
         }
@@ -83,22 +79,14 @@ fn off_screen_pictures() {
             picture.planes = RevmapPlanes::All as u32;
             picture.stage = stage as u32;
             scene.camera.target = [0.0, 0.0, 0.5];
-            ok(revmap_offscreen_create(
-                device,
-                &picture,
-                &scene,
-                &mut offscreen,
-            ));
-            ok(revmap_offscreen_draw(offscreen, null_mut()));
+            ok! {
+                revmap_offscreen_create(device, &picture, &scene, &mut offscreen);
+                revmap_offscreen_draw(offscreen, null_mut());
+            }
             let read = |plane: RevmapPlane, floats: usize| {
                 let mut all = vec![0f32; floats * pixels.len()];
                 let bytes = size_of_val(&all[..]);
-                ok(revmap_offscreen_read(
-                    offscreen,
-                    plane as u32,
-                    all.as_mut_ptr().cast(),
-                    bytes,
-                ));
+                ok! { revmap_offscreen_read(offscreen, plane as u32, all.as_mut_ptr().cast(), bytes); }
                 all
             };
             let distances = read(RevmapPlane::Distance, 1);
@@ -114,10 +102,12 @@ fn off_screen_pictures() {
             assert!(read(RevmapPlane::Uv, 2).iter().any(|v| *v > 0.5));
             assert!(read(RevmapPlane::Color, 4).iter().any(|v| *v > 0.0));
             read(RevmapPlane::Steps, 1);
-            ok(revmap_offscreen_destroy(offscreen));
+            ok! { revmap_offscreen_destroy(offscreen); }
         }
-        ok(revmap_device_check(device));
-        ok(revmap_profile_destroy(profile));
-        ok(revmap_device_destroy(device));
+        ok! {
+            revmap_device_check(device);
+            revmap_profile_destroy(profile);
+            revmap_device_destroy(device);
+        }
     }
 }

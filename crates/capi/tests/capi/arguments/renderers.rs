@@ -16,8 +16,7 @@ fn renderers_and_objects() {
     let (mut renderer, mut object) = (null_mut(), 0);
     // SAFETY: live values, or null; no command buffer is recorded into.
     unsafe {
-        let mut pass: RevmapPass = zeroed();
-        pass.size = size_of::<RevmapPass>() as u32;
+        let mut pass = sized!(RevmapPass);
         pass.samples = 1;
         pass.depth_format = ash::vk::Format::D32_SFLOAT;
         pass.color_format_count = 1;
@@ -37,19 +36,13 @@ fn renderers_and_objects() {
             Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
             Usage, "pass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
         }
-        ok(make(&pass, 2));
+        ok! { make(&pass, 2); }
         search.solver = 99;
         let mut other = null_mut();
         fail! {
             Usage, "RevmapSolver": revmap_renderer_create_compute(device, 0, &search, 2, &mut other);
         }
-        ok(revmap_renderer_create_compute(
-            device,
-            0,
-            null(),
-            2,
-            &mut other,
-        ));
+        ok! { revmap_renderer_create_compute(device, 0, null(), 2, &mut other); }
 
         fail! {
             Handle, "the profile is null": revmap_renderer_add(renderer, &info, &mut object);
@@ -66,13 +59,13 @@ fn renderers_and_objects() {
         }
         info.instance_count = 0;
         assert_eq!(object, 0, "a failure has written an object");
-        ok(revmap_renderer_add(renderer, &info, &mut object));
+        ok! { revmap_renderer_add(renderer, &info, &mut object); }
         let moved = RevmapOffset {
             extend: 0.01,
             bevel: 0.0,
             chamfer: 1.0,
         };
-        ok(revmap_renderer_set_offset(renderer, object, &moved));
+        ok! { revmap_renderer_set_offset(renderer, object, &moved); }
         fail! {
             Usage, "null": revmap_renderer_set_offset(renderer, object, null());
             Content, "extend": revmap_renderer_set_offset(renderer, object, &RevmapOffset { extend: f64::NAN, ..moved });
@@ -109,8 +102,7 @@ fn renderers_and_objects() {
         fail! {
             Content, "view": revmap_renderer_prepare(renderer, some, 0, &view);
         }
-        let mut target: RevmapComputeTarget = zeroed();
-        target.size = size_of::<RevmapComputeTarget>() as u32;
+        let mut target = sized!(RevmapComputeTarget);
         fail! {
             Usage, "words": revmap_renderer_set_compute_target(other, &target);
         }
@@ -121,30 +113,32 @@ fn renderers_and_objects() {
         }
 
         let mut prewarm = null_mut();
-        ok(revmap_renderer_prewarm(renderer, &mut prewarm));
+        ok! { revmap_renderer_prewarm(renderer, &mut prewarm); }
         let mut count = 0;
-        ok(revmap_prewarm_count(prewarm, &mut count));
+        ok! { revmap_prewarm_count(prewarm, &mut count); }
         assert!(count > 0);
-        ok(revmap_prewarm_destroy(prewarm));
+        ok! { revmap_prewarm_destroy(prewarm); }
         fail! {
             Handle, "the prewarm was destroyed": revmap_prewarm_compile(prewarm);
         }
 
         // The profile and the device are kept by what uses them.
-        ok(revmap_profile_destroy(profile));
-        ok(revmap_device_destroy(device));
+        ok! {
+            revmap_profile_destroy(profile);
+            revmap_device_destroy(device);
+        }
         fail! {
             Handle, "the profile was destroyed": revmap_renderer_set(renderer, object, &info);
         }
-        ok(revmap_renderer_remove(renderer, object));
+        ok! { revmap_renderer_remove(renderer, object); }
         fail! {
             Usage, "removed": revmap_renderer_remove(renderer, object);
         }
-        ok(revmap_renderer_destroy(renderer));
+        ok! { revmap_renderer_destroy(renderer); }
         fail! {
             Handle, "the renderer was destroyed": revmap_renderer_remove(renderer, object);
         }
-        ok(revmap_renderer_destroy(other));
+        ok! { revmap_renderer_destroy(other); }
     }
 }
 
@@ -155,7 +149,9 @@ fn threads_at_once_are_refused_or_served() {
     let (device, profile) = (device(), spindle());
     let mut renderer = null_mut();
     // SAFETY: live values.
-    ok(unsafe { revmap_renderer_create_compute(device, 0, null(), 1, &mut renderer) });
+    unsafe {
+        ok! { revmap_renderer_create_compute(device, 0, null(), 1, &mut renderer); }
+    }
     let (shared, of) = (renderer.addr(), profile.addr());
     let work = || {
         let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
@@ -180,12 +176,13 @@ fn threads_at_once_are_refused_or_served() {
     assert!(results.iter().all(|r| [Is::Ok, Is::Busy].contains(r)));
     // SAFETY: plain numbers, live values.
     unsafe {
-        let mut statistics: RevmapStatistics = zeroed();
-        statistics.size = size_of::<RevmapStatistics>() as u32;
-        ok(revmap_renderer_statistics(renderer, &mut statistics));
+        let mut statistics = sized!(RevmapStatistics);
+        ok! { revmap_renderer_statistics(renderer, &mut statistics); }
         assert_eq!(statistics.objects as usize, added);
     }
-    ok(revmap_renderer_destroy(renderer));
-    ok(revmap_profile_destroy(profile));
-    ok(revmap_device_destroy(device));
+    ok! {
+        revmap_renderer_destroy(renderer);
+        revmap_profile_destroy(profile);
+        revmap_device_destroy(device);
+    }
 }

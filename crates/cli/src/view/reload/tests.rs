@@ -1,15 +1,11 @@
 //! Sources are watched and compiled, and the window draws with the result.
-#![allow(unsafe_code)] // a host's device
+#![allow(unsafe_code)] // shaders of the source tree
 #![allow(clippy::unwrap_used)] // a test may stop at what it did not expect
 
 use super::*;
-use revmap::gpu::Offscreen;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Settings};
-
-#[path = "../../../../../tests/common/host.rs"]
-mod host;
 
 fn sources() -> Sources {
     Sources::read(Path::new(FOLDER)).unwrap()
@@ -35,12 +31,8 @@ fn an_error_names_file_and_line() {
     let source = broken.compiled(Arc::default()).unwrap();
     let error = source("tree.frag", &MACROS).unwrap_err().to_string();
     assert!(error.contains(&format!("{file}:{line}: error")), "{error}");
-    assert!(
-        source("no.frag", &MACROS)
-            .unwrap_err()
-            .to_string()
-            .contains("no.frag")
-    );
+    let error = source("no.frag", &MACROS).unwrap_err().to_string();
+    assert!(error.contains("no.frag"));
 }
 
 #[test]
@@ -67,16 +59,12 @@ fn a_changed_file_has_another_stamp() {
 }
 
 /// Colours of a spindle on a device with these shaders, in both stages.
-fn drawn(host: &host::Host, shaders: Option<ShaderSource>) -> Result<Vec<[f32; 4]>> {
-    let lent = host::lent(host);
-    // SAFETY: the host's own handles, which outlive this call; the shaders are the library's, but
-    // for a tint.
-    let device = unsafe {
-        match shaders {
-            Some(shaders) => Device::borrow_with_shaders(&lent, shaders),
-            None => Device::borrow(&lent),
-        }
-    }?;
+fn drawn(device: &Device, shaders: Option<ShaderSource>) -> Result<Vec<[f32; 4]>> {
+    let device = match shaders {
+        // SAFETY: the shaders are the library's, but for a tint.
+        Some(shaders) => unsafe { device.with_shaders(shaders) }?,
+        None => device.clone(),
+    };
     let points = [[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]];
     let profile = Profile::polygon(&points, 0.5)?;
     let camera = Camera::new([1.6, 0.3, 1.1].into(), [0.0, 0.0, 0.5].into());
@@ -99,23 +87,23 @@ fn drawn(host: &host::Host, shaders: Option<ShaderSource>) -> Result<Vec<[f32; 4
 
 #[test]
 fn a_changed_shader_is_drawn_with() {
-    let host = host::open();
-    let built_in = drawn(&host, None).unwrap();
+    let device = Device::open_validated(None).unwrap();
+    let built_in = drawn(&device, None).unwrap();
     let same = sources().compiled(Arc::default()).unwrap();
-    assert_eq!(drawn(&host, Some(same)).unwrap(), built_in);
+    assert_eq!(drawn(&device, Some(same)).unwrap(), built_in);
 
     let mut tinted = sources();
     let text = tinted.texts.get_mut("include/core/shade.glsl").unwrap();
     let (plain, tint) = ("vec4(color, 1.0)", "vec4(color * vec3(1.0, 1.0, 0.0), 1.0)");
     assert_eq!(text.matches(plain).count(), 1);
     *text = text.replace(plain, tint);
-    let yellow = drawn(&host, Some(tinted.compiled(Arc::default()).unwrap())).unwrap();
+    let yellow = drawn(&device, Some(tinted.compiled(Arc::default()).unwrap())).unwrap();
     let without_blue = |c: &[f32; 4]| [c[0], c[1], 0.0, c[3]];
     assert!(yellow.iter().copied().eq(built_in.iter().map(without_blue)));
     assert!(built_in.iter().filter(|c| c[2] > 0.1).count() > 200);
 
     let given_up = Arc::new(AtomicBool::new(true));
-    let error = drawn(&host, Some(sources().compiled(given_up).unwrap())).unwrap_err();
+    let error = drawn(&device, Some(sources().compiled(given_up).unwrap())).unwrap_err();
     assert!(error.to_string().contains("given up"), "{error}");
-    assert_eq!(host.take_messages(), Vec::<String>::new());
+    assert_eq!(device.take_messages(), Vec::<String>::new());
 }
