@@ -8,17 +8,17 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
+use revmap::settings::DrawStage;
 use revmap_lab::method::Method;
 use revmap_lab::renderer::MethodDevice;
-use revmap_lab::report::exhibit::Extra;
 use revmap_lab::report::flight::{self, FlightTimes};
 use revmap_lab::report::machine::Machine;
+use revmap_lab::report::map_error::{self, MapError, Truths};
 use revmap_lab::report::measure::{Measured, Observer, measure};
-use revmap_lab::report::pictures::Album;
+use revmap_lab::report::pictures::{Album, Sheets};
 use revmap_lab::report::plan::{Labels, Plan, PlanFile, embedded};
 use revmap_lab::report::report::Run;
-use revmap_lab::report::sheet::Sheets;
-use revmap_lab::report::{DeviceBench, compare_runs, folder, map_error};
+use revmap_lab::report::{DeviceBench, compare_runs, folder};
 use std::path::PathBuf;
 
 /// Plans of other techniques.
@@ -116,7 +116,7 @@ impl Bench {
         }
         let file = match &what.plan {
             Some(file) => PlanFile::load(file)?,
-            None => plan(self.name())?,
+            None => embedded::plan(self.name())?,
         };
         run(file, &self.lists, self.scale.quick)
     }
@@ -133,18 +133,11 @@ impl Bench {
             (what.antialiasing, "antialiasing"),
             (self.scale.full, "full"),
         ];
-        let found = named
-            .iter()
-            .find(|(given, _)| *given)
-            .map(|(_, name)| *name);
+        let found = named.iter().find(|(given, _)| *given);
         let usual = if self.scale.quick { "quick" } else { "usual" };
+        let found = found.map(|(_, name)| *name);
         found.or(what.techniques).unwrap_or(usual)
     }
-}
-
-/// One of the program's own plans.
-pub fn plan(name: &str) -> Result<PlanFile> {
-    embedded::plan(name)
 }
 
 fn list(name: &str) -> Result<()> {
@@ -166,13 +159,8 @@ pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
     let plan = file.plan(&given)?;
     let session = Session::open(lists)?;
     let (measured, mut album, truths) = session.measure(&file, &plan)?;
-    folder::write(
-        &session.out,
-        &plan,
-        &measured,
-        &session.machine,
-        file.time.resolved,
-    )?;
+    let (out, machine) = (&session.out, &session.machine);
+    folder::write(out, &plan, &measured, machine, file.time.resolved)?;
     let flights = session.flights(&file, &given.lists.stages)?;
     let maps = match measured.interrupted {
         true => Vec::new(),
@@ -185,13 +173,13 @@ pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
         file: &file,
         plan: &plan,
         measured: &measured,
-        machine: &session.machine,
+        machine,
         album: &album,
         flights: &flights,
-        extra: Extra { maps },
+        maps: &maps,
     };
-    print(report.write(&session.out)?.trim_end());
-    let summary = session.out.join("charts/summary-depth-error.png");
+    print(report.write(out)?.trim_end());
+    let summary = out.join("charts/summary-depth-error.png");
     if summary.exists() {
         output::result(&summary.display().to_string());
     }
@@ -216,19 +204,11 @@ impl Session {
     fn open(lists: &Lists) -> Result<Self> {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
-        let machine = Machine::here(
-            &report.name,
-            report.kind,
-            &report.driver,
-            output::VERSION,
-            &Lists::command(),
-        );
+        let (name, kind, driver) = (&report.name, report.kind, &report.driver);
+        let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
         let out = lists.folder(&machine.folder())?;
         if !lists.quiet {
-            output::note(&format!(
-                "device: {} ({}), driver {}",
-                report.name, report.kind, report.driver
-            ));
+            output::note(&format!("device: {name} ({kind}), driver {driver}"));
         }
         Ok(Self {
             device,
@@ -239,41 +219,33 @@ impl Session {
     }
 
     /// Measures with a progress bar; an interrupt ends early and keeps what there is.
-    fn measure(
-        &self,
-        file: &PlanFile,
-        plan: &Plan,
-    ) -> Result<(Measured, Album, map_error::Truths)> {
+    fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album, Truths)> {
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.out, labels, file.heat_maps)?;
         let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.out));
-        let mut truths = map_error::Truths::default();
+        let mut truths = Truths::default();
         let progress = Progress::start("measuring", self.quiet);
         let mut bench = DeviceBench::new(self.device.clone(), !file.wall_clock)?;
-        let measured = measure(
-            plan,
-            &mut bench,
-            &file.time,
-            &mut Observer {
-                stop: interrupt::flag()?,
-                progress: &|what, gone, all| {
-                    progress.say(what);
-                    progress.report(gone as usize, all as usize);
-                },
-                picture: &mut |seen| {
-                    if let Some(sheets) = &mut sheets {
-                        sheets.add(seen)?;
-                    }
-                    if seen.case.settings.map_rows.is_some() {
-                        truths.keep(seen.case.view, seen.truth);
-                    }
-                    album.add(seen)
-                },
-                passed: &mut |rows| {
-                    folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved)
-                },
+        let mut observer = Observer {
+            stop: interrupt::flag()?,
+            progress: &|what, gone, all| {
+                progress.say(what);
+                progress.report(gone as usize, all as usize);
             },
-        )?;
+            picture: &mut |seen| {
+                if let Some(sheets) = &mut sheets {
+                    sheets.add(seen)?;
+                }
+                if seen.case.settings.map_rows.is_some() {
+                    truths.keep(seen.case.view, seen.truth);
+                }
+                album.add(seen)
+            },
+            passed: &mut |rows| {
+                folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved)
+            },
+        };
+        let measured = measure(plan, &mut bench, &file.time, &mut observer)?;
         if let Some(sheets) = &mut sheets {
             sheets.finish()?;
         }
@@ -281,20 +253,14 @@ impl Session {
     }
 
     /// Flies through the plan's armies, in each stage, and writes the times of every frame.
-    fn flights(
-        &self,
-        file: &PlanFile,
-        stages: &[revmap::settings::DrawStage],
-    ) -> Result<Vec<FlightTimes>> {
-        use revmap::settings::DrawStage::{Compute, Fragment};
+    fn flights(&self, file: &PlanFile, stages: &[DrawStage]) -> Result<Vec<FlightTimes>> {
         if file.flights.is_empty() {
             return Ok(Vec::new());
         }
         let device = MethodDevice::new(self.device.clone())?;
-        let stages = if stages.is_empty() {
-            &[Fragment, Compute]
-        } else {
-            stages
+        let stages = match stages {
+            [] => &[DrawStage::Fragment, DrawStage::Compute],
+            stages => stages,
         };
         let mut all = Vec::new();
         for plan in &file.flights {
@@ -310,11 +276,7 @@ impl Session {
     }
 
     /// The errors of the maps that a plan sweeps over by themselves.
-    fn map_errors(
-        &self,
-        plan: &Plan,
-        truths: &map_error::Truths,
-    ) -> Result<Vec<map_error::MapError>> {
+    fn map_errors(&self, plan: &Plan, truths: &Truths) -> Result<Vec<MapError>> {
         let swept = plan.cases.iter().map(|c| &c.settings);
         let mut swept = swept.filter(|s| s.map_source.is_some() && s.map_rows.is_some());
         let Some(first) = swept.find(|s| s.method != Method::Floor) else {
@@ -331,10 +293,8 @@ impl Session {
     /// kept.
     fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
         if !self.quiet {
-            let size = plan
-                .cases
-                .first()
-                .map(|c| (c.settings.width, c.settings.height));
+            let first = plan.cases.first().map(|c| c.settings);
+            let size = first.map(|s| (s.width, s.height));
             let (width, height) = size.unwrap_or((800, 600));
             for view in &plan.views {
                 for warning in revmap_files::warnings(&view.scene, width, height) {
@@ -342,19 +302,12 @@ impl Session {
                 }
             }
         }
-        let report = self.out.join("report.html");
-        output::result(&format!(
-            "{}: {} rows",
-            report.display(),
-            measured.rows.len()
-        ));
-        if measured.interrupted {
-            return Err(Error::new(
-                ErrorKind::Other,
-                "interrupted; it holds what was measured until then, run the command again for the rest",
-            )
-            .in_file(&self.out));
+        let (report, rows) = (self.out.join("report.html"), measured.rows.len());
+        output::result(&format!("{}: {rows} rows", report.display()));
+        if !measured.interrupted {
+            return Ok(());
         }
-        Ok(())
+        let message = "interrupted; it holds what was measured until then, run the command again for the rest";
+        Err(Error::new(ErrorKind::Other, message).in_file(&self.out))
     }
 }

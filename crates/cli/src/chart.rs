@@ -4,6 +4,7 @@ use super::bench::{self, Scale};
 use super::lists::Lists;
 use clap::Args;
 use revmap::error::Result;
+use revmap_lab::report::plan::embedded;
 
 /// Charts speed against accuracy: every search over its budget and its maps
 ///
@@ -22,11 +23,8 @@ pub struct Chart {
 
 impl Chart {
     pub fn run(self) -> Result<()> {
-        let name = if self.scale.full {
-            "chart-full"
-        } else {
-            "chart"
-        };
-        bench::run(bench::plan(name)?, &self.lists, self.scale.quick)
+        let full = self.scale.full;
+        let name = if full { "chart-full" } else { "chart" };
+        bench::run(embedded::plan(name)?, &self.lists, self.scale.quick)
     }
 }

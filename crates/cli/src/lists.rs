@@ -20,9 +20,6 @@ const EXTENTS: [(&str, &Extent); 3] = [
     ("all", &Extent::All),
 ];
 
-/// Names of framings.
-const FRAMINGS: [(&str, Framing); 2] = [("whole", Framing::Whole), ("close", Framing::Close)];
-
 /// Views and ways of drawing; lists are separated by commas
 #[derive(Args, Clone, Debug)]
 pub struct Lists {
@@ -61,7 +58,7 @@ pub struct Lists {
     /// 9 to 23 % of it); close: the field of view narrowed until the solid's box is a quarter
     /// larger than a picture of 4:3 (44 to 81 %), views named so; a close picture takes two to four
     /// times as long [default: whole]
-    #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&FRAMINGS))]
+    #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&Framing::NAMES))]
     pub framing: Vec<Framing>,
     /// How many of the solids that the program carries: one, three or all eight [default: three;
     /// one with --quick, all with --full]

@@ -1,11 +1,8 @@
 //! The one description of every column: its name in files, its heading on pages, its meaning, and the
 //! cell of a row.
 
-mod cell;
-
-pub use cell::Cell;
-
-use super::names::number;
+use super::machine::Machine;
+use super::names::{number, percent, range};
 use super::plan::{Plan, RBM_BASELINE, is_rbm_baseline};
 use super::ratios::{Over, above_floor, baseline_stage, between};
 use super::row::{Clocks, Row};
@@ -21,7 +18,7 @@ use revmap::settings::{Tolerance, name_of};
 /// The sources of cells beside their row.
 pub struct Context<'a> {
     /// All rows.
-    pub rows: &'a [Row],
+    pub rows: &'a [&'a Row],
     /// The plan that was measured.
     pub plan: &'a Plan,
     /// Names and looks of the ways of drawing.
@@ -69,9 +66,7 @@ pub const CONTRACT: usize = 31;
 
 /// The time by the device's clock, where it has one that agrees with the wall clock.
 fn gpu(row: &Row) -> Option<Interval> {
-    (row.clocks() == Clocks::Agree)
-        .then(|| row.time())
-        .flatten()
+    row.time().filter(|_| row.clocks() == Clocks::Agree)
 }
 
 /// The cell of a search's own column; a mesh has none.
@@ -106,16 +101,16 @@ fn stages_end(context: &Context, row: &Row, of: fn((f64, f64)) -> f64) -> Cell {
     Cell::number(ends.map(of))
 }
 
+fn yes(yes: bool) -> &'static str {
+    if yes { "yes" } else { "no" }
+}
+
 fn within(row: &Row) -> Cell {
     let most = row.settings.tolerance;
-    let bounded = row
-        .pixel_errors
-        .as_ref()
-        .filter(|_| most > Tolerance::EXACT);
+    let errors = row.pixel_errors.as_ref();
+    let bounded = errors.filter(|_| most > Tolerance::EXACT);
     let held = bounded.map(|e| e.p999.max(e.contour_max) <= most.pixels());
-    held.map_or(Cell::Empty, |held| {
-        Cell::text(if held { "yes" } else { "no" })
-    })
+    Cell::name(held.map(yes))
 }
 
 /// How edges are treated, by which method where it is not the default.
@@ -165,8 +160,8 @@ pub static COLUMNS: &[Column] = columns! {
     "gpu_ms_low", "device's time, low (ms)", "lower end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.0));
     "gpu_ms_high", "device's time, high (ms)", "upper end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.1));
     "tolerance_px", "tolerance (pixels)", "allowed error of silhouettes and depths in pixels, of searches on patches; 0 is exact" => |_, r| Cell::number(r.settings.method.follows_tolerance().then(|| r.settings.tolerance.pixels()));
-    "above_floor_ms", "above the floor (ms)", "time less that of the floor in the same picture and stage: what the search itself takes" => |c, r| Cell::number(above_floor(c.rows, r));
-    "resolved", "resolved", "whether the interval of the time is as narrow as the plan demands; figures that are not are left out of Pareto fronts" => |c, r| Cell::text(if r.resolved(c.resolved) { "yes" } else { "no" });
+    "above_floor_ms", "above the floor (ms)", "time less that of the floor in the same picture and stage: what the search itself takes" => |c, r| Cell::number(above_floor(c.rows.iter().copied(), r));
+    "resolved", "resolved", "whether the interval of the time is as narrow as the plan demands; figures that are not are left out of Pareto fronts" => |c, r| Cell::text(yes(r.resolved(c.resolved)));
     "time_over_fragment", "time / fragment stage", "time of the compute stage over that of the same method in the fragment stage, same picture" => |c, r| over(c, r, Over::Fragment);
     "time_over_fragment_low", "time / fragment stage, low", "lower end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.0);
     "time_over_fragment_high", "time / fragment stage, high", "upper end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.1);
@@ -185,7 +180,7 @@ pub static COLUMNS: &[Column] = columns! {
     "rate", "frames / s", "1000 over the time" => |_, r| Cell::number(r.time().map(|t| 1e3 / t.value));
     "above_floor", "above the floor / RBM baseline", "time above the floor over the whole time of the RBM baseline (see time / RBM baseline)" => |c, r| {
         let baseline = Over::Baseline.of(c.rows, r).and_then(Row::time);
-        Cell::number(above_floor(c.rows, r).zip(baseline).map(|(above, t)| above / t.value))
+        Cell::number(above_floor(c.rows.iter().copied(), r).zip(baseline).map(|(above, t)| above / t.value))
     };
     "time_over_rbm_baseline", "time / RBM baseline", "time over that of the RBM baseline in the same picture: one for both stages, drawn in the fragment stage, or in the compute stage where only that was measured" => |c, r| over(c, r, Over::Baseline);
     "time_over_exact", "time / exact", "time over that of the exact picture in the same stage" => |c, r| over(c, r, Over::Exact);
@@ -218,15 +213,93 @@ pub static COLUMNS: &[Column] = columns! {
     "within", "within", "whether the 99.9th percentile and the farthest contour are below the tolerance" => |_, r| within(r);
 };
 
+/// The content of a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Nothing.
+    Empty,
+    /// Words.
+    Text(String),
+    /// A number that is a count.
+    Count(u64),
+    /// A number.
+    Number(f64),
+    /// A share, shown in percent.
+    Share(f64),
+    /// A value with its interval.
+    Known(Interval),
+    /// A value whose interval is wider than the plan allows.
+    Unresolved(Interval),
+}
+
+impl Cell {
+    /// Its text in files.
+    pub fn csv(&self) -> String {
+        match self {
+            Self::Empty => String::new(),
+            Self::Text(text) => text.clone(),
+            Self::Count(count) => count.to_string(),
+            Self::Number(value) | Self::Share(value) => number(*value, 6),
+            Self::Known(interval) | Self::Unresolved(interval) => number(interval.value, 6),
+        }
+    }
+
+    /// Its text in tables.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Empty => "–".to_owned(),
+            Self::Number(value) => number(*value, 3),
+            Self::Share(share) => percent(*share),
+            Self::Known(i) => match i.ends() {
+                Some(ends) => format!("{} ({})", number(i.value, 3), range(ends)),
+                None => number(i.value, 3),
+            },
+            Self::Unresolved(i) => format!("{}, not resolved", Self::Known(*i).shown()),
+            Self::Text(_) | Self::Count(_) => self.csv(),
+        }
+    }
+
+    /// The interval of its value, if it has one.
+    pub(super) fn interval(&self) -> Option<Interval> {
+        match self {
+            Self::Known(interval) | Self::Unresolved(interval) => Some(*interval),
+            _ => None,
+        }
+    }
+
+    /// The value, if it is a number.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Self::Empty | Self::Text(_) => None,
+            Self::Count(count) => Some(*count as f64),
+            Self::Number(value) | Self::Share(value) => Some(*value),
+            Self::Known(interval) | Self::Unresolved(interval) => Some(interval.value),
+        }
+    }
+
+    pub(super) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    pub(super) fn number(value: impl Into<Option<f64>>) -> Self {
+        value.into().map_or(Self::Empty, Self::Number)
+    }
+
+    fn count(count: impl Into<Option<usize>>) -> Self {
+        count.into().map_or(Self::Empty, |n| Self::Count(n as u64))
+    }
+
+    fn name(text: Option<&str>) -> Self {
+        text.map_or(Self::Empty, Self::text)
+    }
+}
+
 /// Names of the columns of `results.csv`.
 pub fn results() -> impl Iterator<Item = &'static str> {
     COLUMNS[..RESULTS].iter().map(|c| c.name)
 }
 
 /// The column of this name.
-///
-/// # Errors
-/// [`ErrorKind::Content`] where there is none.
 pub fn named(name: &str) -> Result<&'static Column> {
     COLUMNS.iter().find(|c| c.name == name).ok_or_else(|| {
         let all: Vec<&str> = COLUMNS.iter().map(|c| c.name).collect();
@@ -235,7 +308,19 @@ pub fn named(name: &str) -> Result<&'static Column> {
     })
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// The sources of these rows' cells.
+    pub fn new(rows: &'a [&'a Row], plan: &'a Plan, machine: &'a Machine, resolved: f64) -> Self {
+        Self {
+            rows,
+            plan,
+            styles: SeriesStyles::of(rows),
+            device: &machine.device,
+            driver: &machine.driver,
+            resolved,
+        }
+    }
+
     /// The cell of a value with its interval.
     pub(super) fn known(&self, value: Option<Interval>) -> Cell {
         match value {
@@ -247,23 +332,16 @@ impl Context<'_> {
 
     /// The RBM baseline that all times are put over, with its stage.
     pub(super) fn baseline(&self) -> String {
-        format!(
-            "the RBM baseline in the {} stage",
-            baseline_stage(self.rows).name()
-        )
+        let stage = baseline_stage(self.rows.iter().copied());
+        format!("the RBM baseline in the {} stage", stage.name())
     }
 
     /// The ends of an interval, and whether it is as narrow as the plan demands.
     pub(super) fn ends(&self, i: &Interval) -> String {
-        let wide = if i.relative() > self.resolved {
-            ", not resolved"
-        } else {
-            ""
-        };
-        match i.ends() {
-            Some((low, high)) => format!("{} to {}{wide}", number(low, 3), number(high, 3)),
-            None => "unknown".to_owned(),
-        }
+        let wide = i.relative() > self.resolved;
+        let wide = if wide { ", not resolved" } else { "" };
+        i.ends()
+            .map_or("unknown".to_owned(), |ends| range(ends) + wide)
     }
 
     /// The method's name, or the RBM baseline's: what a chart calls its line.
@@ -276,25 +354,19 @@ impl Context<'_> {
     }
 
     /// A file's table of these columns: a record a row.
-    ///
-    /// # Errors
-    /// See [`named`].
     pub fn file(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         // A number in each cell: an interval is two columns.
-        let split = |name: &str| match name {
-            "time_interval" => ["time_low_ms", "time_high_ms", "resolved"]
-                .map(str::to_owned)
-                .to_vec(),
-            name => vec![name.to_owned()],
-        };
-        let names: Vec<String> = names.iter().flat_map(|n| split(n.as_ref())).collect();
+        fn split(name: &str) -> Vec<&str> {
+            match name {
+                "time_interval" => vec!["time_low_ms", "time_high_ms", "resolved"],
+                name => vec![name],
+            }
+        }
+        let names: Vec<&str> = names.iter().flat_map(|n| split(n.as_ref())).collect();
         self.table(rows, &names, |c| c.name, Cell::csv)
     }
 
     /// A page's table of these columns.
-    ///
-    /// # Errors
-    /// See [`named`].
     pub fn page(&self, rows: &[&Row], names: &[impl AsRef<str>]) -> Result<Table> {
         self.table(rows, names, |c| c.heading, Cell::shown)
     }
@@ -306,20 +378,14 @@ impl Context<'_> {
         head: fn(&Column) -> &'static str,
         write: fn(&Cell) -> String,
     ) -> Result<Table> {
-        let columns: Vec<&Column> = names
-            .iter()
-            .map(|n| named(n.as_ref()))
-            .collect::<Result<_>>()?;
+        let named = names.iter().map(|n| named(n.as_ref()));
+        let columns = named.collect::<Result<Vec<&Column>>>()?;
         let record = |row: &&Row| {
-            columns
-                .iter()
-                .map(|c| write(&(c.cell)(self, row)))
-                .collect()
+            let cells = columns.iter().map(|c| (c.cell)(self, row));
+            cells.map(|cell| write(&cell)).collect()
         };
-        Ok(Table::new(
-            columns.iter().map(|c| head(c)),
-            rows.iter().map(record).collect(),
-        ))
+        let records = rows.iter().map(record).collect();
+        Ok(Table::new(columns.iter().map(|c| head(c)), records))
     }
 }
 

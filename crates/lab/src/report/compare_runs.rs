@@ -3,13 +3,11 @@
 pub mod drivers;
 mod run;
 
-use super::columns::results;
-use super::names::number;
-use super::stats::{self, Interval};
+use super::names::{number, range};
+use super::stats::{self, Interval, Verdict};
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
-use std::collections::HashMap;
 use std::path::Path;
 
 /// Number of columns that name the measurement, the first of all: rows that agree in them are the same measurement.
@@ -38,29 +36,11 @@ pub struct Pair {
 /// An error that differs: column, old, new.
 pub type Change = (&'static str, f64, f64);
 
-/// The change of a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The interval lies above 1.
-    Slower,
-    /// It lies below 1.
-    Faster,
-    /// It holds 1.
-    Same,
-    /// A clock cannot be trusted.
-    Unknown,
-}
-
 impl Pair {
     /// The change of its time: in proportion to the RBM baseline where both runs have it.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
-        match self.relative.or(self.time) {
-            None => Verdict::Unknown,
-            Some(t) if t.low > 1.0 => Verdict::Slower,
-            Some(t) if t.high < 1.0 => Verdict::Faster,
-            Some(_) => Verdict::Same,
-        }
+        let time = self.relative.or(self.time);
+        time.map_or(Verdict::Unresolved, |t| t.verdict(f64::INFINITY))
     }
 }
 
@@ -84,92 +64,68 @@ pub struct Against {
 /// [`ErrorKind::Content`] with nothing in common.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
-    let key = |record: &[String]| record[..KEY].to_vec();
-    let mut known: HashMap<Vec<String>, usize> = HashMap::new();
-    for (number, record) in before.results.records.iter().enumerate() {
-        known.entry(key(record)).or_insert(number);
-    }
-    let mut pairs = Vec::new();
-    for (number, record) in after.results.records.iter().enumerate() {
-        let Some(&twin) = known.get(&key(record)) else {
-            continue;
+    let pair = |(number, record): (usize, &Vec<String>)| {
+        let mut known = before.results.records.iter();
+        let twin = known.position(|r| r[..KEY] == record[..KEY])?;
+        let old = &before.results.records[twin];
+        let errors = |name| {
+            let value = |run: &Run, record| run.at(record, name).parse::<f64>().ok();
+            Some((name, value(&before, old)?, value(&after, record)?))
         };
-        let (worse, better) = errors(&before.results.records[twin], record);
-        let time = match (
-            after.medians.get(&(number + 1)),
-            before.medians.get(&(twin + 1)),
-        ) {
-            (Some(a), Some(b)) => stats::ratio(a, b),
-            _ => None,
-        };
-        let relative = match (
-            after.over_baseline(number + 1),
-            before.over_baseline(twin + 1),
-        ) {
-            (Some(a), Some(b)) => stats::ratio(&a, &b),
-            _ => None,
-        };
-        pairs.push(Pair {
-            key: key(record),
-            time,
-            relative,
+        let changed = ERRORS.into_iter().filter_map(errors);
+        let (worse, better): (Vec<Change>, Vec<Change>) = changed
+            .filter(|&(name, a, b)| grown(name, a, b) || grown(name, b, a))
+            .partition(|&(_, a, b)| b > a);
+        let relative = after.over_baseline(number).zip(before.over_baseline(twin));
+        Some(Pair {
+            key: record[..KEY].to_vec(),
+            time: stats::ratio(&after.medians(number), &before.medians(twin)),
+            relative: relative.and_then(|(a, b)| stats::ratio(&a, &b)),
             worse,
             better,
-        });
-    }
+        })
+    };
+    let records = after.results.records.iter().enumerate();
+    let pairs: Vec<Pair> = records.filter_map(pair).collect();
     if pairs.is_empty() {
         return Err(Error::new(ErrorKind::Content, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
     }
+    let alone = |run: &Run| run.results.records.len().saturating_sub(pairs.len());
     let (old, new) = (before.machine(), after.machine());
+    let differs = |((name, a), (_, b)): ((&str, &str), (&str, &str))| {
+        let warning = || {
+            format!(
+                "the runs differ in {name}: old {a:?}, new {b:?}; ratios of times are between machines"
+            )
+        };
+        (a != b && !a.is_empty() && !b.is_empty()).then(warning)
+    };
     Ok(Against {
-        alone: (
-            before.results.records.len().saturating_sub(pairs.len()),
-            after.results.records.len().saturating_sub(pairs.len()),
-        ),
-        warnings: (old.iter().zip(&new))
-            .filter(|((_, a), (_, b))| a != b && !a.is_empty() && !b.is_empty())
-            .map(|((name, a), (_, b))| {
-                format!("the runs differ in {name}: old {a:?}, new {b:?}; ratios of times are between machines")
-            })
-            .collect(),
-        devices: [&old, &new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
+        alone: (alone(&before), alone(&after)),
+        warnings: old.into_iter().zip(new).filter_map(differs).collect(),
+        devices: [old, new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
         pairs,
     })
 }
 
-/// The errors that have grown and those that have shrunk.
-fn errors(old: &[String], new: &[String]) -> (Vec<Change>, Vec<Change>) {
-    let (mut worse, mut better) = (Vec::new(), Vec::new());
-    for name in [
-        "missed",
-        "ghost",
-        "depth_p99_texels",
-        "normal_rms_degrees",
-        "flip",
-    ] {
-        let Some(at) = results().position(|c| c == name) else {
-            continue;
-        };
-        let (Ok(a), Ok(b)) = (old[at].parse::<f64>(), new[at].parse::<f64>()) else {
-            continue;
-        };
-        // Pixels that a rounding decides come and go one by one.
-        let slack = if matches!(name, "missed" | "ghost") {
-            3.0
-        } else {
-            0.0
-        };
-        if b > a * (1.0 + ERROR_CHANGE) + slack {
-            worse.push((name, a, b));
-        } else if a > b * (1.0 + ERROR_CHANGE) + slack {
-            better.push((name, a, b));
-        }
-    }
-    (worse, better)
+/// The columns of errors.
+const ERRORS: [&str; 5] = [
+    "missed",
+    "ghost",
+    "depth_p99_texels",
+    "normal_rms_degrees",
+    "flip",
+];
+
+/// True if an error of `a` that became `b` has grown.
+fn grown(name: &str, a: f64, b: f64) -> bool {
+    // Pixels that a rounding decides come and go one by one.
+    let pixels = matches!(name, "missed" | "ghost");
+    let slack = if pixels { 3.0 } else { 0.0 };
+    b > a * (1.0 + ERROR_CHANGE) + slack
 }
 
 /// The comparison as text: all ratios, then what became slower, then what became less exact.
-#[must_use]
 pub fn as_text(against: &Against) -> String {
     let pairs = &against.pairs;
     let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
@@ -179,38 +135,31 @@ pub fn as_text(against: &Against) -> String {
     }
     let name = |pair: &Pair| {
         let words = columns.iter().map(|&c| pair.key[c].as_str());
-        words
-            .filter(|v| !v.is_empty())
-            .collect::<Vec<_>>()
-            .join(" ")
+        let words: Vec<&str> = words.filter(|v| !v.is_empty()).collect();
+        words.join(" ")
     };
-    let header = [
-        "measurement",
-        "new / old",
-        "95 % interval",
-        "over the RBM baseline",
-        "95 % interval",
-        "",
-    ];
-    let fields = |i: Option<Interval>| match i.map(|t| (t.value, t.ends())) {
-        Some((value, Some((low, high)))) => [
-            number(value, 3),
-            format!("{} to {}", number(low, 3), number(high, 3)),
+    let value = |i: Option<Interval>| i.map_or(String::new(), |t| number(t.value, 3));
+    let ends = |i: Option<Interval>| {
+        let ends = i.map(|t| t.ends().map_or("unknown".to_owned(), range));
+        ends.unwrap_or_default()
+    };
+    let verdict = |pair: &Pair| match pair.verdict() {
+        Verdict::Slower => "slower",
+        Verdict::Faster => "faster",
+        Verdict::Even => "",
+        Verdict::Unresolved => "clocks disagree",
+    };
+    let table = Table::of(
+        pairs,
+        &[
+            ("measurement", &name),
+            ("new / old", &|p| value(p.time)),
+            ("95 % interval", &|p| ends(p.time)),
+            ("over the RBM baseline", &|p| value(p.relative)),
+            ("95 % interval", &|p| ends(p.relative)),
+            ("", &|p| verdict(p).to_owned()),
         ],
-        Some((value, None)) => [number(value, 3), "unknown".to_owned()],
-        None => [String::new(), String::new()],
-    };
-    let record = |pair: &Pair| {
-        let verdict = match pair.verdict() {
-            Verdict::Slower => "slower",
-            Verdict::Faster => "faster",
-            Verdict::Same => "",
-            Verdict::Unknown => "clocks disagree",
-        };
-        let ([a, b], [c, d]) = (fields(pair.time), fields(pair.relative));
-        vec![name(pair), a, b, c, d, verdict.to_owned()]
-    };
-    let table = Table::new(header, pairs.iter().map(record).collect());
+    );
     let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
         let changed = pairs.iter().filter(|p| !of(p).is_empty());
         let line = |pair: &Pair| {
@@ -241,15 +190,13 @@ fn counts(against: &Against) -> String {
         pairs.len(),
         count(Verdict::Slower),
         count(Verdict::Faster),
-        count(Verdict::Same),
+        count(Verdict::Even),
         mean.unwrap_or_default(),
         against.alone.0,
         against.alone.1
     );
-    let mut loops = pairs
-        .iter()
-        .filter(|p| p.relative.is_none())
-        .filter_map(|p| p.time);
+    let loops = pairs.iter().filter(|p| p.relative.is_none());
+    let mut loops = loops.filter_map(|p| p.time);
     let compared = pairs.iter().any(|p| p.relative.is_some());
     if compared && loops.any(|t| t.low > 1.0 || t.high < 1.0) {
         out += "the RBM baseline itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";

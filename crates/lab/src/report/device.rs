@@ -21,9 +21,6 @@ pub struct DeviceBench {
 
 impl DeviceBench {
     /// Measures on this device; without its own clock by the wall clock alone.
-    ///
-    /// # Errors
-    /// Vulkan fails.
     pub fn new(device: Device, own_clock: bool) -> Result<Self> {
         let device = MethodDevice::new(device)?;
         Ok(Self { device, own_clock })

@@ -16,7 +16,6 @@ use std::time::Instant;
 const WARM: usize = 10;
 
 /// The default search with a tolerance, as crowds are drawn.
-#[must_use]
 pub fn settings(stage: DrawStage) -> MethodSettings {
     MethodSettings {
         stage,
@@ -42,9 +41,6 @@ pub struct FlightTimes {
 }
 
 /// Flies through `count` solids in so many frames; each `every`th picture is held to an exact one.
-///
-/// # Errors
-/// The device fails, or a solid that the program carries cannot be read.
 pub fn fly(
     device: &MethodDevice,
     settings: &MethodSettings,
@@ -96,21 +92,15 @@ pub fn fly(
 }
 
 impl FlightTimes {
-    /// Milliseconds of a frame: preparing, recording and drawing it.
-    fn whole(times: &Times) -> f64 {
-        times.prepare_ms + times.frame_ms
-    }
-
-    /// Median and longest frame, milliseconds.
-    #[must_use]
+    /// Median and longest frame, milliseconds: preparing, recording and drawing it.
     pub fn frame_ms(&self) -> [f64; 2] {
-        let all: Vec<f64> = self.times.iter().map(Self::whole).collect();
+        let all = self.times.iter().map(|t| t.prepare_ms + t.frame_ms);
+        let all: Vec<f64> = all.collect();
         let median = stats::median(&all).unwrap_or(f64::NAN);
         [median, all.into_iter().fold(0.0, f64::max)]
     }
 
     /// The CPU's part of a median frame, milliseconds.
-    #[must_use]
     pub fn prepare_ms(&self) -> f64 {
         let all: Vec<f64> = self.times.iter().map(|t| t.prepare_ms).collect();
         stats::median(&all).unwrap_or(f64::NAN)
@@ -118,7 +108,6 @@ impl FlightTimes {
 
     /// The largest error over the pictures that were compared, pixels: of 99.9 % of the pixels,
     /// and of contours.
-    #[must_use]
     pub fn worst(&self) -> [f64; 2] {
         let most =
             |of: fn(&PixelErrors) -> f64| self.errors.iter().map(|e| of(&e.1)).fold(0.0, f64::max);
@@ -126,67 +115,45 @@ impl FlightTimes {
     }
 
     /// Every frame.
-    #[must_use]
     pub fn table(&self) -> Table {
-        let header = [
-            "frame",
-            "prepare_ms",
-            "gpu_ms",
-            "frame_ms",
-            "error_p999_px",
-            "contour_max_px",
-        ];
-        let record = |(number, times): (usize, &Times)| {
-            let errors = self.errors.iter().find(|e| e.0 == number).map(|e| &e.1);
-            let [p999, contour] = [errors.map(|e| e.p999), errors.map(|e| e.contour_max)];
-            let numbers = [
-                Some(times.prepare_ms),
-                times.gpu_ms,
-                Some(times.frame_ms),
-                p999,
-                contour,
-            ];
-            let cells = numbers.map(|n| Cell::number(n).csv());
-            std::iter::once(number.to_string()).chain(cells).collect()
-        };
-        Table::new(header, self.times.iter().enumerate().map(record).collect())
+        let text = |n: Option<f64>| Cell::number(n).csv();
+        let errors = |number: usize| self.errors.iter().find(|e| e.0 == number).map(|e| &e.1);
+        Table::of(
+            &self.times.iter().enumerate().collect::<Vec<_>>(),
+            &[
+                ("frame", &|(number, _)| number.to_string()),
+                ("prepare_ms", &|(_, times)| text(Some(times.prepare_ms))),
+                ("gpu_ms", &|(_, times)| text(times.gpu_ms)),
+                ("frame_ms", &|(_, times)| text(Some(times.frame_ms))),
+                ("error_p999_px", &|(number, _)| {
+                    text(errors(*number).map(|e| e.p999))
+                }),
+                ("contour_max_px", &|(number, _)| {
+                    text(errors(*number).map(|e| e.contour_max))
+                }),
+            ],
+        )
     }
 }
 
 /// The table of flights.
-#[must_use]
 pub fn table(flights: &[FlightTimes]) -> Table {
-    let header = [
-        "solids",
-        "stage",
-        "frames",
-        "median (ms)",
-        "of it CPU (ms)",
-        "slowest (ms)",
-        "slowest / median",
-        "pictures compared",
-        "error p99.9 (pixels)",
-        "farthest contour (pixels)",
-    ];
-    let record = |flight: &FlightTimes| {
-        let ([median, slowest], [p999, contour]) = (flight.frame_ms(), flight.worst());
-        let [compared, frames] = [flight.errors.len(), flight.times.len()].map(|n| n as f64);
-        let named = [
-            flight.solids.to_string(),
-            flight.settings.stage.name().to_owned(),
-        ];
-        let numbers = [
-            frames,
-            median,
-            flight.prepare_ms(),
-            slowest,
-            slowest / median,
-            compared,
-            p999,
-            contour,
-        ];
-        let cells = numbers.map(|n| Cell::Number(n).shown());
-        named.into_iter().chain(cells).collect()
-    };
-    Table::new(header, flights.iter().map(record).collect())
+    let text = |n: f64| Cell::Number(n).shown();
+    Table::of(
+        flights,
+        &[
+            ("solids", &|f| f.solids.to_string()),
+            ("stage", &|f| f.settings.stage.name().to_owned()),
+            ("frames", &|f| text(f.times.len() as f64)),
+            ("median (ms)", &|f| text(f.frame_ms()[0])),
+            ("of it CPU (ms)", &|f| text(f.prepare_ms())),
+            ("slowest (ms)", &|f| text(f.frame_ms()[1])),
+            ("slowest / median", &|f| {
+                text(f.frame_ms()[1] / f.frame_ms()[0])
+            }),
+            ("pictures compared", &|f| text(f.errors.len() as f64)),
+            ("error p99.9 (pixels)", &|f| text(f.worst()[0])),
+            ("farthest contour (pixels)", &|f| text(f.worst()[1])),
+        ],
+    )
 }

@@ -12,6 +12,7 @@ use super::plan::Plan;
 use super::report::results;
 use super::row::{CLOCKS_APART, Clocks, Row};
 use super::table::Table;
+use crate::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
 pub use revmap_files::write_bytes;
@@ -19,9 +20,6 @@ use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
 /// never overwritten.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be made.
 pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
     let mut folder = base.join(name);
     let mut count = 1;
@@ -56,9 +54,8 @@ pub fn claim<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
     let usage = |message: &str| {
-        Error::new(ErrorKind::Usage, message)
-            .in_file(folder)
-            .at_key("out")
+        let error = Error::new(ErrorKind::Usage, message);
+        error.in_file(folder).at_key("out")
     };
     let written = |file: &Path| {
         let within = folder.canonicalize().ok()?;
@@ -94,15 +91,12 @@ fn clear(folder: &Path) -> std::io::Result<()> {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
         _ => Ok(()),
     };
-    FILES
-        .iter()
-        .try_for_each(|name| remove(&folder.join(name)))?;
-    for name in FOLDERS
-        .map(|name| folder.join(name))
-        .iter()
-        .filter(|f| f.is_dir())
-    {
-        for entry in std::fs::read_dir(name)? {
+    for name in FILES {
+        remove(&folder.join(name))?;
+    }
+    let folders = FOLDERS.map(|name| folder.join(name)).into_iter();
+    for own in folders.filter(|f| f.is_dir()) {
+        for entry in std::fs::read_dir(own)? {
             let file = entry?.path();
             let ending = file.extension().and_then(|e| e.to_str());
             if ending.is_some_and(|e| ["png", "svg", "pdf"].contains(&e)) {
@@ -114,47 +108,30 @@ fn clear(folder: &Path) -> std::io::Result<()> {
 }
 
 /// Makes a folder and those above it.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be made.
 pub fn make(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| {
-        Error::new(
-            ErrorKind::File,
-            format!("cannot be made ({e}); choose another folder"),
-        )
-        .in_file(folder)
+        let message = format!("cannot be made ({e}); choose another folder");
+        Error::new(ErrorKind::File, message).in_file(folder)
     })
 }
 
 /// Writes a text file, whole or not at all.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write_text(file: &Path, text: &str) -> Result<()> {
     write_bytes(file, text.as_bytes())
 }
 
 /// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
 /// title.
-///
-/// # Errors
-/// When a file cannot be written.
 pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     let charts = folder.join("charts");
     make(&charts)?;
     write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;
     write_bytes(&charts.join(format!("{name}.pdf")), &pdf(figure))?;
-    write_bytes(
-        &charts.join(format!("{name}.png")),
-        &png(&raster(figure, 2.0)?)?,
-    )
+    let picture = png(&raster(figure, 2.0)?)?;
+    write_bytes(&charts.join(format!("{name}.png")), &picture)
 }
 
 /// A picture as a PNG file.
-///
-/// # Errors
-/// [`ErrorKind::File`] when it cannot be encoded.
 pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     picture.encode_png(&mut bytes)?;
@@ -163,7 +140,6 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
 
 /// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds
 /// count from 1.
-#[must_use]
 pub fn raw(rows: &[Row]) -> Table {
     let header = [
         "row", "scene", "stage", "solver", "pass", "round", "gpu_ms", "frame_ms",
@@ -172,65 +148,55 @@ pub fn raw(rows: &[Row]) -> Table {
     for (number, row) in rows.iter().enumerate() {
         for (pass, samples) in row.passes.iter().enumerate() {
             for (round, sample) in samples.iter().enumerate() {
-                table.records.push(vec![
-                    (number + 1).to_string(),
-                    row.scene.clone(),
-                    row.settings.stage.name().into(),
-                    row.settings.method.to_string(),
-                    (pass + 1).to_string(),
-                    (round + 1).to_string(),
-                    sample
-                        .gpu_ms
-                        .map(|ms| names::number(ms, 7))
-                        .unwrap_or_default(),
-                    names::number(sample.frame_ms, 7),
-                ]);
+                let mut record = named(Some(number), &row.scene, &row.settings).to_vec();
+                record.extend([pass + 1, round + 1].map(|n| n.to_string()));
+                let text = |ms| names::number(ms, 7);
+                record.push(sample.gpu_ms.map_or(String::new(), text));
+                record.push(text(sample.frame_ms));
+                table.records.push(record);
             }
         }
     }
     table
 }
 
+/// The cells that name a row (counted from 1) or a measurement that could not be made.
+fn named(row: Option<usize>, scene: &str, settings: &MethodSettings) -> [String; 4] {
+    [
+        row.map_or(String::new(), |number| (number + 1).to_string()),
+        scene.to_owned(),
+        settings.stage.name().to_owned(),
+        settings.method.to_string(),
+    ]
+}
+
 /// The rows in no summary, and why: those whose clocks disagree (`row` is their number in
 /// `results.csv`), and measurements that could not be made (`row` is empty).
-#[must_use]
 pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
-    let mut table = Table::new(["row", "scene", "stage", "solver", "reason"], Vec::new());
+    let header = ["row", "scene", "stage", "solver", "reason"];
+    let mut table = Table::new(header, Vec::new());
+    let mut add = |name: [String; 4], reason: &str| {
+        let record = [&name[..], &[reason.to_owned()]].concat();
+        table.records.push(record);
+    };
     for (number, row) in measured.rows.iter().enumerate() {
         if let Clocks::Disagree { gpu_ms, frame_ms } = row.clocks() {
-            table.records.push(vec![
-                (number + 1).to_string(),
-                row.scene.clone(),
-                row.settings.stage.name().into(),
-                row.settings.method.to_string(),
-                format!(
-                    "the device's clock says {} ms, the wall clock {} ms: more than {:.0} % apart",
-                    names::number(gpu_ms, 4),
-                    names::number(frame_ms, 4),
-                    100.0 * CLOCKS_APART
-                ),
-            ]);
+            let [gpu, wall] = [gpu_ms, frame_ms].map(|ms| names::number(ms, 4));
+            let apart = 100.0 * CLOCKS_APART;
+            let reason = format!(
+                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart"
+            );
+            add(named(Some(number), &row.scene, &row.settings), &reason);
         }
     }
     for (case, reason) in &measured.left_out {
-        table.records.push(vec![
-            String::new(),
-            plan.views
-                .get(case.view)
-                .map(|v| v.name.clone())
-                .unwrap_or_default(),
-            case.settings.stage.name().into(),
-            case.settings.method.to_string(),
-            reason.clone(),
-        ]);
+        let scene = plan.views.get(case.view).map_or("", |v| &v.name);
+        add(named(None, scene, &case.settings), reason);
     }
     table
 }
 
 /// Writes `results.csv` and `raw.csv`.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write_rows(
     folder: &Path,
     rows: &[Row],
@@ -244,9 +210,6 @@ pub fn write_rows(
 }
 
 /// Writes the four files that every run has.
-///
-/// # Errors
-/// [`ErrorKind::File`], naming the file.
 pub fn write(
     folder: &Path,
     plan: &Plan,
@@ -256,15 +219,10 @@ pub fn write(
 ) -> Result<()> {
     make(folder)?;
     write_rows(folder, &measured.rows, plan, machine, resolved)?;
-    write_text(
-        &folder.join("excluded.csv"),
-        &excluded(plan, measured).csv(),
-    )?;
-    let note: String = machine
-        .lines()
-        .iter()
-        .map(|(what, which)| format!("{what}: {which}\n"))
-        .collect();
+    let excluded = excluded(plan, measured).csv();
+    write_text(&folder.join("excluded.csv"), &excluded)?;
+    let line = |(what, which): &(&str, String)| format!("{what}: {which}\n");
+    let note: String = machine.lines().iter().map(line).collect();
     write_text(&folder.join("machine.txt"), &note)
 }
 

@@ -21,18 +21,14 @@ impl View {
     /// Points a camera at the boxes from `elevation` degrees above the horizon so that they fill
     /// nine tenths of the picture's height, as the papers' pictures do, and lights them from the
     /// front and the side.
-    #[must_use]
     pub fn framed(mut self, elevation: f64) -> Self {
         let corners = self.corners();
         let count = corners.len().max(1) as f64;
         let middle = corners.iter().sum::<DVec3>() / count;
-        let size = corners
-            .iter()
-            .fold(0.0f64, |m, c| m.max((*c - middle).length()));
-        let mut camera = Camera::new(
-            middle + DVec3::new(0.93, -0.37, 0.0) * (4.0 * size.max(1e-3)),
-            middle,
-        );
+        let reach = corners.iter().map(|c| (*c - middle).length());
+        let away = 4.0 * reach.fold(0.0, f64::max).max(1e-3);
+        let eye = middle + DVec3::new(0.93, -0.37, 0.0) * away;
+        let mut camera = Camera::new(eye, middle);
         camera.up = DVec3::Z;
         self.scene.camera = camera;
         let name = self.name.clone();
@@ -48,25 +44,20 @@ impl View {
             DQuat::from_rotation_z(degrees.to_radians())
                 * DVec3::new(forward.x, forward.y, 0.0).normalize_or(DVec3::X)
         };
-        view.scene.lights = vec![
-            Light {
-                direction: turned(35.0) - DVec3::Z * 0.8,
-                color: [0.95, 0.9, 0.8],
-                ..Light::default()
-            },
-            Light {
-                direction: turned(-60.0) - DVec3::Z * 0.3,
-                color: [0.2, 0.24, 0.3],
-                ..Light::default()
-            },
-        ];
+        let light = |direction, color| Light {
+            direction,
+            color,
+            ..Light::default()
+        };
+        let front = light(turned(35.0) - DVec3::Z * 0.8, [0.95, 0.9, 0.8]);
+        let side = light(turned(-60.0) - DVec3::Z * 0.3, [0.2, 0.24, 0.3]);
+        view.scene.lights = vec![front, side];
         view
     }
 
     /// The view in a framing. Close up the eye stays, turns to the middle of all boxes and narrows
     /// its field of view, which is never made wider; the name gets `:close`. An eye between or
     /// within the boxes is close already: its field of view stays.
-    #[must_use]
     pub fn in_framing(mut self, framing: Framing) -> Self {
         if framing == Framing::Whole {
             return self;
@@ -75,10 +66,9 @@ impl View {
         self.framing = framing;
         let before = self.scene.camera;
         let corners = self.corners();
-        let (low, high) = corners.iter().fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), corner| (low.min(*corner), high.max(*corner)),
-        );
+        let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let all = corners.iter().copied();
+        let high = all.fold(DVec3::NEG_INFINITY, DVec3::max);
         let middle = (low + high) / 2.0;
         if middle.is_finite() && middle.distance(before.eye) > 1e-9 {
             self.scene.camera.target = middle;
@@ -124,13 +114,11 @@ impl View {
         let mut all = Vec::new();
         for object in &self.scene.objects {
             let r = object.profile.radius;
+            let sides = [(-r, -r), (r, -r), (-r, r), (r, r)];
+            let corners = [0.0, 1.0].map(|z| sides.map(|(x, y)| DVec3::new(x, y, z)));
             for p in object.placements() {
-                for k in 0..8u32 {
-                    let pick =
-                        |bit: u32, low: f64, high: f64| if k & bit == 0 { low } else { high };
-                    let corner = DVec3::new(pick(1, -r, r), pick(2, -r, r), pick(4, 0.0, 1.0));
-                    all.push(p.position + p.rotation * (p.scale * corner));
-                }
+                let corners = corners.as_flattened().iter();
+                all.extend(corners.map(|c| p.position + p.rotation * (p.scale * *c)));
             }
         }
         all
@@ -177,15 +165,10 @@ mod tests {
             let [across, up] = reach(&close);
             assert!((across.1.min(up.1) - OVERFILL).abs() < 1e-6);
             assert!(close.scene.camera.fov_y < whole.scene.camera.fov_y);
-            assert_eq!(
-                (close.name.as_str(), close.framing),
-                ("spindle:close", Framing::Close)
-            );
+            let named = |view: &View| (view.name.clone(), view.framing);
+            assert_eq!(named(&close), ("spindle:close".into(), Framing::Close));
             let same = whole.clone().in_framing(Framing::Whole);
-            assert_eq!(
-                (same.name.as_str(), same.framing),
-                ("spindle", Framing::Whole)
-            );
+            assert_eq!(named(&same), ("spindle".into(), Framing::Whole));
             assert_eq!(same.scene.camera.fov_y, whole.scene.camera.fov_y);
         }
     }
@@ -209,10 +192,8 @@ mod tests {
         assert_eq!(near.in_framing(Framing::Close).scene.camera.fov_y, 5.0);
         let mut empty = spindle();
         empty.scene.objects.clear();
-        assert_eq!(
-            empty.in_framing(Framing::Close).scene.camera.fov_y,
-            spindle().scene.camera.fov_y
-        );
+        let camera = empty.in_framing(Framing::Close).scene.camera;
+        assert_eq!(camera.fov_y, spindle().scene.camera.fov_y);
     }
 
     /// The purpose of framings: the share of pixels that hit.
@@ -228,16 +209,13 @@ mod tests {
                 ..MethodSettings::default()
             };
             for view in views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
-                let share = |view: &View| {
-                    let frame =
-                        reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
-                    let hits = frame.distance.iter().filter(|d| d.is_finite()).count();
-                    hits as f64 / frame.distance.len() as f64
-                };
-                let (whole, close) = (
-                    share(&view),
-                    share(&view.clone().in_framing(Framing::Close)),
-                );
+                let [whole, close] = [Framing::Whole, Framing::Close].map(|framing| {
+                    let scene = view.clone().in_framing(framing).scene;
+                    let frame = reference::draw(&scene, &(&settings).into(), &|_, _| {});
+                    let distance = frame.unwrap().distance;
+                    let hits = distance.iter().filter(|d| d.is_finite()).count();
+                    hits as f64 / distance.len() as f64
+                });
                 eprintln!("{} {width}x{height}: {whole:.3} {close:.3}", view.name);
                 assert!((0.3..0.9).contains(&close) && close > 1.5 * whole);
             }

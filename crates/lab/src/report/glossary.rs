@@ -9,7 +9,6 @@ use crate::method::Method;
 use revmap::settings::Solver;
 
 /// The meaning of a method's name.
-#[must_use]
 pub fn meaning(method: Method) -> &'static str {
     match method {
         Method::Search(Solver::Other(search)) => search.about,
@@ -46,7 +45,6 @@ const SOURCES: [&str; 4] = [
 
 /// The names that occur in these rows, each with its meaning, in the order in which reports list
 /// them.
-#[must_use]
 pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);
     let mut all: Vec<(&'static str, String)> = Vec::new();
@@ -82,25 +80,22 @@ pub fn chapter(page: &mut Page, measured: &Measured) {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::super::plan::rbm_baseline;
-    use super::super::row::tests::row as one_row;
+    use super::super::row::tests::timed;
     use super::super::view::tests::spindle;
     use super::*;
 
     #[test]
     fn every_name_that_occurs_is_explained_once() {
-        let mesh = |segments| Method::Mesh {
-            segments,
-            rings: 2 * segments,
+        let meshes = [16, 32].map(|n| Method::mesh(n, 2 * n).unwrap());
+        let row = |method| {
+            let mut row = timed(&[1.0]);
+            row.settings.method = method;
+            row
         };
-        let methods = Method::ALL.into_iter().chain([mesh(16), mesh(32)]);
-        let mut rows: Vec<Row> = methods
-            .map(|method| {
-                let mut one = one_row(&[&[(None, 1.0)]]);
-                one.settings.method = method;
-                one
-            })
-            .collect();
+        let methods = Method::ALL.into_iter().chain(meshes);
+        let mut rows: Vec<Row> = methods.map(row).collect();
         let mut papers = rows[0].clone();
         papers.settings = rbm_baseline(&spindle(), &papers.settings);
         rows.push(papers);

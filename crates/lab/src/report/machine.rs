@@ -27,36 +27,30 @@ pub struct Machine {
 
 impl Machine {
     /// This machine, now. `version` is that of the program which measures.
-    #[must_use]
     pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
         let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let memory = field(&read("/proc/meminfo"), "MemTotal", ':')
-            .and_then(|v| v.trim_end_matches(" kB").parse::<f64>().ok())
-            .map(|kb| format!("{:.0} GB", kb / 1_048_576.0))
-            .unwrap_or_default();
-        let system = field(&read("/etc/os-release"), "PRETTY_NAME", '=')
-            .unwrap_or_else(|| std::env::consts::OS.to_owned());
-        let processor = field(&read("/proc/cpuinfo"), "model name", ':')
-            .unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+        let kilobytes = field(&read("/proc/meminfo"), "MemTotal", ':');
+        let kilobytes = kilobytes.and_then(|v| v.trim_end_matches(" kB").parse::<f64>().ok());
+        let memory = kilobytes.map(|kb| format!("{:.0} GB", kb / 1_048_576.0));
+        let system = field(&read("/etc/os-release"), "PRETTY_NAME", '=');
+        let processor = field(&read("/proc/cpuinfo"), "model name", ':');
+        let now = jiff::Timestamp::now();
         Self {
             device: device.to_owned(),
             kind: kind.to_owned(),
             driver: driver.to_owned(),
-            processor,
+            processor: processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
             threads,
-            memory,
-            system,
-            date: jiff::Timestamp::now()
-                .strftime("%Y-%m-%d %H:%M UTC")
-                .to_string(),
+            memory: memory.unwrap_or_default(),
+            system: system.unwrap_or_else(|| std::env::consts::OS.to_owned()),
+            date: now.strftime("%Y-%m-%d %H:%M UTC").to_string(),
             program: format!("revmap {version}"),
             command: command.to_owned(),
         }
     }
 
     /// The note as `(what, which)`.
-    #[must_use]
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![
             ("device", format!("{} ({})", self.device, self.kind)),
@@ -77,38 +71,28 @@ impl Machine {
 
     /// A name for a folder of results, after day, device and the driver's version:
     /// `2026-01-31-lavapipe-22.3.6`.
-    #[must_use]
     pub fn folder(&self) -> String {
-        let words: String = self
-            .device
-            .to_lowercase()
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' })
-            .collect();
-        let name: Vec<&str> = words.split_whitespace().take(3).collect();
-        let name = if words.starts_with("llvmpipe") {
-            "lavapipe".to_owned()
-        } else {
-            name.join("-")
+        let device = self.device.to_lowercase();
+        let words = device.split(|c: char| !c.is_ascii_alphanumeric());
+        let name: Vec<&str> = words.filter(|w| !w.is_empty()).take(3).collect();
+        let name = match device.starts_with("llvmpipe") {
+            true => "lavapipe".to_owned(),
+            false => name.join("-"),
         };
-        let number = |word: &&str| {
-            word.contains('.') && word.chars().all(|c| c.is_ascii_digit() || c == '.')
-        };
+        let digit = |c: char| c.is_ascii_digit() || c == '.';
+        let number = |word: &&str| word.contains('.') && word.chars().all(digit);
         let version = self.driver.split([' ', '-']).find(number);
         let version = version.map(|v| format!("-{v}")).unwrap_or_default();
-        format!(
-            "{}-{name}{version}",
-            self.date.split(' ').next().unwrap_or("undated")
-        )
+        let day = self.date.split(' ').next().unwrap_or("undated");
+        format!("{day}-{name}{version}")
     }
 }
 
 /// The value of the first line that starts with `key`.
 pub(super) fn field(text: &str, key: &str, sign: char) -> Option<String> {
-    text.lines()
-        .filter_map(|line| line.split_once(sign))
-        .find(|(name, _)| name.trim() == key)
-        .map(|(_, value)| value.trim().trim_matches('"').to_owned())
+    let mut fields = text.lines().filter_map(|line| line.split_once(sign));
+    let found = fields.find(|(name, _)| name.trim() == key);
+    found.map(|(_, value)| value.trim().trim_matches('"').to_owned())
 }
 
 #[cfg(test)]
@@ -117,18 +101,11 @@ mod tests {
 
     #[test]
     fn a_folder_is_named_after_day_and_device() {
-        let mut here = Machine::here(
-            "llvmpipe (LLVM 15.0.6, 256 bits)",
-            "cpu",
-            "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)",
-            "0.1.0",
-            "revmap bench",
-        );
-        assert!(
-            here.date.ends_with(" UTC") && here.date.len() == 20,
-            "{}",
-            here.date
-        );
+        let device = "llvmpipe (LLVM 15.0.6, 256 bits)";
+        let driver = "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)";
+        let mut here = Machine::here(device, "cpu", driver, "0.1.0", "revmap bench");
+        let date = &here.date;
+        assert!(date.ends_with(" UTC") && date.len() == 20, "{date}");
         here.date = "2026-01-31 10:00 UTC".into();
         assert_eq!(here.folder(), "2026-01-31-lavapipe-22.3.6");
         here.driver = "NVIDIA".into();
@@ -139,14 +116,11 @@ mod tests {
 
     #[test]
     fn fields_of_the_systems_files() {
-        assert_eq!(
-            field("a : b\nmodel name\t: X 3\n", "model name", ':').as_deref(),
-            Some("X 3")
-        );
-        assert_eq!(
-            field("NAME=\"u\"\nPRETTY_NAME=\"Deb 12\"", "PRETTY_NAME", '=').as_deref(),
-            Some("Deb 12")
-        );
+        let processor = field("a : b\nmodel name\t: X 3\n", "model name", ':');
+        assert_eq!(processor.as_deref(), Some("X 3"));
+        let names = "NAME=\"u\"\nPRETTY_NAME=\"Deb 12\"";
+        let system = field(names, "PRETTY_NAME", '=');
+        assert_eq!(system.as_deref(), Some("Deb 12"));
         assert_eq!(field("", "x", '='), None);
     }
 }

@@ -70,9 +70,6 @@ impl Truths {
 /// Measures the maps that a plan sweeps over, for views of solids without repetition; the reference
 /// is drawn where `truths` has none. Of the errors depth and wrong pixels count: colours and
 /// normals are not compared. `progress` is told what is done and how much there is.
-///
-/// # Errors
-/// Baking, or the reference, fails.
 pub fn measure(
     plan: &Plan,
     size: (u32, u32),
@@ -82,13 +79,11 @@ pub fn measure(
     let mut wanted: Vec<(usize, MapSource, u32)> = Vec::new();
     for case in &plan.cases {
         if let (Some(source), Some(rows)) = (case.settings.map_source, case.settings.map_rows) {
-            let simple = plan.views[case.view]
-                .scene
-                .objects
-                .iter()
-                .all(|o| o.repeat == [1; 3] && o.axis == [0.5; 2]);
-            if simple && !wanted.contains(&(case.view, source, rows)) {
-                wanted.push((case.view, source, rows));
+            let mut objects = plan.views[case.view].scene.objects.iter();
+            let simple = objects.all(|o| o.repeat == [1; 3] && o.axis == [0.5; 2]);
+            let one = (case.view, source, rows);
+            if simple && !wanted.contains(&one) {
+                wanted.push(one);
             }
         }
     }
@@ -122,9 +117,6 @@ pub fn measure(
 }
 
 /// Draws the distances (no colours, no normals) of the surface that the maps hold.
-///
-/// # Errors
-/// Baking fails, or the camera is wrong.
 pub fn draw(scene: &Scene, size: (u32, u32), source: MapSource, rows: u32) -> Result<Frame> {
     let mut maps = Vec::new();
     for object in &scene.objects {
@@ -139,26 +131,18 @@ pub fn draw(scene: &Scene, size: (u32, u32), source: MapSource, rows: u32) -> Re
     }
     let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
     let mut frame = Frame::new(size.0, size.1, scene.background)?;
-    let width = size.0 as usize;
-    frame
-        .distance
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(j, row)| {
-            for (i, distance) in row.iter_mut().enumerate() {
-                let direction = camera.pixel(i as u32, j as u32);
-                let mut first = f64::INFINITY;
-                for (object, map) in scene.objects.iter().zip(&maps) {
-                    for placement in object.placements() {
-                        first = first.min(
-                            hit(object, map, placement, camera.eye, direction)
-                                .unwrap_or(f64::INFINITY),
-                        );
-                    }
-                }
-                *distance = (first * direction.length()) as f32;
-            }
-        });
+    let rows = frame.distance.par_chunks_mut(size.0 as usize).enumerate();
+    rows.for_each(|(j, row)| {
+        for (i, distance) in row.iter_mut().enumerate() {
+            let direction = camera.pixel(i as u32, j as u32);
+            let hits = scene.objects.iter().zip(&maps).flat_map(|(object, map)| {
+                let placements = object.placements().iter();
+                placements.filter_map(|p| hit(object, map, p, (camera.eye, direction)))
+            });
+            let first = hits.fold(f64::INFINITY, f64::min);
+            *distance = (first * direction.length()) as f32;
+        }
+    });
     Ok(frame)
 }
 
@@ -167,17 +151,14 @@ fn hit(
     object: &Object,
     map: &ShapeMap,
     placement: &Placement,
-    eye: DVec3,
-    direction: DVec3,
+    (eye, direction): (DVec3, DVec3),
 ) -> Option<f64> {
     let back = placement.rotation.conjugate();
     let o = back * (eye - placement.position) / placement.scale;
     let v = back * direction / placement.scale;
     let radius = object.profile.radius;
-    let (low, high) = (
-        DVec3::new(-radius, -radius, 0.0),
-        DVec3::new(radius, radius, 1.0),
-    );
+    let low = DVec3::new(-radius, -radius, 0.0);
+    let high = DVec3::new(radius, radius, 1.0);
     let (a, b) = ((low - o) / v, (high - o) / v);
     let start = a.min(b).max_element().max(0.0);
     let end = a.max(b).min_element();
@@ -227,8 +208,25 @@ fn hit(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::view::View;
     use super::super::view::tests::spindle;
     use super::*;
+
+    /// The errors of a map against the reference.
+    fn error(view: &View, size: (u32, u32), source: MapSource, rows: u32) -> Comparison {
+        let settings = MethodSettings {
+            width: size.0,
+            height: size.1,
+            ..MethodSettings::default()
+        };
+        let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {});
+        let frame = draw(&view.scene, size, source, rows).unwrap();
+        let options = CompareOptions {
+            texel: view.texel(),
+            ..CompareOptions::default()
+        };
+        compare(&truth.unwrap(), &frame, &options).unwrap()
+    }
 
     /// On straight flanks bilinear distances are exact but near edges: an exact map errs by next to
     /// nothing, a binary one by about a third of a texel, which is two thirds of one at twice the
@@ -236,41 +234,14 @@ mod tests {
     #[test]
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);
-        let settings = MethodSettings {
-            width: 120,
-            height: 90,
-            ..MethodSettings::default()
-        };
-        let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
-        let error = |source, rows| {
-            let frame = draw(&view.scene, (120, 90), source, rows).unwrap();
-            compare(
-                &truth,
-                &frame,
-                &CompareOptions {
-                    texel: view.texel(),
-                    ..CompareOptions::default()
-                },
-            )
-            .unwrap()
-        };
+        let error = |source, rows| error(&view, (120, 90), source, rows);
         let exact = error(MapSource::EXACT, 512);
-        assert!(
-            exact.wrong() < 0.01 && exact.depth.unwrap().p99 < 0.5,
-            "{exact}"
-        );
-        let (fine, coarse) = (
-            error(revmap_files::BINARY, 512),
-            error(revmap_files::BINARY, 128),
-        );
-        assert!(
-            fine.depth.unwrap().rms > 2.0 * exact.depth.unwrap().rms,
-            "{fine}"
-        );
-        assert!(
-            coarse.depth.unwrap().rms > 2.0 * fine.depth.unwrap().rms,
-            "{coarse}"
-        );
+        let p99 = exact.depth.unwrap().p99;
+        assert!(exact.wrong() < 0.01 && p99 < 0.5, "{exact}");
+        let [fine, coarse] = [512, 128].map(|rows| error(revmap_files::BINARY, rows));
+        let rms = |errors: &Comparison| errors.depth.unwrap().rms;
+        assert!(rms(&fine) > 2.0 * rms(&exact), "{fine}");
+        assert!(rms(&coarse) > 2.0 * rms(&fine), "{coarse}");
     }
 
     #[test]
@@ -280,27 +251,9 @@ mod tests {
         object.offset.extend = 0.04;
         object.placement.scale = DVec3::new(1.3, 0.8, 1.1);
         object.placement.rotation = glam::DQuat::from_rotation_x(0.4);
-        let view = view.framed(15.0);
-        let settings = MethodSettings {
-            width: 100,
-            height: 75,
-            ..MethodSettings::default()
-        };
-        let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {}).unwrap();
-        let frame = draw(&view.scene, (100, 75), MapSource::EXACT, 512).unwrap();
-        let errors = compare(
-            &truth,
-            &frame,
-            &CompareOptions {
-                texel: view.texel(),
-                ..CompareOptions::default()
-            },
-        )
-        .unwrap();
-        assert!(
-            errors.wrong() < 0.02 && errors.depth.unwrap().p99 < 1.0,
-            "{errors}"
-        );
+        let errors = error(&view.framed(15.0), (100, 75), MapSource::EXACT, 512);
+        let p99 = errors.depth.unwrap().p99;
+        assert!(errors.wrong() < 0.02 && p99 < 1.0, "{errors}");
     }
 
     /// A planted truth is taken for the reference; without one the reference itself is drawn.
@@ -317,9 +270,8 @@ mod tests {
         let mut plan = Plan::new(vec![view]);
         plan.add(0, settings, "");
         let wrong = |truths: &Truths| {
-            measure(&plan, (40, 30), truths, &mut |_, _| {}).unwrap()[0]
-                .errors
-                .wrong()
+            let measured = measure(&plan, (40, 30), truths, &mut |_, _| {});
+            measured.unwrap()[0].errors.wrong()
         };
         assert!(wrong(&Truths::default()) < 0.1);
         let mut planted = Truths::default();

@@ -3,7 +3,7 @@
 //! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that
 //! slows down slows all of them. All groups are gone through several times (*passes*), each time
 //! with everything built anew: what one placement in memory, or one bout of work beside ours, does
-//! to a time shows as spread between passes (see [`stats`](super::stats)).
+//! to a time shows as spread between passes (see `stats`).
 
 mod bench;
 
@@ -73,10 +73,8 @@ pub fn measure(
             None if interrupted => "stopped before the first measurement was done".into(),
             None => "the plan is empty; name a scene, a stage and a solver".into(),
         };
-        return Err(Error::new(
-            ErrorKind::Other,
-            format!("nothing was measured: {why}"),
-        ));
+        let message = format!("nothing was measured: {why}");
+        return Err(Error::new(ErrorKind::Other, message));
     }
     Ok(Measured {
         rows,
@@ -157,8 +155,8 @@ impl Run<'_> {
             return Err(error);
         }
         self.rows[index] = None;
-        self.left_out
-            .push((self.plan.cases[index], error.to_string()));
+        let case = self.plan.cases[index];
+        self.left_out.push((case, error.to_string()));
         Ok(())
     }
 
@@ -255,9 +253,10 @@ impl Run<'_> {
         (truth, options): (&Frame, &CompareOptions),
         observer: &mut Observer,
     ) -> Result<()> {
+        let given_up = "a comparison was given up; report this";
         let compared = work
             .join()
-            .map_err(|_| Error::new(ErrorKind::Other, "a comparison was given up; report this"))?;
+            .map_err(|_| Error::new(ErrorKind::Other, given_up))?;
         let (frame, errors) = (&compared.frame, compared.errors?);
         let case = &self.plan.cases[index];
         (observer.picture)(&RenderedCase {
@@ -291,15 +290,13 @@ impl Run<'_> {
             let case = &self.plan.cases[index];
             let view = &self.plan.views[case.view];
             self.tell(observer, &format!("{}: pass {}", view.name, pass + 1));
-            let ready = self
-                .bench
-                .timed_renderer(view, &case.settings)
-                .and_then(|mut renderer| {
-                    for _ in 0..self.budget.warm_up {
-                        renderer.sample()?;
-                    }
-                    Ok(renderer)
-                });
+            let made = self.bench.timed_renderer(view, &case.settings);
+            let ready = made.and_then(|mut renderer| {
+                for _ in 0..self.budget.warm_up {
+                    renderer.sample()?;
+                }
+                Ok(renderer)
+            });
             match ready {
                 Ok(renderer) => renderers.push((index, renderer, Vec::new())),
                 Err(error) => self.leave_out(index, error)?,
@@ -307,23 +304,17 @@ impl Run<'_> {
         }
         for round in 0..self.budget.rounds.1 {
             let stop = observer.stop.load(Ordering::Relaxed);
-            let known = || {
-                renderers
-                    .iter()
-                    .all(|(_, _, s)| settled(s, self.budget.precision))
-            };
-            if stop || (round >= self.budget.rounds.0 && (Instant::now() >= end || known())) {
+            let known = |s: &[Sample]| settled(s, self.budget.precision);
+            let done = || Instant::now() >= end || renderers.iter().all(|r| known(&r.2));
+            if stop || (round >= self.budget.rounds.0 && done()) {
                 break;
             }
             let count = renderers.len();
             let mut failed = Vec::new();
             for turn in 0..count {
                 // There and back, so that nobody always follows the same neighbour.
-                let place = if round % 2 == 0 {
-                    turn
-                } else {
-                    count - 1 - turn
-                };
+                let there = round % 2 == 0;
+                let place = if there { turn } else { count - 1 - turn };
                 let (_, renderer, samples) = &mut renderers[place];
                 match renderer.sample() {
                     Ok(sample) => samples.push(sample),
@@ -346,11 +337,8 @@ impl Run<'_> {
 
     /// True if every row's interval is narrow enough.
     fn known(&self) -> bool {
-        let narrow = |row: &Row| {
-            row.time()
-                .is_some_and(|t| t.relative() <= self.budget.precision)
-        };
-        self.rows.iter().flatten().all(narrow)
+        let mut rows = self.rows.iter().flatten();
+        rows.all(|row| row.resolved(self.budget.precision))
     }
 
     /// True if one more pass, as long as those before, would end too late.
@@ -375,7 +363,7 @@ fn settled(samples: &[Sample], precision: f64) -> bool {
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
     // The standard error of a normal distribution's median is 1.25 sigma / sqrt n, sigma is 1.48
     // median deviations.
-    let error =
-        1.25 * 1.48 * super::stats::median(&off).unwrap_or(0.0) / (times.len() as f64).sqrt();
+    let deviation = super::stats::median(&off).unwrap_or(0.0);
+    let error = 1.25 * 1.48 * deviation / (times.len() as f64).sqrt();
     times.len() >= 5 && 1.96 * error <= precision * middle
 }

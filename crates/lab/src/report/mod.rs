@@ -2,7 +2,7 @@
 //!
 //! Every time stands beside the error of the picture that was drawn in it: a search that is fast
 //! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
-//! are taken, [`stats`] for what their intervals mean.
+//! are taken, `stats` for what their intervals mean.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -17,29 +17,26 @@ pub mod columns;
 pub mod compare_runs;
 mod device;
 pub mod exhibit;
-mod findings;
 pub mod flight;
 pub mod folder;
-pub mod framing;
-pub mod glossary;
-pub mod growth;
+mod framing;
+mod glossary;
+mod growth;
 pub mod machine;
 pub mod map_error;
 pub mod measure;
-pub mod names;
-pub mod page;
-pub mod picture_groups;
+pub(crate) mod names;
+pub(crate) mod page;
 pub mod pictures;
 mod places;
 pub mod plan;
-pub mod published;
+mod published;
 pub mod ratios;
 #[allow(clippy::module_inception)]
 pub mod report;
 pub mod row;
 pub mod series_style;
-pub mod sheet;
-pub mod stats;
+mod stats;
 pub mod table;
 pub mod view;
 

@@ -1,14 +1,10 @@
 //! Numbers and names of files, as results have them.
 
 /// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
-#[must_use]
 pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".into()
-        } else {
-            format!("{value}").to_lowercase()
-        };
+        // Minus zero, too.
+        return format!("{}", value + 0.0).to_lowercase();
     }
     let magnitude = value.abs().log10().floor() as i32;
     let decimals = digits as i32 - 1 - magnitude;
@@ -25,19 +21,24 @@ pub fn number(value: f64, digits: usize) -> String {
 
 /// A name that may be part of a file's name.
 pub(super) fn safe(name: &str) -> String {
-    name.chars()
-        .map(|c| {
-            if c.is_alphanumeric() || "-_@.".contains(c) {
-                c
-            } else {
-                '-'
-            }
-        })
-        .collect()
+    let safe = |c: char| c.is_alphanumeric() || "-_@.".contains(c);
+    name.replace(|c| !safe(c), "-")
+}
+
+/// `0.97 to 1.07`.
+pub(super) fn range((low, high): (f64, f64)) -> String {
+    format!("{} to {}", number(low, 3), number(high, 3))
+}
+
+/// `1 picture`, `4 pictures`.
+pub(super) fn count(number: usize, what: &str) -> String {
+    match number {
+        1 => format!("1 {what}"),
+        number => format!("{number} {what}s"),
+    }
 }
 
 /// A share of pixels in percent.
-#[must_use]
 pub fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share, 3))
 }

@@ -24,8 +24,6 @@ pub struct Page {
 const STYLE: &str = include_str!("page.css");
 
 impl Page {
-    /// An empty page.
-    #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -53,7 +51,6 @@ impl Page {
         self.contents.push((id, title.to_owned()));
     }
 
-    /// Begins a part of a chapter.
     pub fn heading(&mut self, title: &str) {
         self.add(html! { h3 { (title) } });
     }
@@ -68,7 +65,6 @@ impl Page {
         self.add(html! { p.note { (text) } });
     }
 
-    /// A command.
     pub fn command(&mut self, what: &str, command: &str) {
         self.add(html! { p { (what) " " code { (command) } } });
     }
@@ -133,7 +129,6 @@ impl Page {
     }
 
     /// The whole file.
-    #[must_use]
     pub fn html(&self) -> String {
         let font = BASE64_STANDARD.encode(FONT);
         let face =

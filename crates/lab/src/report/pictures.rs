@@ -1,15 +1,16 @@
-//! Pictures beside the numbers: what was drawn, what each pixel cost, where it is wrong.
+//! Pictures beside the numbers: what was drawn, what each pixel cost, where it is wrong; and where
+//! one ray per pixel is worst, enlarged, by every treatment of edges side by side.
 
 use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
 use super::plan::{Labels, is_rbm_baseline};
-use crate::compare::{EMPTY, Heat, Scale, heat_map};
-use crate::method::{Method, MethodSettings};
+use crate::compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
+use crate::method::{Edges, Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::settings::DrawStage;
-use revmap_files::Picture;
+use revmap_files::{Picture, write_png};
 use std::path::{Path, PathBuf};
 
 /// A picture made smaller for a page.
@@ -53,9 +54,6 @@ pub struct Album {
 
 impl Album {
     /// An album in `folder/pictures`, with heat maps or without.
-    ///
-    /// # Errors
-    /// When the folder cannot be made.
     pub fn new(folder: &Path, labels: Labels, heat_maps: bool) -> Result<Self> {
         let folder = folder.join("pictures");
         make(&folder)?;
@@ -72,60 +70,38 @@ impl Album {
     /// Takes what is worth showing of a picture: each view once as it should look, then each way of
     /// drawing it at that size, from one stage (the stages' pictures are alike): look-ups and
     /// errors.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let view = seen.case.view;
         let name = &seen.plan.views[view].name;
-        let first = seen
-            .plan
-            .cases
-            .iter()
-            .find(|c| c.view == view)
-            .map(|c| (c.settings.width, c.settings.height));
-        if first != Some((settings.width, settings.height)) {
+        let first = seen.plan.cases.iter().find(|c| c.view == view);
+        if first.is_none_or(|c| c.picture() != seen.case.picture()) {
             return Ok(());
         }
+        let many = seen.plan.views.len() > MANY_VIEWS;
         let stage = *self.stage.get_or_insert(settings.stage);
         if !self.shown.contains(&view) {
             self.shown.push(view);
-            let widest = if seen.plan.views.len() > MANY_VIEWS {
-                NARROW
-            } else {
-                WIDEST
-            };
+            let widest = if many { NARROW } else { WIDEST };
             let caption = format!("{name}: the reference");
             self.keep((view, widest), name, &Picture::of(seen.truth), caption)?;
         }
         let place = self.shown.iter().position(|v| *v == view).unwrap_or(0);
-        let heated = if seen.plan.views.len() > MANY_VIEWS {
-            1
-        } else {
-            HEATED_VIEWS
-        };
+        let heated = if many { 1 } else { HEATED_VIEWS };
         if settings.stage != stage || place >= heated || !(self.heat_maps && worth(settings)) {
             return Ok(());
         }
         let way = self.labels.way(settings);
-        let file = format!("{name}-{way}");
+        let mut keep = |kind: &str, picture: &Picture, of: &str| {
+            let (file, caption) = (format!("{name}-{way}-{kind}"), format!("{way}: {of}"));
+            self.keep((view, WIDEST), &file, picture, caption)
+        };
         // A mesh makes no look-ups.
         if !settings.method.is_mesh() {
-            self.keep(
-                (view, WIDEST),
-                &format!("{file}-steps"),
-                &steps(seen.frame),
-                format!("{way}: look-ups in each pixel"),
-            )?;
+            keep("steps", &steps(seen.frame), "look-ups in each pixel")?;
         }
         let depth = heat_map(seen.truth, seen.frame, seen.options, Heat::Depth)?;
-        self.keep(
-            (view, WIDEST),
-            &format!("{file}-depth"),
-            &depth,
-            format!("{way}: error of depth"),
-        )
+        keep("depth", &depth, "error of depth")
     }
 
     fn keep(
@@ -135,10 +111,8 @@ impl Album {
         picture: &Picture,
         caption: String,
     ) -> Result<()> {
-        write_bytes(
-            &self.folder.join(format!("{}.png", safe(name))),
-            &png(picture)?,
-        )?;
+        let file = self.folder.join(format!("{}.png", safe(name)));
+        write_bytes(&file, &png(picture)?)?;
         let small = reduced(picture, picture.width.div_ceil(widest).max(1));
         self.shots.push(Shot {
             view,
@@ -161,7 +135,6 @@ fn worth(s: &MethodSettings) -> bool {
 }
 
 /// The meaning of the colours of heat maps.
-#[must_use]
 pub fn heat_key() -> String {
     format!(
         "Look-ups: dark blue is 1, pale yellow {} or more, each doubling an equal step of brightness; grey is where nothing was looked up. \
@@ -172,13 +145,11 @@ pub fn heat_key() -> String {
 }
 
 /// Look-ups as a heat map.
-#[must_use]
 pub fn steps(frame: &Frame) -> Picture {
     let color = |&steps: &f32| {
-        let [r, g, b] = if steps < 1.0 {
-            EMPTY
-        } else {
-            STEPS.color(f64::from(steps))
+        let [r, g, b] = match steps < 1.0 {
+            true => EMPTY,
+            false => STEPS.color(f64::from(steps)),
         };
         [r, g, b, 255]
     };
@@ -190,32 +161,104 @@ pub fn steps(frame: &Frame) -> Picture {
 }
 
 /// A picture with each square of `factor` pixels made one, by their mean.
-#[must_use]
 pub fn reduced(picture: &Picture, factor: u32) -> Picture {
-    let (width, height) = (
-        (picture.width / factor).max(1),
-        (picture.height / factor).max(1),
-    );
-    let mut rgba = Vec::with_capacity((width * height) as usize);
-    for y in 0..height {
-        for x in 0..width {
-            let mut sum = [0u32; 4];
-            let mut count = 0;
-            for j in y * factor..((y + 1) * factor).min(picture.height) {
-                for i in x * factor..((x + 1) * factor).min(picture.width) {
-                    let pixel = picture.rgba[(j * picture.width + i) as usize];
-                    (0..4).for_each(|c| sum[c] += u32::from(pixel[c]));
-                    count += 1;
-                }
-            }
-            rgba.push(sum.map(|s| (s / count.max(1)) as u8));
+    let side = |length: u32| (length / factor).max(1);
+    let (width, height) = (side(picture.width), side(picture.height));
+    let part = |k: u32, length: u32| k * factor..((k + 1) * factor).min(length);
+    let pixel = |x: u32, y: u32| {
+        let rows = part(y, picture.height);
+        let places = rows.flat_map(|j| part(x, picture.width).map(move |i| (i, j)));
+        let pixels = places.map(|(i, j)| picture.rgba[(j * picture.width + i) as usize]);
+        let (mut sum, mut count) = ([0u32; 4], 0);
+        for pixel in pixels {
+            (0..4).for_each(|c| sum[c] += u32::from(pixel[c]));
+            count += 1;
         }
-    }
+        sum.map(|s| (s / count.max(1)) as u8)
+    };
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     Picture {
         width,
         height,
-        rgba,
+        rgba: places.map(|(x, y)| pixel(x, y)).collect(),
     }
+}
+
+/// Pixels of an enlarged part either way, and how often each is repeated.
+const PART: usize = 40;
+const ENLARGED: usize = 7;
+
+/// Collects the pictures of one view and stage, and writes their sheet when the next begins.
+#[derive(Default)]
+pub struct Sheets {
+    folder: PathBuf,
+    of: Option<(usize, DrawStage)>,
+    name: String,
+    /// Each picture of one ray per pixel, in a part of which FLIP is largest.
+    worst: Vec<f32>,
+    width: usize,
+    colors: Vec<Vec<[f32; 4]>>,
+    truth: Vec<[f32; 4]>,
+}
+
+impl Sheets {
+    /// Sheets in a folder.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes a picture.
+    pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
+        let settings = &seen.case.settings;
+        let of = Some((seen.case.view, settings.stage));
+        if self.of != of {
+            self.finish()?;
+            let view = &seen.plan.views[seen.case.view].name;
+            self.name = format!("antialiasing-{view}-{}.png", settings.stage.name());
+            self.of = of;
+            self.width = seen.frame.width as usize;
+            self.truth.clone_from(&seen.truth.color);
+        }
+        if settings.method == Method::DEFAULT && settings.edges == Edges::OneRay {
+            self.worst = flip_map(seen.truth, seen.frame, PIXELS_PER_DEGREE);
+        }
+        self.colors.push(seen.frame.color.clone());
+        Ok(())
+    }
+
+    /// Writes the last sheet.
+    pub fn finish(&mut self) -> Result<()> {
+        let mut colors = std::mem::take(&mut self.colors);
+        if colors.is_empty() {
+            return Ok(());
+        }
+        colors.push(std::mem::take(&mut self.truth));
+        let first = worst_part(&self.worst, self.width);
+        let side = PART * ENLARGED;
+        let mut frame = Frame::new((side * colors.len()) as u32, side as u32, [0.0; 4])?;
+        for (k, color) in frame.color.iter_mut().enumerate() {
+            let (x, y) = (k % (side * colors.len()), k / (side * colors.len()));
+            let from = first + y / ENLARGED * self.width + x % side / ENLARGED;
+            *color = colors[x / side].get(from).copied().unwrap_or_default();
+        }
+        write_png(&frame, self.folder.join(&self.name))
+    }
+}
+
+/// The first pixel of the part of a map whose sum is largest.
+fn worst_part(map: &[f32], width: usize) -> usize {
+    let columns = (width / PART).max(1);
+    let sum = |part: usize| {
+        let first = part / columns * PART * width + part % columns * PART;
+        let row = |y: usize| map.iter().skip(first + y * width).take(PART).sum::<f32>();
+        (first, (0..PART).map(row).sum::<f32>())
+    };
+    let parts = columns * (map.len() / (width * PART).max(1));
+    let worst = (0..parts).map(sum).max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.map_or(0, |w| w.0)
 }
 
 #[cfg(test)]
@@ -229,10 +272,8 @@ mod tests {
         frame.steps = vec![0.0, 1.0, 16.0, 500.0];
         let picture = steps(&frame);
         let bright = |k: usize| {
-            picture.rgba[k][..3]
-                .iter()
-                .map(|&v| u32::from(v))
-                .sum::<u32>()
+            let color = picture.rgba[k][..3].iter();
+            color.map(|&v| u32::from(v)).sum::<u32>()
         };
         assert_eq!(picture.rgba[0], [40, 40, 40, 255]);
         assert!(bright(1) < bright(2) && bright(2) < bright(3));
@@ -242,17 +283,24 @@ mod tests {
     #[test]
     fn reduction_takes_the_mean() {
         let pixel = |v: u8| [v, 0, 255, 255];
+        let values = [10, 20, 100, 100, 7, 30, 40, 100, 100, 7];
         let picture = Picture {
             width: 5,
             height: 2,
-            rgba: [10, 20, 100, 100, 7, 30, 40, 100, 100, 7]
-                .map(pixel)
-                .to_vec(),
+            rgba: values.map(pixel).to_vec(),
         };
         let small = reduced(&picture, 2);
         assert_eq!((small.width, small.height), (2, 1));
         assert_eq!(small.rgba, [pixel(25), pixel(100)]);
         assert_eq!(reduced(&picture, 1), picture);
         assert!(png(&picture).unwrap().starts_with(b"\x89PNG"));
+    }
+
+    #[test]
+    fn the_worst_part_is_found() {
+        let mut map = vec![0.0; 120 * 80];
+        map[50 * 120 + 95] = 1.0;
+        assert_eq!(worst_part(&map, 120), 40 * 120 + 80);
+        assert_eq!(worst_part(&[], 120), 0);
     }
 }

@@ -2,12 +2,11 @@
 
 use super::columns::Context;
 use super::names::number;
-use super::plan::variant;
+use super::plan::{grouped, variant};
 use super::ratios::between;
 use super::row::Row;
 use super::stats::{Interval, Verdict};
 use super::table::Table;
-use crate::method::MethodSettings;
 
 /// One of the published tables, measured by the authors on an Intel Core i7-3612QM with a GeForce
 /// GT 630M.
@@ -56,24 +55,20 @@ const FALLS: &str = "falls";
 const RISES: &str = "rises";
 
 /// The published table of this number.
-#[must_use]
 pub fn table(number: &str) -> Option<&'static Printed> {
     TABLES.iter().find(|t| t.number == number)
 }
 
 impl Printed {
     /// The published line at a size: the parameter and the rate, over the first if `over_first`.
-    #[must_use]
     pub fn line(&self, size: &str, over_first: bool) -> Vec<(f64, f64)> {
         let Some(place) = SIZES.iter().position(|s| *s == size) else {
             return Vec::new();
         };
         let rates = self.rates[place];
         let unit = if over_first { rates[0] } else { 1.0 };
-        self.values
-            .into_iter()
-            .zip(rates.map(|r| r / unit))
-            .collect()
+        let rates = rates.map(|r| r / unit);
+        self.values.into_iter().zip(rates).collect()
     }
 }
 
@@ -90,43 +85,21 @@ fn trend(first: &Row, last: &Row, resolved: f64) -> Option<(&'static str, Interv
     Some((word, ratio))
 }
 
-/// A size, a way of drawing, and its rows at the three values.
-type Line<'a> = ((u32, u32), MethodSettings, [Option<&'a Row>; 3]);
-
 /// A published table, the published figures above ours at each size.
 pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Table {
     let Some(printed) = table(number_of) else {
         return Table::default();
     };
-    let mut header = ["size", "method", "stage"].map(str::to_owned).to_vec();
-    header.extend(
-        printed
-            .values
-            .map(|v| format!("{} = {}", printed.letter, number(v, 3))),
-    );
-    header.extend(["last rate / first", "trend"].map(str::to_owned));
+    let [a, b, c] = (printed.values).map(|v| format!("{} = {}", printed.letter, number(v, 3)));
+    let names = ["size", "method", "stage", &a, &b, &c];
+    let header = names.into_iter().chain(["last rate / first", "trend"]);
     let mut out = Table::new(header, Vec::new());
-    let mut lines: Vec<Line> = Vec::new();
-    for &row in rows {
-        let Some(place) = printed.values.iter().position(|v| Some(*v) == row.value) else {
-            continue;
-        };
-        let (size, way) = (
-            (row.settings.width, row.settings.height),
-            variant(&row.settings),
-        );
-        match lines.iter_mut().find(|l| (l.0, l.1) == (size, way)) {
-            Some(line) => line.2[place] = Some(row),
-            None => {
-                let mut line = (size, way, [None; 3]);
-                line.2[place] = Some(row);
-                lines.push(line);
-            }
-        }
-    }
-    lines.sort_by_key(|l| l.0);
-    for group in lines.chunk_by(|a, b| a.0 == b.0) {
-        let size = format!("{}x{}", group[0].0.0, group[0].0.1);
+    let place = |row: &Row| printed.values.iter().position(|v| Some(*v) == row.value);
+    let own = rows.iter().copied().filter(|row| place(row).is_some());
+    let mut sizes = grouped(own, |r| (r.settings.width, r.settings.height));
+    sizes.sort_by_key(|(size, _)| *size);
+    for ((width, height), own) in sizes {
+        let size = format!("{width}x{height}");
         // At sizes of the reader's own nothing was published, and the rest stands by itself.
         let rates = printed.line(&size, false);
         if let [(_, first), .., (_, last)] = rates.as_slice() {
@@ -135,28 +108,23 @@ pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Ta
             record.extend([number(last / first, 3), printed.claim.to_owned()]);
             out.records.push(record);
         }
-        for (_, way, cells) in group {
-            let mut record = vec![
-                size.clone(),
-                context.styles.way(way),
-                way.stage.name().to_owned(),
-            ];
+        for (way, own) in grouped(own, |r| variant(&r.settings)) {
+            let cells = [0, 1, 2].map(|k| own.iter().rfind(|r| place(r) == Some(k)));
             let none = || "–".to_owned();
             // In brackets: not resolved.
-            let rate = |row: &Option<&Row>| match row.and_then(|r| Some((r, r.time()?.value))) {
+            let rate = |row: Option<&&Row>| match row.and_then(|r| Some((r, r.time()?.value))) {
                 Some((row, ms)) if row.resolved(context.resolved) => number(1e3 / ms, 3),
                 Some((_, ms)) => format!("({})", number(1e3 / ms, 3)),
                 None => none(),
             };
-            record.extend(cells.iter().map(rate));
-            let found = cells[0]
-                .zip(cells[2])
-                .and_then(|(first, last)| trend(first, last, context.resolved));
+            let ends = cells[0].zip(cells[2]);
+            let found = ends.and_then(|(first, last)| trend(first, last, context.resolved));
             let ratio = found.map(|(_, ratio)| context.known(Some(ratio)).shown());
-            record.extend([
-                ratio.unwrap_or_else(none),
-                found.map_or_else(none, |f| f.0.to_owned()),
-            ]);
+            let stage = way.stage.name().to_owned();
+            let mut record = vec![size.clone(), context.styles.way(&way), stage];
+            record.extend(cells.map(rate));
+            record.push(ratio.unwrap_or_else(none));
+            record.push(found.map_or_else(none, |f| f.0.to_owned()));
             out.records.push(record);
         }
     }
@@ -167,18 +135,14 @@ pub(super) fn published(context: &Context, rows: &[&Row], number_of: &str) -> Ta
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::columns::tests::with_context;
-    use super::super::row::tests::row;
+    use super::super::row::tests::timed;
     use super::*;
 
     #[test]
     fn trends_are_told_only_when_they_are_sure() {
-        let timed = |times: [f64; 4]| {
-            let passes = times.map(|t| [(None, t)]);
-            row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>())
-        };
-        let slow = timed([20.0, 20.4, 19.8, 20.1]);
-        let fast = timed([10.0, 10.1, 9.9, 10.2]);
-        let noisy = timed([14.0, 30.0, 20.0, 24.0]);
+        let slow = timed(&[20.0, 20.4, 19.8, 20.1]);
+        let fast = timed(&[10.0, 10.1, 9.9, 10.2]);
+        let noisy = timed(&[14.0, 30.0, 20.0, 24.0]);
         assert_eq!(trend(&slow, &fast, 0.25).unwrap().0, RISES);
         assert_eq!(trend(&fast, &slow, 0.25).unwrap().0, FALLS);
         assert_eq!(trend(&slow, &noisy, 1.0).unwrap().0, "no clear change");
@@ -187,21 +151,21 @@ mod tests {
 
     #[test]
     fn a_line_holds_its_three_values() {
-        let timed = |value, ms| {
-            let mut r = row(&[&[(None, ms)], &[(None, ms)]]);
-            r.value = Some(value);
-            r
+        let of = |(value, ms, size)| {
+            let mut row = timed(&[ms, ms]);
+            (row.settings.width, row.settings.height) = size;
+            row.value = Some(value);
+            row
         };
-        let mut rows: Vec<Row> = [(0.25, 10.0), (0.5, 8.0), (0.8, 5.0), (0.3, 1.0)]
-            .map(|(value, ms)| timed(value, ms))
-            .to_vec();
-        for value in [0.25, 0.5, 0.8] {
-            let mut r = timed(value, 4.0);
-            (r.settings.width, r.settings.height) = (1000, 600);
-            rows.push(r);
-        }
+        let (size, other) = ((800, 600), (1000, 600));
+        let rows: Vec<Row> = [(0.25, 10.0, size), (0.5, 8.0, size), (0.8, 5.0, size)]
+            .into_iter()
+            .chain([(0.3, 1.0, size)])
+            .chain([0.25, 0.5, 0.8].map(|value| (value, 4.0, other)))
+            .map(of)
+            .collect();
         let records = with_context(&rows, |context| {
-            published(context, &rows.iter().collect::<Vec<_>>(), "2").records
+            published(context, context.rows, "2").records
         });
         // Published figures stand above what was measured at their size, and nowhere else.
         assert_eq!(records.len(), 3);

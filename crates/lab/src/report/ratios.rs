@@ -1,8 +1,8 @@
 //! Times in proportion to those of other rows, over all views: the tables that say which way of
 //! drawing is faster, and how sure that is.
 
-use super::plan::{is_rbm_baseline, variant};
-use super::row::Row;
+use super::plan::{grouped, is_rbm_baseline, variant};
+use super::row::{Row, Sample};
 use super::stats::{self, Interval};
 use crate::method::{Edges, Method, MethodSettings};
 use revmap::settings::{DrawStage, Tolerance};
@@ -30,49 +30,41 @@ pub enum Over {
 
 impl Over {
     /// The other row of a row. Of meshes the coarsest that errs no more in depth.
-    #[must_use]
-    pub fn of<'a>(self, rows: &'a [Row], row: &Row) -> Option<&'a Row> {
-        let stage = |r: &Row| same_picture(r, row) && r.settings.stage == row.settings.stage;
-        let find =
-            |wanted: &dyn Fn(&Row) -> bool| rows.iter().find(|r| wanted(r) && r.time().is_some());
+    pub fn of<'a>(self, rows: &[&'a Row], row: &Row) -> Option<&'a Row> {
+        let rows = || rows.iter().copied();
+        let same = |r: &Row| r.picture() == row.picture();
+        let stage = |r: &Row| same(r) && r.settings.stage == row.settings.stage;
+        let find = |wanted: &dyn Fn(&Row) -> bool| rows().find(|r| wanted(r) && r.time().is_some());
         match self {
             Self::Baseline => {
-                let common = baseline_stage(rows);
-                let own = |s: &MethodSettings| is_rbm_baseline(s) && s.stage == common;
-                find(&|r| own(&r.settings) && same_picture(r, row))
+                let common = baseline_stage(rows());
+                find(&|r| same(r) && is_rbm_baseline(&r.settings) && r.settings.stage == common)
             }
             Self::Exact => find(&|r| is_exact_default(r) && stage(r)),
             Self::One => {
                 let mut like = row.settings;
-                if like.method == Method::Floor {
-                    like.method = Method::DEFAULT;
-                }
+                let floor = like.method == Method::Floor;
+                like.method = if floor { Method::DEFAULT } else { like.method };
                 find(&|r| r.view == 0 && row.view > 0 && r.settings == like)
             }
             Self::First => {
                 let same = |r: &&Row| r.settings == row.settings && r.sweeps == row.sweeps;
-                let valued = rows.iter().filter(same).filter(|r| r.value.is_some());
-                valued.min_by(|a, b| {
-                    a.value
-                        .partial_cmp(&b.value)
-                        .unwrap_or(std::cmp::Ordering::Equal)
-                })
+                let valued = rows().filter(same).filter_map(|r| Some((r, r.value?)));
+                valued.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(r, _)| r)
             }
-            Self::Mesh => mesh_row(rows, row, None),
+            Self::Mesh => mesh_row(rows(), row, None),
             Self::Fragment => {
                 let compute = row.settings.stage == DrawStage::Compute;
-                let like = MethodSettings {
-                    stage: DrawStage::Fragment,
-                    ..row.settings
-                };
+                let mut like = row.settings;
+                like.stage = DrawStage::Fragment;
                 find(&|r| compute && r.view == row.view && r.settings == like)
             }
             Self::Rival => {
                 let search = |m: Method| m != Method::DEFAULT && m != Method::Floor && !m.is_mesh();
                 let near = |r: &Row| r.errors.depth.is_some_and(|d| d.p99 <= 1.0);
                 let own = |r: &&Row| search(r.settings.method) && stage(r) && near(r);
-                let timed = rows.iter().filter(own);
-                let timed = timed.filter_map(|r| Some((r, r.time()?.value)));
+                let own = rows().filter(own);
+                let timed = own.filter_map(|r| Some((r, r.time()?.value)));
                 let fastest = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(r, _)| r);
                 fastest.filter(|_| is_exact_default(row))
             }
@@ -82,13 +74,10 @@ impl Over {
 
 /// The stage of the one RBM baseline that all times of a run are put over: fragment, or compute in
 /// a run that drew no baseline in the fragment stage.
-#[must_use]
-pub fn baseline_stage(rows: &[Row]) -> DrawStage {
-    let drawn = |stage| {
-        let of = |r: &Row| is_rbm_baseline(&r.settings) && r.settings.stage == stage;
-        rows.iter().any(of)
-    };
-    match drawn(DrawStage::Compute) && !drawn(DrawStage::Fragment) {
+pub fn baseline_stage<'a>(rows: impl IntoIterator<Item = &'a Row>) -> DrawStage {
+    let baselines = rows.into_iter().filter(|r| is_rbm_baseline(&r.settings));
+    let stages: Vec<DrawStage> = baselines.map(|r| r.settings.stage).collect();
+    match stages.contains(&DrawStage::Compute) && !stages.contains(&DrawStage::Fragment) {
         true => DrawStage::Compute,
         false => DrawStage::Fragment,
     }
@@ -101,14 +90,18 @@ fn is_exact_default(row: &Row) -> bool {
 }
 
 /// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no more.
-fn mesh_row<'a>(rows: &'a [Row], row: &Row, mesh: Option<Method>) -> Option<&'a Row> {
-    rows.iter()
-        .filter(|r| r.settings.method.is_mesh() && same_picture(r, row) && r.time().is_some())
-        .filter(|r| match mesh {
-            Some(mesh) => r.settings.method == mesh,
-            None => errs_no_more(r, row),
-        })
-        .min_by_key(|r| r.settings.method.quads())
+fn mesh_row<'a>(
+    rows: impl Iterator<Item = &'a Row>,
+    row: &Row,
+    mesh: Option<Method>,
+) -> Option<&'a Row> {
+    let meshes = rows.filter(|r| r.settings.method.is_mesh() && r.picture() == row.picture());
+    let own = meshes.filter(|r| match mesh {
+        Some(mesh) => r.settings.method == mesh,
+        None => errs_no_more(r, row),
+    });
+    let timed = own.filter(|r| r.time().is_some());
+    timed.min_by_key(|r| r.settings.method.quads())
 }
 
 /// A way of drawing over other rows: all pictures of which both have a usable row.
@@ -129,7 +122,6 @@ pub struct Ratio<'a> {
 
 impl Ratio<'_> {
     /// Missed and ghost pixels over the pixels hit, all pictures together.
-    #[must_use]
     pub fn wrong(&self) -> f64 {
         let sum = |f: fn(&Row) -> usize| self.pairs.iter().map(|(a, _)| f(a)).sum::<usize>() as f64;
         sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0)
@@ -137,43 +129,42 @@ impl Ratio<'_> {
 
     /// In how many of the pictures the other row errs no more in depth: only there a ratio of times
     /// is one of equals.
-    #[must_use]
     pub fn no_worse(&self) -> usize {
-        self.pairs
-            .iter()
-            .filter(|(row, other)| errs_no_more(other, row))
-            .count()
+        let exact = |(row, other): &&(&Row, &Row)| errs_no_more(other, row);
+        self.pairs.iter().filter(exact).count()
     }
 }
 
 /// Every way's ratio, those of the fragment stage first; over meshes those of the default
 /// search alone, for each mesh and then for the coarsest that errs no more. Rows whose clocks
 /// disagree count for nothing, and neither do pictures of which the other has no usable row.
-#[must_use]
-pub fn over(rows: &[Row], over: Over) -> Vec<Ratio<'_>> {
-    let all = ways(rows);
+pub fn over<'a>(rows: impl IntoIterator<Item = &'a Row>, over: Over) -> Vec<Ratio<'a>> {
+    let rows: Vec<&Row> = rows.into_iter().collect();
+    // The ways in the order in which they first appear, those of the fragment stage first.
+    let mut ways = grouped(rows.iter().copied(), |r| variant(&r.settings));
+    ways.sort_by_key(|(way, _)| way.stage == DrawStage::Compute);
     if over != Over::Mesh {
-        let of = |way: &MethodSettings| of_way(rows, way, None, |row| over.of(rows, row));
-        return all.iter().filter_map(of).collect();
+        let other = |row: &Row| over.of(&rows, row);
+        let ways = ways.iter();
+        let all = ways.filter_map(|(way, own)| of_way(way, own, None, other));
+        return all.collect();
     }
-    let meshes: Vec<Method> = all
-        .iter()
-        .map(|w| w.method)
-        .filter(|m| m.is_mesh())
-        .collect();
-    let none = (!meshes.is_empty()).then_some(None);
-    let rivals: Vec<Option<Method>> = meshes.into_iter().map(Some).chain(none).collect();
-    let ours = all.iter().filter(|w| w.method == Method::DEFAULT);
-    let of = |way| {
-        let against =
-            move |mesh: &Option<Method>| of_way(rows, way, *mesh, |row| mesh_row(rows, row, *mesh));
-        rivals.iter().filter_map(against).collect::<Vec<_>>()
-    };
-    ours.flat_map(of).collect()
+    let meshes = ways.iter().map(|w| w.0.method).filter(|m| m.is_mesh());
+    let mut rivals: Vec<Option<Method>> = meshes.map(Some).collect();
+    if !rivals.is_empty() {
+        rivals.push(None);
+    }
+    let ours = ways.iter().filter(|w| w.0.method == Method::DEFAULT);
+    let pairs = ours.flat_map(|way| rivals.iter().map(move |mesh| (way, *mesh)));
+    let ratios = pairs.filter_map(|((way, own), mesh)| {
+        of_way(way, own, mesh, |row| {
+            mesh_row(rows.iter().copied(), row, mesh)
+        })
+    });
+    ratios.collect()
 }
 
 /// The geometric mean of the times of rows, ms, with its interval over the passes that all have.
-#[must_use]
 pub fn mean_ms(rows: &[&Row]) -> Option<Interval> {
     let medians: Vec<Vec<f64>> = rows.iter().map(|r| r.pass_medians()).collect();
     let passes = medians.iter().map(Vec::len).min()?;
@@ -190,36 +181,19 @@ fn errs_no_more(row: &Row, other: &Row) -> bool {
     p99(row).zip(p99(other)).is_some_and(|(a, b)| a <= b)
 }
 
-/// The ways of drawing, in the order in which they first appear.
-pub(super) fn ways(rows: &[Row]) -> Vec<MethodSettings> {
-    let mut ways: Vec<MethodSettings> = Vec::new();
-    for way in rows.iter().map(|row| variant(&row.settings)) {
-        if !ways.contains(&way) {
-            ways.push(way);
-        }
-    }
-    // Those of the fragment stage first.
-    ways.sort_by_key(|way| way.stage == DrawStage::Compute);
-    ways
-}
-
 /// A way over the row that `other` gives for each of its rows.
 fn of_way<'a>(
-    rows: &'a [Row],
     way: &MethodSettings,
+    own: &[&'a Row],
     mesh: Option<Method>,
     other: impl Fn(&Row) -> Option<&'a Row>,
 ) -> Option<Ratio<'a>> {
-    let own = rows
-        .iter()
-        .filter(|r| variant(&r.settings) == *way && r.time().is_some());
+    let own = own.iter().copied().filter(|r| r.time().is_some());
     let pairs: Vec<(&Row, &Row)> = own.filter_map(|row| Some((row, other(row)?))).collect();
     let passes = pairs.first()?.0.passes.len();
     let in_pass = |pass: usize| -> Vec<f64> {
-        pairs
-            .iter()
-            .filter_map(|(a, b)| paired(a, b, pass))
-            .collect()
+        let logs = pairs.iter().filter_map(|(a, b)| paired(a, b, pass));
+        logs.collect()
     };
     // A pass that was ended early holds fewer pictures and would compare others.
     let whole = |logs: &Vec<f64>| logs.len() == pairs.len();
@@ -239,47 +213,30 @@ fn of_way<'a>(
 /// The time of a row above the floor of its picture and stage, ms: the floor at its tolerance, if
 /// that was measured, else the exact one. `None` where the floor is not known, and of the floor
 /// itself.
-#[must_use]
-pub fn above_floor(rows: &[Row], row: &Row) -> Option<f64> {
-    let of_this = |r: &&Row| {
-        r.settings.method == Method::Floor
-            && same_picture(r, row)
-            && r.settings.stage == row.settings.stage
-    };
-    let alike = |r: &&Row| r.settings.tolerance == row.settings.tolerance;
-    let mut floors = rows.iter().filter(of_this);
-    let floor = floors.clone().find(alike).or_else(|| floors.next())?;
+pub fn above_floor<'a>(rows: impl IntoIterator<Item = &'a Row>, row: &Row) -> Option<f64> {
+    let key = |r: &Row| (r.picture(), r.settings.stage);
+    let of_this = |r: &&Row| r.settings.method == Method::Floor && key(r) == key(row);
+    let floors = rows.into_iter().filter(of_this);
+    // The first of the least: that of the same tolerance, or the first of all.
+    let floor = floors.min_by_key(|r| r.settings.tolerance != row.settings.tolerance)?;
     let above = row.time()?.value - floor.time()?.value;
     (row.settings.method != Method::Floor).then_some(above)
 }
 
-/// True if two rows show the same view at the same size.
-fn same_picture(a: &Row, b: &Row) -> bool {
-    let key = |r: &Row| (r.view, r.settings.width, r.settings.height);
-    key(a) == key(b)
-}
-
 /// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot
 /// be trusted.
-#[must_use]
 pub fn between(a: &Row, b: &Row) -> Option<Interval> {
     a.time().and(b.time())?;
     let passes = a.passes.len().min(b.passes.len());
-    let ratios: Vec<f64> = (0..passes)
-        .filter_map(|pass| paired(a, b, pass))
-        .map(f64::exp)
-        .collect();
-    stats::geometric(&ratios)
+    let logs = (0..passes).filter_map(|pass| paired(a, b, pass));
+    stats::geometric(&logs.map(f64::exp).collect::<Vec<_>>())
 }
 
 /// Logarithm of the median ratio of samples that were taken in the same round.
 fn paired(a: &Row, b: &Row, pass: usize) -> Option<f64> {
     let (a, b) = (a.passes.get(pass)?, b.passes.get(pass)?);
-    let logs: Vec<f64> = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| (Row::sample_ms(a) / Row::sample_ms(b)).ln())
-        .collect();
+    let log = |(a, b): (&Sample, &Sample)| (a.ms() / b.ms()).ln();
+    let logs: Vec<f64> = a.iter().zip(b).map(log).collect();
     stats::median(&logs).filter(|v| v.is_finite())
 }
 

@@ -1,18 +1,18 @@
 //! The report of a run: its tables and charts as a page, as files beside it, and as text.
 
-use super::columns::{COLUMNS, Context};
-use super::exhibit::{self, Exhibit, Extra};
-use super::findings::{findings, unresolved};
+use super::columns::{self, COLUMNS, Column, Context};
+use super::exhibit::{self, Exhibit};
 use super::flight::{self, FlightTimes};
 use super::folder::{excluded, keep_figure, write_text};
 use super::glossary;
 use super::machine::Machine;
+use super::map_error::MapError;
 use super::measure::Measured;
 use super::names::number;
 use super::page::Page;
 use super::pictures::{Album, heat_key};
 use super::places::{Place, places};
-use super::plan::{Plan, PlanFile, variant};
+use super::plan::{Plan, PlanFile};
 use super::ratios::Over;
 use super::row::{CLOCKS_APART, Row};
 use super::series_style::SeriesStyles;
@@ -34,186 +34,43 @@ pub struct Run<'a> {
     pub album: &'a Album,
     /// Flights.
     pub flights: &'a [FlightTimes],
-    /// Figures in charts that are not rows.
-    pub extra: Extra,
+    /// Errors of maps alone.
+    pub maps: &'a [MapError],
 }
 
 impl Run<'_> {
-    fn context(&self) -> Context<'_> {
-        Context {
-            rows: &self.measured.rows,
-            plan: self.plan,
-            styles: SeriesStyles::of(&self.measured.rows),
-            device: &self.machine.device,
-            driver: &self.machine.driver,
-            resolved: self.file.time.resolved,
-        }
-    }
-
     /// Writes the page, the charts and the tables that are files; returns the text of the tables
     /// that are printed.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<String> {
-        let context = self.context();
+        let rows: Vec<&Row> = self.measured.rows.iter().collect();
+        let resolved = self.file.time.resolved;
+        let context = Context::new(&rows, self.plan, self.machine, resolved);
         let mut page = Page::new(self.file.title.as_str());
-        findings(&mut page, &context);
-        if let Some(note) = unresolved(&context) {
+        let findings = exhibit::findings(&context).into_iter();
+        findings.for_each(|found| page.lead(found));
+        if let Some(note) = exhibit::unresolved(&context) {
             page.note(&note);
         }
         if self.measured.interrupted {
             page.note("The run was interrupted: what is missing below was not measured.");
         }
         let exhibits = exhibit::all(&self.file.exhibit)?;
-        let mut text = String::new();
-        let mut began = None;
-        for name in &self.file.show {
-            let Some(exhibit) = exhibits.iter().find(|e| e.name == *name) else {
-                continue;
-            };
-            if let Some(chapter) = &exhibit.chapter {
-                began = Some((chapter.clone(), &exhibit.text));
-            }
-            text += &self.show(&context, exhibit, &mut page, &mut began, folder)?;
+        let named = |name: &String| exhibits.iter().find(|e| e.name == *name);
+        let mut writer = Writer {
+            run: self,
+            folder,
+            page,
+            text: String::new(),
+            chapter: None,
+            heading: None,
+        };
+        for exhibit in self.file.show.iter().filter_map(named) {
+            writer.show(&context, exhibit)?;
         }
+        let Writer { mut page, text, .. } = writer;
         self.end(&mut page);
         write_text(&folder.join("report.html"), &page.html())?;
         Ok(text)
-    }
-
-    /// Writes one exhibit; its chapter begins with the first thing that there is to show.
-    fn show(
-        &self,
-        context: &Context,
-        exhibit: &Exhibit,
-        page: &mut Page,
-        began: &mut Option<(String, &Vec<String>)>,
-        folder: &Path,
-    ) -> Result<String> {
-        let mut begin = |page: &mut Page| {
-            if let Some((chapter, paragraphs)) = began.take() {
-                page.chapter(&chapter);
-                paragraphs.iter().for_each(|p| page.text(p));
-            }
-        };
-        if exhibit.name == "shots" {
-            if !self.album.shots.is_empty() {
-                begin(page);
-                shots(page, self.plan, self.album);
-            }
-            return Ok(String::new());
-        }
-        let rows = exhibit.rows(context);
-        if rows.is_empty() {
-            return Ok(String::new());
-        }
-        // Names say what differs among these rows, and no more.
-        let ways: Vec<_> = rows.iter().map(|r| variant(&r.settings)).collect();
-        let context = &Context {
-            styles: SeriesStyles::new(&ways),
-            ..*context
-        };
-        if exhibit.chart.is_empty() && exhibit.table.is_empty() {
-            begin(page);
-        }
-        let mut text = String::new();
-        for place in places(context, &rows, exhibit.per) {
-            let mut heading = place.heading.clone();
-            let mut head = |page: &mut Page| {
-                begin(page);
-                if let Some(heading) = heading.take() {
-                    page.heading(&capital(&heading));
-                }
-            };
-            for (k, answer) in exhibit.answers(context, &place.rows).iter().enumerate() {
-                if k == 0 {
-                    text += &place.above(exhibit);
-                }
-                head(page);
-                page.text(answer);
-                text += &format!("{answer}\n\n");
-            }
-            for chart in &exhibit.chart {
-                self.chart(context, chart, &place, page, &mut head, folder)?;
-            }
-            for table in &exhibit.table {
-                text += &self.table(context, exhibit, table, &place, page, &mut head, folder)?;
-            }
-        }
-        Ok(text)
-    }
-
-    fn chart(
-        &self,
-        context: &Context,
-        chart: &exhibit::Chart,
-        place: &Place,
-        page: &mut Page,
-        head: &mut dyn FnMut(&mut Page),
-        folder: &Path,
-    ) -> Result<()> {
-        let mut own = chart.clone();
-        own.title = place.fill(&chart.title);
-        own.guide = place.fill(&chart.guide);
-        let figures = own.figures(context, &place.rows, &self.extra)?;
-        for (k, figure) in figures.iter().enumerate() {
-            let mut name = place.fill(&chart.file);
-            if k > 0 {
-                name += &format!("-{}", k + 1);
-            }
-            keep_figure(folder, &name, figure)?;
-            head(page);
-            let mut caption = place.fill(&chart.caption);
-            if chart.is_timed() {
-                caption += &place.untimed();
-            }
-            page.figure(figure, &caption);
-        }
-        Ok(())
-    }
-
-    /// Writes a table; returns its text if it is printed.
-    #[allow(clippy::too_many_arguments)]
-    fn table(
-        &self,
-        context: &Context,
-        exhibit: &Exhibit,
-        table: &exhibit::Table,
-        place: &Place,
-        page: &mut Page,
-        head: &mut dyn FnMut(&mut Page),
-        folder: &Path,
-    ) -> Result<String> {
-        let shown = match table.of {
-            exhibit::Records::Flights => flight::table(self.flights),
-            _ => table.shown(context, &place.rows)?,
-        };
-        if shown.records.is_empty() {
-            let missing = table.print && table.over == Some(Over::Baseline);
-            let heading = place.heading.as_ref().filter(|_| missing);
-            let text = |h| format!("{h}\n\nno ratios: no usable row of the RBM baseline\n\n");
-            return Ok(heading.map(text).unwrap_or_default());
-        }
-        head(page);
-        if !table.heading.is_empty() {
-            page.heading(&table.heading);
-        }
-        page.table(&shown, &exhibit::left(&shown));
-        if let Some(file) = &table.csv {
-            let table = context.file(&place.rows, &table.columns)?;
-            write_text(&folder.join(file), &table.csv())?;
-        }
-        if !table.print {
-            return Ok(String::new());
-        }
-        let above = match (table.heading.is_empty(), exhibit.question) {
-            (false, _) => format!("{}\n\n", table.heading),
-            (true, None) => place.above(exhibit),
-            // The answer has it above.
-            (true, Some(_)) => String::new(),
-        };
-        Ok(format!("{above}{}\n", shown.aligned()))
     }
 
     /// The end of every page: methods, excluded rows, the machine and how it was measured, columns.
@@ -230,12 +87,14 @@ impl Run<'_> {
         }
         page.chapter("How this was measured");
         page.facts(&self.machine.lines());
-        let samples = measured.rows.iter().map(|r| r.frame_ms().len());
-        let passes = || measured.rows.iter().map(|r| r.passes.len());
-        let (least, most) = (passes().min().unwrap_or(0), passes().max().unwrap_or(0));
-        let passes = match least == most {
-            true => least.to_string(),
-            false => format!("{least} to {most}"),
+        let ends = |of: fn(&Row) -> usize| {
+            let all = || measured.rows.iter().map(of);
+            (all().min().unwrap_or(0), all().max().unwrap_or(0))
+        };
+        let (fewest, most) = ends(|row| row.frame_ms().len());
+        let passes = match ends(|row| row.passes.len()) {
+            (least, most) if least == most => least.to_string(),
+            (least, most) => format!("{least} to {most}"),
         };
         let wide = 100.0 * self.file.time.resolved;
         let limit = self.file.time.limit().as_secs_f64();
@@ -248,11 +107,9 @@ impl Run<'_> {
         };
         page.text(&format!(
             "All ways of drawing one picture are drawn in turn, one frame each and there and back, so that a machine that slows down slows all of them; drivers' compilers \
-             run before the first frame that counts. This is repeated in {passes} passes over all pictures, each with maps, buffers and pipelines made anew; {} to {} \
+             run before the first frame that counts. This is repeated in {passes} passes over all pictures, each with maps, buffers and pipelines made anew; {fewest} to {most} \
              frames of each row were timed in {} s. A time is the geometric mean of the passes' medians, its interval Student's over the passes, with 95 % confidence: it covers how this \
              run would have come out again on this machine, not how another machine would. A time whose interval reaches more than {wide:.0} % to either side is not resolved.{added}",
-            samples.clone().min().unwrap_or(0),
-            samples.max().unwrap_or(0),
             number(measured.took.as_secs_f64(), 3),
         ));
         page.text(&format!(
@@ -264,15 +121,142 @@ impl Run<'_> {
         page.text("Errors are against the double-precision reference on the CPU, which shares no code with the shaders, unless the page says otherwise.");
         page.chapter("Columns");
         page.text("Headings of tables, names in files, and what they mean.");
-        let name = |c: &super::columns::Column| match c.name == c.heading {
-            true => c.name.to_owned(),
-            false => format!("{}, {}", c.heading, c.name),
+        let fact = |c: &Column| match c.name == c.heading {
+            true => (c.name.to_owned(), c.meaning.to_owned()),
+            false => (format!("{}, {}", c.heading, c.name), c.meaning.to_owned()),
         };
-        let facts: Vec<_> = COLUMNS
-            .iter()
-            .map(|c| (name(c), c.meaning.to_owned()))
-            .collect();
-        page.facts(&facts);
+        page.facts(&COLUMNS.iter().map(fact).collect::<Vec<_>>());
+    }
+}
+
+/// A page in the making, and the text that is printed.
+struct Writer<'a> {
+    run: &'a Run<'a>,
+    folder: &'a Path,
+    page: Page,
+    text: String,
+    /// A chapter and its paragraphs, and a heading: they begin with the first thing to show.
+    chapter: Option<(&'a str, &'a [String])>,
+    heading: Option<String>,
+}
+
+impl<'a> Writer<'a> {
+    /// Writes what begins here.
+    fn begin(&mut self) {
+        if let Some((chapter, paragraphs)) = self.chapter.take() {
+            self.page.chapter(chapter);
+            paragraphs.iter().for_each(|p| self.page.text(p));
+        }
+        if let Some(heading) = self.heading.take() {
+            self.page.heading(&capital(&heading));
+        }
+    }
+
+    /// Writes one exhibit.
+    fn show(&mut self, context: &Context, exhibit: &'a Exhibit) -> Result<()> {
+        self.heading = None;
+        if let Some(chapter) = &exhibit.chapter {
+            self.chapter = Some((chapter, &exhibit.text));
+        }
+        if exhibit.name == "shots" {
+            if !self.run.album.shots.is_empty() {
+                self.begin();
+                shots(&mut self.page, self.run.plan, self.run.album);
+            }
+            return Ok(());
+        }
+        let rows = exhibit.rows(context);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        // Names say what differs among these rows, and no more.
+        let context = &Context {
+            styles: SeriesStyles::of(&rows),
+            ..*context
+        };
+        if exhibit.chart.is_empty() && exhibit.table.is_empty() {
+            self.begin();
+        }
+        for place in places(context, &rows, exhibit.per) {
+            self.heading.clone_from(&place.heading);
+            let answers = exhibit.answers(context, &place.rows);
+            if !answers.is_empty() {
+                self.begin();
+                self.text += &place.above(exhibit);
+            }
+            for answer in answers {
+                self.page.text(&answer);
+                self.text += &format!("{answer}\n\n");
+            }
+            for chart in &exhibit.chart {
+                self.chart(context, chart, &place)?;
+            }
+            for table in &exhibit.table {
+                self.table(context, exhibit, table, &place)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn chart(&mut self, context: &Context, chart: &exhibit::Chart, place: &Place) -> Result<()> {
+        let mut own = chart.clone();
+        own.title = place.fill(&chart.title);
+        own.guide = place.fill(&chart.guide);
+        let mut caption = place.fill(&chart.caption);
+        if chart.is_timed() {
+            caption += &place.untimed();
+        }
+        let figures = own.figures(context, &place.rows, self.run.maps)?;
+        for (k, figure) in figures.iter().enumerate() {
+            let mut name = place.fill(&chart.file);
+            if k > 0 {
+                name += &format!("-{}", k + 1);
+            }
+            keep_figure(self.folder, &name, figure)?;
+            self.begin();
+            self.page.figure(figure, &caption);
+        }
+        Ok(())
+    }
+
+    fn table(
+        &mut self,
+        context: &Context,
+        exhibit: &Exhibit,
+        table: &exhibit::Table,
+        place: &Place,
+    ) -> Result<()> {
+        let shown = match table.of {
+            exhibit::Records::Flights => flight::table(self.run.flights),
+            _ => table.shown(context, &place.rows)?,
+        };
+        if shown.records.is_empty() {
+            let missing = table.print && table.over == Some(Over::Baseline);
+            if let Some(heading) = place.heading.as_ref().filter(|_| missing) {
+                let none = "no ratios: no usable row of the RBM baseline";
+                self.text += &format!("{heading}\n\n{none}\n\n");
+            }
+            return Ok(());
+        }
+        self.begin();
+        if !table.heading.is_empty() {
+            self.page.heading(&table.heading);
+        }
+        self.page.table(&shown, &exhibit::left(&shown));
+        if let Some(file) = &table.csv {
+            let table = context.file(&place.rows, &table.columns)?;
+            write_text(&self.folder.join(file), &table.csv())?;
+        }
+        if table.print {
+            self.text += &match (table.heading.is_empty(), exhibit.question) {
+                (false, _) => format!("{}\n\n", table.heading),
+                (true, None) => place.above(exhibit),
+                // The answer has it above.
+                (true, Some(_)) => String::new(),
+            };
+            self.text += &format!("{}\n", shown.aligned());
+        }
+        Ok(())
     }
 }
 
@@ -286,9 +270,8 @@ fn shots(page: &mut Page, plan: &Plan, album: &Album) {
         }
         page.heading(&view.name);
         let (first, rest) = shots.split_at(1);
-        page.shots(first);
-        if !rest.is_empty() {
-            page.shots(rest);
+        for shots in [first, rest].into_iter().filter(|s| !s.is_empty()) {
+            page.shots(shots);
         }
     }
 }
@@ -301,18 +284,8 @@ fn capital(words: &str) -> String {
 }
 
 /// `results.csv`: one record a row.
-///
-/// # Errors
-/// A column of this name does not exist.
 pub fn results(rows: &[Row], plan: &Plan, machine: &Machine, resolved: f64) -> Result<Table> {
-    let context = Context {
-        rows,
-        plan,
-        styles: SeriesStyles::of(rows),
-        device: &machine.device,
-        driver: &machine.driver,
-        resolved,
-    };
-    let names: Vec<&str> = super::columns::results().collect();
-    context.file(&rows.iter().collect::<Vec<_>>(), &names)
+    let rows: Vec<&Row> = rows.iter().collect();
+    let context = Context::new(&rows, plan, machine, resolved);
+    context.file(&rows, &columns::results().collect::<Vec<_>>())
 }

@@ -21,6 +21,13 @@ pub struct Sample {
     pub frame_ms: f64,
 }
 
+impl Sample {
+    /// Its time: by the device's clock where there is one, else by the wall clock.
+    pub fn ms(&self) -> f64 {
+        self.gpu_ms.unwrap_or(self.frame_ms)
+    }
+}
+
 /// Look-ups over the pixels in which the search ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Steps {
@@ -37,14 +44,9 @@ pub struct Steps {
 impl Steps {
     /// Look-ups of a frame. Pixels in which no look-up was made do not count: they are not covered by any
     /// box.
-    #[must_use]
     pub fn of(frame: &Frame) -> Self {
-        let steps: Vec<f64> = frame
-            .steps
-            .iter()
-            .filter(|s| **s > 0.0)
-            .map(|s| f64::from(*s))
-            .collect();
+        let looked = frame.steps.iter().filter(|s| **s > 0.0);
+        let steps: Vec<f64> = looked.map(|s| f64::from(*s)).collect();
         Self {
             mean: steps.iter().sum::<f64>() / steps.len().max(1) as f64,
             p99: stats::quantile(&steps, 0.99).unwrap_or(0.0),
@@ -114,11 +116,12 @@ pub struct Row {
 
 impl Row {
     /// A row of which the accuracy is known, and no time yet.
-    #[must_use]
     pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
         let objects = &view.scene.objects;
         let settings = case.settings;
         let searched = !settings.method.is_mesh();
+        let own = || one(objects.iter().map(|o| o.map_rows));
+        let rows = settings.map_rows.or_else(own);
         Self {
             view: case.view,
             scene: view.name.clone(),
@@ -126,10 +129,7 @@ impl Row {
             technique: view.technique(),
             offset: view.offset(),
             settings,
-            map_rows: settings
-                .map_rows
-                .or_else(|| one(objects.iter().map(|o| o.map_rows)))
-                .filter(|_| searched),
+            map_rows: rows.filter(|_| searched),
             source: searched.then(|| settings.map_source.unwrap_or_default()),
             shadow: view.scene.shadow,
             solids: view.solids(),
@@ -144,58 +144,50 @@ impl Row {
         }
     }
 
+    /// The picture that it shows: a view at a size.
+    pub fn picture(&self) -> (usize, u32, u32) {
+        (self.view, self.settings.width, self.settings.height)
+    }
+
     /// The share of the picture's pixels in which the reference hits, 0 to 1.
-    #[must_use]
     pub fn covered(&self) -> f64 {
         self.errors.hits as f64 / self.errors.pixels.max(1) as f64
     }
 
     /// Pixels across and down, as `800x600`.
-    #[must_use]
     pub fn size(&self) -> String {
         format!("{}x{}", self.settings.width, self.settings.height)
     }
 
     /// Errors of the surface; the floor's picture has none to err from.
-    #[must_use]
     pub fn surface(&self) -> Option<&Comparison> {
         (self.settings.method != Method::Floor).then_some(&self.errors)
     }
 
     /// True if the time is known to within `most`, half the width of its interval over the value.
-    #[must_use]
     pub fn resolved(&self, most: f64) -> bool {
         self.time().is_some_and(|t| t.relative() <= most)
     }
 
     /// The bound on steps.
-    #[must_use]
     pub fn max_steps(&self) -> u32 {
-        self.settings.max_steps.unwrap_or_else(|| {
-            self.settings
-                .method
-                .default_steps(self.offset.is_some_and(|o| o.bevel != 0.0))
-        })
+        let beveled = self.offset.is_some_and(|o| o.bevel != 0.0);
+        let own = self.settings.method.default_steps(beveled);
+        self.settings.max_steps.unwrap_or(own)
     }
 
     /// All samples of the device's clock, ms; empty where it has none.
-    #[must_use]
     pub fn gpu_ms(&self) -> Vec<f64> {
-        self.passes
-            .iter()
-            .flatten()
-            .filter_map(|s| s.gpu_ms)
-            .collect()
+        let samples = self.passes.iter().flatten();
+        samples.filter_map(|s| s.gpu_ms).collect()
     }
 
     /// All samples of the wall clock, ms.
-    #[must_use]
     pub fn frame_ms(&self) -> Vec<f64> {
         self.passes.iter().flatten().map(|s| s.frame_ms).collect()
     }
 
     /// Agreement of the two clocks.
-    #[must_use]
     pub fn clocks(&self) -> Clocks {
         let Some(gpu_ms) = self.typical(|s| s.gpu_ms) else {
             return Clocks::Wall;
@@ -208,16 +200,9 @@ impl Row {
         }
     }
 
-    /// One sample's time: by the device's clock where there is one, else by the wall clock.
-    #[must_use]
-    pub fn sample_ms(sample: &Sample) -> f64 {
-        sample.gpu_ms.unwrap_or(sample.frame_ms)
-    }
-
     /// The median of each pass, ms.
-    #[must_use]
     pub fn pass_medians(&self) -> Vec<f64> {
-        self.medians(|s| Some(Self::sample_ms(s)))
+        self.medians(|s| Some(s.ms()))
     }
 
     /// The geometric mean of the passes' medians of one clock, ms.
@@ -233,7 +218,6 @@ impl Row {
 
     /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was
     /// timed.
-    #[must_use]
     pub fn time(&self) -> Option<Interval> {
         match self.clocks() {
             Clocks::Disagree { .. } => None,
@@ -243,7 +227,7 @@ impl Row {
 }
 
 /// The value that all have, if they do.
-fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
+pub(super) fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
     let first = all.next()?;
     all.all(|other| other == first).then_some(first)
 }

@@ -3,7 +3,7 @@
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::chart::xy::Guide;
-use super::plan::{Labels, is_rbm_baseline, variant};
+use super::plan::{Labels, is_rbm_baseline};
 use super::row::Row;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
@@ -15,20 +15,20 @@ use revmap_files::{BINARY, COVERAGE};
 fn search(method: Method) -> Style {
     let (color, marker, dash) = match method {
         Method::Search(Solver::Other(search)) => match search.name {
-            "linear" => (color::GREY, Marker::Left, Dash::Dots),
-            "relief" => (color::GREY, Marker::Right, Dash::Short),
-            "secant" => (color::GREY, Marker::Star, Dash::DashDot),
-            "circle" => (color::ORANGE, Marker::Plus, Dash::Dots),
-            "cone" => (color::PURPLE, Marker::Cross, Dash::Short),
-            "relaxed" => (color::PURPLE, Marker::Hexagram, Dash::Dots),
-            _ => (color::PURPLE, Marker::Diamond, Dash::Long),
+            "linear" => (color::GREY, Marker::LEFT, Dash::DOTS),
+            "relief" => (color::GREY, Marker::RIGHT, Dash::SHORT),
+            "secant" => (color::GREY, Marker::STAR, Dash::DASH_DOT),
+            "circle" => (color::ORANGE, Marker::PLUS, Dash::DOTS),
+            "cone" => (color::PURPLE, Marker::CROSS, Dash::SHORT),
+            "relaxed" => (color::PURPLE, Marker::HEXAGRAM, Dash::DOTS),
+            _ => (color::PURPLE, Marker::DIAMOND, Dash::LONG),
         },
-        Method::Search(Solver::Live) => (color::SKY, Marker::Up, Dash::DashDot),
-        Method::Search(Solver::Quadric) => (color::GREEN, Marker::Down, Dash::Long),
-        Method::Search(Solver::Exact) => (color::VERMILION, Marker::Disk, Dash::Solid),
-        Method::MeshLevels => (color::BLUE, Marker::Cross, Dash::Long),
-        Method::Mesh { .. } => (color::BLUE, Marker::Square, Dash::Solid),
-        Method::Floor => (color::BLACK, Marker::Plus, Dash::Solid),
+        Method::Search(Solver::Live) => (color::SKY, Marker::UP, Dash::DASH_DOT),
+        Method::Search(Solver::Quadric) => (color::GREEN, Marker::DOWN, Dash::LONG),
+        Method::Search(Solver::Exact) => (color::VERMILION, Marker::DISK, Dash::SOLID),
+        Method::MeshLevels => (color::BLUE, Marker::CROSS, Dash::LONG),
+        Method::Mesh { .. } => (color::BLUE, Marker::SQUARE, Dash::SOLID),
+        Method::Floor => (color::BLACK, Marker::PLUS, Dash::SOLID),
     };
     Style {
         dash,
@@ -38,49 +38,35 @@ fn search(method: Method) -> Style {
 }
 
 /// How a way of drawing looks: filled in the fragment stage, hollow in the compute stage.
-#[must_use]
 pub fn style(s: &MethodSettings) -> Style {
-    let look = if is_rbm_baseline(s) {
-        Style::new(color::BLACK, Marker::Diamond)
-    } else {
-        search(s.method)
+    let mut look = match is_rbm_baseline(s) {
+        true => Style::new(color::BLACK, Marker::DIAMOND),
+        false => search(s.method),
     };
-    Style {
-        filled: s.stage != DrawStage::Compute,
-        ..look
-    }
+    look.filled = s.stage != DrawStage::Compute;
+    look
 }
 
 /// The line of the floor's time in a chart over times: solid in the fragment stage, dotted in
 /// compute.
-#[must_use]
 pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
-    let dash = if s.stage == DrawStage::Compute {
-        Dash::Dots
-    } else {
-        Dash::Solid
+    // Over every axis of errors.
+    let points = vec![(time, 1e-12), (time, 1e12)];
+    let mut line = Guide::dashed(&format!("floor, {}", s.stage.name()), points);
+    line.dash = match s.stage {
+        DrawStage::Compute => Dash::DOTS,
+        DrawStage::Fragment => Dash::SOLID,
     };
-    Guide {
-        dash,
-        // Over every axis of errors.
-        ..Guide::dashed(
-            &format!("floor, {}", s.stage.name()),
-            vec![(time, 1e-12), (time, 1e12)],
-        )
-    }
+    line
 }
 
 /// How a source of distances looks, in charts that compare sources.
-#[must_use]
 pub fn of_source(source: MapSource) -> Style {
-    let (color, marker) = if source == BINARY {
-        (color::BLACK, Marker::Square)
-    } else if source == COVERAGE {
-        (color::BLUE, Marker::Disk)
-    } else {
-        (color::VERMILION, Marker::Up)
-    };
-    Style::new(color, marker)
+    match source {
+        _ if source == BINARY => Style::new(color::BLACK, Marker::SQUARE),
+        _ if source == COVERAGE => Style::new(color::BLUE, Marker::DISK),
+        _ => Style::new(color::VERMILION, Marker::UP),
+    }
 }
 
 /// Names and looks of the ways of drawing that one report holds.
@@ -94,7 +80,6 @@ pub struct SeriesStyles {
 impl SeriesStyles {
     /// The styles of these ways. One search in several ways, by its steps or its maps, keeps its
     /// colour and takes the next marker that is free; meshes are alike.
-    #[must_use]
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
         let labels = Labels::new(settings.clone());
         let mut ways: Vec<(String, Style)> = Vec::new();
@@ -108,42 +93,35 @@ impl SeriesStyles {
                 ..*s
             });
             let free = |marker: &Marker| {
-                let taken = |known: &Style| (known.color, known.marker) == (wanted.color, *marker);
+                let taken = |k: &Style| (k.color, k.marker) == (wanted.color, *marker);
                 !ways.iter().any(|(_, known)| taken(known))
             };
-            let own = std::iter::once(wanted.marker);
+            let mut all = std::iter::once(wanted.marker).chain(Marker::ALL);
             // Meshes differ by their names alone.
-            let marker = (own.chain(Marker::ALL).find(free))
-                .filter(|_| !s.method.is_mesh())
-                .unwrap_or(wanted.marker);
+            let marker = all.find(|m| s.method.is_mesh() || free(m));
+            let marker = marker.unwrap_or(wanted.marker);
             ways.push((way, Style { marker, ..wanted }));
         }
         Self { labels, ways }
     }
 
     /// The styles of the ways in which rows were drawn.
-    #[must_use]
-    pub fn of(rows: &[Row]) -> Self {
-        let ways: Vec<MethodSettings> = rows.iter().map(|r| variant(&r.settings)).collect();
-        Self::new(&ways)
+    pub fn of(rows: &[&Row]) -> Self {
+        Self::new(rows.iter().map(|r| &r.settings))
     }
 
     /// The name of a way, without its stage.
-    #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
         self.labels.way(s)
     }
 
     /// How it looks.
-    #[must_use]
     pub fn style(&self, s: &MethodSettings) -> Style {
         let way = self.labels.way(s);
         let known = self.ways.iter().find(|(name, _)| *name == way);
-        let own = style(s);
-        Style {
-            marker: known.map_or(own.marker, |(_, look)| look.marker),
-            ..own
-        }
+        let mut own = style(s);
+        own.marker = known.map_or(own.marker, |(_, look)| look.marker);
+        own
     }
 }
 
@@ -158,16 +136,11 @@ mod tests {
     /// All that a chart can hold: every search, the RBM baseline, meshes of seven finenesses.
     fn all() -> Vec<MethodSettings> {
         let base = MethodSettings::default();
-        let mut ways: Vec<MethodSettings> = Method::ALL
-            .iter()
-            .map(|&method| MethodSettings { method, ..base })
-            .collect();
+        let of = |method| MethodSettings { method, ..base };
+        let meshes = [16, 64, 512].map(|n| Method::mesh(n, 2 * n).unwrap());
+        let mut ways: Vec<MethodSettings> = Method::ALL.map(of).to_vec();
         ways.push(rbm_baseline(&spindle(), &base));
-        for segments in [16, 64, 512] {
-            let rings = 2 * segments;
-            let method = Method::Mesh { segments, rings };
-            ways.push(MethodSettings { method, ..base });
-        }
+        ways.extend(meshes.map(of));
         ways
     }
 
@@ -185,10 +158,8 @@ mod tests {
                 let alike = family(s) == family(other);
                 let (a, b) = (style(s), style(other));
                 assert_eq!(a.color == b.color, alike, "{a:?} {b:?}");
-                assert!(
-                    a.marker != b.marker && (!alike || a.dash != b.dash),
-                    "{a:?} {b:?}"
-                );
+                assert!(a.marker != b.marker, "{a:?} {b:?}");
+                assert!(!alike || a.dash != b.dash, "{a:?} {b:?}");
             }
             assert!(color::ALL.contains(&style(s).color));
             assert_eq!(style(s).heavy, s.method == Method::DEFAULT);
@@ -199,7 +170,7 @@ mod tests {
                 let (a, b) = (style(a), style(b));
                 assert_eq!(meshes, (a.color, a.marker) == (b.color, b.marker), "{a:?}");
                 // Guides are dashed as no search is.
-                assert_ne!(a.dash, Dash::Guide);
+                assert_ne!(a.dash, Dash::GUIDE);
             }
         }
         let sources = [BINARY, COVERAGE, MapSource::EXACT].map(of_source);
@@ -212,17 +183,11 @@ mod tests {
         let (whole, few) = (SeriesStyles::new(&ways), SeriesStyles::new(&ways[4..8]));
         for way in &ways[4..8] {
             assert_eq!(whole.style(way), few.style(way));
-            let compute = MethodSettings {
-                stage: DrawStage::Compute,
-                ..*way
-            };
-            assert_eq!(
-                whole.style(&compute),
-                Style {
-                    filled: false,
-                    ..style(way)
-                }
-            );
+            let mut compute = *way;
+            compute.stage = DrawStage::Compute;
+            let mut hollow = style(way);
+            hollow.filled = false;
+            assert_eq!(whole.style(&compute), hollow);
         }
     }
 

@@ -9,9 +9,7 @@
 /// A value with the interval that covers it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The estimate.
     pub value: f64,
-    /// Lower end.
     pub low: f64,
     /// Upper end; `+inf` above a single observation, which says nothing about spread.
     pub high: f64,
@@ -31,14 +29,17 @@ pub enum Verdict {
 }
 
 impl Interval {
+    /// A value and the ends of its interval.
+    pub const fn new(value: f64, low: f64, high: f64) -> Self {
+        Self { value, low, high }
+    }
+
     /// Half the width, relative to the value.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         (self.high - self.low) / (2.0 * self.value)
     }
 
     /// What the ratio of two times says; `resolved`: half the width, relative, that is allowed.
-    #[must_use]
     pub fn verdict(&self, resolved: f64) -> Verdict {
         match (self.relative() <= resolved, self.low, self.high) {
             (false, ..) => Verdict::Unresolved,
@@ -48,15 +49,12 @@ impl Interval {
         }
     }
 
-    /// Both ends, where they are known.
-    #[must_use]
     pub fn ends(&self) -> Option<(f64, f64)> {
         self.high.is_finite().then_some((self.low, self.high))
     }
 }
 
 /// The value below which the share `q` of all lie (nearest rank); `None` of nothing.
-#[must_use]
 pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -65,7 +63,6 @@ pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
 }
 
 /// The middle value, or the mean of the two in the middle; `None` of nothing.
-#[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -90,59 +87,38 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
 /// The geometric mean of positive observations with Student's interval of their logarithms. One
 /// observation has an interval that excludes nothing; `None` of nothing, or of what is not
 /// positive.
-#[must_use]
 pub fn geometric(observations: &[f64]) -> Option<Interval> {
     if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
         return None;
     }
     let logs: Vec<f64> = observations.iter().map(|v| v.ln()).collect();
     let Some((mean, error)) = mean_and_error(&logs) else {
-        return Some(Interval {
-            value: observations[0],
-            low: 0.0,
-            high: f64::INFINITY,
-        });
+        return Some(Interval::new(observations[0], 0.0, f64::INFINITY));
     };
     let reach = student(logs.len() as f64 - 1.0) * error;
-    Some(Interval {
-        value: mean.exp(),
-        low: (mean - reach).exp(),
-        high: (mean + reach).exp(),
-    })
+    let [value, low, high] = [mean, mean - reach, mean + reach].map(f64::exp);
+    Some(Interval::new(value, low, high))
 }
 
 /// The mean of observations with Student's interval; a single one has an interval that excludes
 /// nothing. `None` of nothing.
-#[must_use]
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {
-        return observations.first().map(|&value| Interval {
-            value,
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
-        });
+        let alone = |&value| Interval::new(value, f64::NEG_INFINITY, f64::INFINITY);
+        return observations.first().map(alone);
     };
     let reach = student(observations.len() as f64 - 1.0) * error;
-    Some(Interval {
-        value,
-        low: value - reach,
-        high: value + reach,
-    })
+    Some(Interval::new(value, value - reach, value + reach))
 }
 
 /// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's
 /// interval.
-#[must_use]
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
     let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();
     let (Some((_, ea)), Some((_, eb))) = (mean_and_error(&logs(a)), mean_and_error(&logs(b)))
     else {
-        return Some(Interval {
-            value,
-            low: 0.0,
-            high: f64::INFINITY,
-        });
+        return Some(Interval::new(value, 0.0, f64::INFINITY));
     };
     let (va, vb) = (ea * ea, eb * eb);
     let degrees = if va + vb > 0.0 {
@@ -151,18 +127,13 @@ pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
         1e9
     };
     let reach = (student(degrees) * (va + vb).sqrt()).exp();
-    Some(Interval {
-        value,
-        low: value / reach,
-        high: value * reach,
-    })
+    Some(Interval::new(value, value / reach, value * reach))
 }
 
 /// The factor on the standard error that gives a two-sided 95 % interval with `degrees` of freedom
 /// (Student's t).
 ///
 /// Between the tabled degrees it is interpolated in `1 / degrees`, within 0.5 %.
-#[must_use]
 pub fn student(degrees: f64) -> f64 {
     const TABLE: [(f64, f64); 13] = [
         (1.0, 12.706),
@@ -180,9 +151,8 @@ pub fn student(degrees: f64) -> f64 {
         (1e12, 1.960),
     ];
     let degrees = degrees.clamp(1.0, 1e12);
-    let above = TABLE
-        .partition_point(|(d, _)| *d < degrees)
-        .clamp(1, TABLE.len() - 1);
+    let above = TABLE.partition_point(|(d, _)| *d < degrees);
+    let above = above.clamp(1, TABLE.len() - 1);
     let ((d0, t0), (d1, t1)) = (TABLE[above - 1], TABLE[above]);
     let share = (1.0 / d0 - 1.0 / degrees) / (1.0 / d0 - 1.0 / d1);
     t0 + share * (t1 - t0)
@@ -199,44 +169,31 @@ pub struct PowerLaw {
 
 impl PowerLaw {
     /// Fits positive points; `None` below two different `x`.
-    #[must_use]
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
-        let logs: Vec<(f64, f64)> = points
-            .iter()
-            .filter(|(x, y)| *x > 0.0 && *y > 0.0)
-            .map(|(x, y)| (x.ln(), y.ln()))
-            .collect();
+        let positive = points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0);
+        let logs: Vec<(f64, f64)> = positive.map(|(x, y)| (x.ln(), y.ln())).collect();
         let n = logs.len() as f64;
-        let (mx, my) = logs
-            .iter()
-            .fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+        let mx = logs.iter().map(|l| l.0).sum::<f64>() / n;
+        let my = logs.iter().map(|l| l.1).sum::<f64>() / n;
         let sxx: f64 = logs.iter().map(|(x, _)| (x - mx).powi(2)).sum();
         let sxy: f64 = logs.iter().map(|(x, y)| (x - mx) * (y - my)).sum();
         if logs.len() < 2 || sxx <= 1e-12 {
             return None;
         }
         let slope = sxy / sxx;
-        let residual: f64 = logs
-            .iter()
-            .map(|(x, y)| (y - my - slope * (x - mx)).powi(2))
-            .sum();
-        let reach = if logs.len() > 2 {
-            student(n - 2.0) * (residual / (n - 2.0) / sxx).sqrt()
-        } else {
-            f64::INFINITY
+        let off = logs.iter().map(|(x, y)| y - my - slope * (x - mx));
+        let residual: f64 = off.map(|off| off.powi(2)).sum();
+        let reach = match logs.len() {
+            2 => f64::INFINITY,
+            _ => student(n - 2.0) * (residual / (n - 2.0) / sxx).sqrt(),
         };
         Some(Self {
-            exponent: Interval {
-                value: slope,
-                low: slope - reach,
-                high: slope + reach,
-            },
+            exponent: Interval::new(slope, slope - reach, slope + reach),
             factor: (my - slope * mx).exp(),
         })
     }
 
     /// `y` at `x`.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         self.factor * x.powf(self.exponent.value)
     }
@@ -261,10 +218,8 @@ mod tests {
         assert_eq!(median(&v), Some(2.5));
         assert_eq!(median(&v[..3]), Some(3.0));
         assert_eq!((median(&[]), quantile(&[], 0.5)), (None, None));
-        assert_eq!(
-            (quantile(&v, 0.0), quantile(&v, 0.75), quantile(&v, 0.76)),
-            (Some(1.0), Some(3.0), Some(5.0))
-        );
+        let ranks = [0.0, 0.75, 0.76].map(|q| quantile(&v, q));
+        assert_eq!(ranks, [Some(1.0), Some(3.0), Some(5.0)]);
         let hundred: Vec<f64> = (1..=100).map(f64::from).collect();
         assert_eq!(quantile(&hundred, 0.95), Some(95.0));
     }
@@ -274,23 +229,15 @@ mod tests {
         // Logarithms -0.1, 0, 0.1: mean 0, standard error 0.1 / sqrt 3, two degrees of freedom.
         let i = geometric(&[(-0.1f64).exp(), 1.0, 0.1f64.exp()]).unwrap();
         let reach = 4.303 * 0.1 / 3f64.sqrt();
-        assert!(
-            (i.value - 1.0).abs() < 1e-12
-                && (i.low.ln() + reach).abs() < 1e-9
-                && (i.high.ln() - reach).abs() < 1e-9
-        );
+        assert!((i.value - 1.0).abs() < 1e-12);
+        assert!((i.low.ln() + reach).abs() < 1e-9 && (i.high.ln() - reach).abs() < 1e-9);
         let m = mean(&[1.0, 2.0, 3.0]).unwrap();
         assert!((m.value - 2.0).abs() < 1e-12 && (m.high - 2.0 - 4.303 / 3f64.sqrt()).abs() < 1e-9);
         let one = geometric(&[2.0]).unwrap();
         assert_eq!((one.value, one.high), (2.0, f64::INFINITY));
-        assert_eq!(
-            (
-                geometric(&[]),
-                geometric(&[1.0, 0.0]),
-                geometric(&[1.0, f64::NAN])
-            ),
-            (None, None, None)
-        );
+        for none in [&[][..], &[1.0, 0.0], &[1.0, f64::NAN]] {
+            assert_eq!(geometric(none), None);
+        }
     }
 
     /// 95 % intervals cover the truth in 95 % of many trials, not in 80 and not in 100.
@@ -316,19 +263,11 @@ mod tests {
 
     #[test]
     fn students_factor_between_the_tabled() {
-        for (degrees, t) in [
-            (1.0, 12.706),
-            (9.0, 2.262),
-            (12.0, 2.179),
-            (20.0, 2.086),
-            (60.0, 2.000),
-            (1e15, 1.960),
-        ] {
-            assert!(
-                (student(degrees) / t - 1.0).abs() < 5e-3,
-                "{degrees}: {}",
-                student(degrees)
-            );
+        let degrees = [1.0, 9.0, 12.0, 20.0, 60.0, 1e15];
+        let tabled = [12.706, 2.262, 2.179, 2.086, 2.000, 1.960];
+        for (degrees, t) in degrees.into_iter().zip(tabled) {
+            let found = student(degrees);
+            assert!((found / t - 1.0).abs() < 5e-3, "{degrees}: {found}");
         }
     }
 
@@ -338,21 +277,15 @@ mod tests {
             .map(|x: f64| (x, 3.0 * x.powf(0.75)))
             .to_vec();
         let law = PowerLaw::fit(&exact).unwrap();
-        assert!((law.exponent.value - 0.75).abs() < 1e-12 && (law.factor - 3.0).abs() < 1e-12);
-        assert!(
-            law.exponent.high - law.exponent.low < 1e-6 && (law.at(4.0) - exact[1].1).abs() < 1e-9
-        );
+        let e = law.exponent;
+        assert!((e.value - 0.75).abs() < 1e-12 && (law.factor - 3.0).abs() < 1e-12);
+        assert!(e.high - e.low < 1e-6 && (law.at(4.0) - exact[1].1).abs() < 1e-9);
         let mut bent = exact;
         bent[3].1 *= 1.3;
-        let law = PowerLaw::fit(&bent).unwrap();
-        assert!(
-            law.exponent.low < 0.75
-                && 0.75 < law.exponent.high
-                && law.exponent.high - law.exponent.low > 0.01
-        );
-        assert!(
-            PowerLaw::fit(&bent[..1]).is_none()
-                && PowerLaw::fit(&[(2.0, 1.0), (2.0, 3.0)]).is_none()
-        );
+        let e = PowerLaw::fit(&bent).unwrap().exponent;
+        assert!(e.low < 0.75 && 0.75 < e.high && e.high - e.low > 0.01);
+        for none in [&bent[..1], &[(2.0, 1.0), (2.0, 3.0)]] {
+            assert!(PowerLaw::fit(none).is_none());
+        }
     }
 }

@@ -1,5 +1,5 @@
 //! The table of all outputs: comma-separated values in files, aligned columns on standard output,
-//! rows of a page ([`Page::table`](super::page::Page::table)).
+//! rows of a page (`Page::table`).
 
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;
@@ -13,6 +13,9 @@ pub struct Table {
     pub records: Vec<Vec<String>>,
 }
 
+/// A column's name, and its text for what a record is of.
+pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
 impl Table {
     /// A table with these columns.
     pub fn new(
@@ -25,13 +28,21 @@ impl Table {
         }
     }
 
+    /// A record for each of these.
+    pub(crate) fn of<T>(all: &[T], columns: &[Column<T>]) -> Self {
+        let record = |one| columns.iter().map(|(_, text)| text(one)).collect();
+        Self::new(
+            columns.iter().map(|c| c.0),
+            all.iter().map(record).collect(),
+        )
+    }
+
     /// The header, then the records.
     fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
         std::iter::once(&self.header).chain(&self.records)
     }
 
     /// Its text as comma-separated values (RFC 4180), lines ended by a line feed.
-    #[must_use]
     pub fn csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let written = self.lines().try_for_each(|line| writer.write_record(line));
@@ -41,22 +52,20 @@ impl Table {
     }
 
     /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
-    #[must_use]
     pub fn aligned(&self) -> String {
         let width = |column: usize| {
             let fields = self.lines().filter_map(|line| line.get(column));
             fields.map(|f| f.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        let pad = |(column, (field, &width)): (usize, (&String, &usize))| match column {
+            0 => format!("{field:width$}"),
+            _ => format!("{field:>width$}"),
+        };
         let mut out = String::new();
         for line in self.lines() {
             let fields = line.iter().zip(&widths).enumerate();
-            let padded: Vec<String> = fields
-                .map(|(column, (field, &width))| match column {
-                    0 => format!("{field:width$}"),
-                    _ => format!("{field:>width$}"),
-                })
-                .collect();
+            let padded: Vec<String> = fields.map(pad).collect();
             out += padded.join("  ").trim_end();
             out.push('\n');
         }
@@ -83,43 +92,34 @@ impl Table {
             Ok(header) if !header.is_empty() => header.iter().map(str::to_owned).collect(),
             _ => return fault("is empty".into()),
         };
-        let mut records = Vec::new();
-        for record in reader.records() {
-            match record {
-                Ok(record) => records.push(record.iter().map(str::to_owned).collect()),
-                Err(e) => return fault(e.to_string()),
-            }
+        let owned = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let records = reader.records().map(|record| record.map(owned));
+        match records.collect() {
+            Ok(records) => Ok(Self { header, records }),
+            Err(e) => fault(e.to_string()),
         }
-        Ok(Self { header, records })
     }
 
     /// Reads a file of comma-separated values.
-    ///
-    /// # Errors
-    /// See [`Table::parse`]; also when the file cannot be read.
     pub fn load(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(|e| {
-            Error::new(
-                ErrorKind::File,
-                format!("cannot be read ({e}); give a folder that `revmap bench` wrote"),
-            )
-            .in_file(file)
-        })?;
-        Self::parse(&text).map_err(|e| e.in_file(file))
+        Self::parse(&text_of(file)?).map_err(|e| e.in_file(file))
     }
 
     /// The place of a column.
-    ///
-    /// # Errors
-    /// [`ErrorKind::File`] when there is none of this name.
     pub fn column(&self, name: &str) -> Result<usize> {
         self.header.iter().position(|n| n == name).ok_or_else(|| {
-            Error::new(
-                ErrorKind::File,
-                format!("has no column `{name}`; write it again with `revmap bench`"),
-            )
+            let message = format!("has no column `{name}`; write it again with `revmap bench`");
+            Error::new(ErrorKind::File, message)
         })
     }
+}
+
+/// The text of a run's file.
+pub(super) fn text_of(file: &Path) -> Result<String> {
+    std::fs::read_to_string(file).map_err(|e| {
+        let message = format!("cannot be read ({e}); give a folder that `revmap bench` wrote");
+        Error::new(ErrorKind::File, message).in_file(file)
+    })
 }
 
 #[cfg(test)]
@@ -134,26 +134,17 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let written = table(
-            &["a", "b,c", "d"],
-            &[
-                &["1", "", "x y"],
-                &["\"q\"", "l1\nl2", "a,b"],
-                &["", "", ""],
-            ],
-        );
+        let quoted: &[&str] = &["\"q\"", "l1\nl2", "a,b"];
+        let records = [&["1", "", "x y"], quoted, &["", "", ""]];
+        let written = table(&["a", "b,c", "d"], &records);
         let text = written.csv();
-        assert!(
-            text.starts_with("a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\","),
-            "{text}"
-        );
-        assert_eq!(Table::parse(&text).unwrap(), written);
+        let start = "a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\",";
+        assert!(text.starts_with(start), "{text}");
         let windows = text.replace('\n', "\r\n").replace("l1\r\n", "l1\n");
-        assert_eq!(Table::parse(&windows).unwrap(), written);
-        assert_eq!(
-            Table::parse(&format!("\u{feff}{windows}")).unwrap(),
-            written
-        );
+        let marked = format!("\u{feff}{windows}");
+        for text in [text, windows, marked] {
+            assert_eq!(Table::parse(&text).unwrap(), written);
+        }
         assert_eq!(written.column("d").unwrap(), 2);
         assert!(written.column("e").is_err());
     }

@@ -1,7 +1,9 @@
 //! A scene and its name, seen from one place.
 
+use super::row::one;
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
+use revmap::settings::name_of;
 
 /// A scene to be measured.
 #[derive(Clone, Debug)]
@@ -25,21 +27,17 @@ pub enum Framing {
     /// its width in a picture of 4:3.
     Whole,
     /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
-    /// [`OVERFILL`](super::framing::OVERFILL); a wider one may show their sides.
+    /// `OVERFILL` in `framing.rs`; a wider one may show their sides.
     Close,
 }
 
 impl Framing {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Whole, Self::Close];
+    /// The names in options and results.
+    pub const NAMES: [(&'static str, Self); 2] = [("whole", Self::Whole), ("close", Self::Close)];
 
-    /// Its name in options and results.
-    #[must_use]
+    /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Whole => "whole",
-            Self::Close => "close",
-        }
+        name_of(&Self::NAMES, &self)
     }
 }
 
@@ -60,7 +58,6 @@ pub enum Technique {
 
 impl Technique {
     /// The technique of one object's offset.
-    #[must_use]
     pub fn of(offset: &Offset) -> Self {
         match (
             offset.extend != 0.0,
@@ -74,7 +71,6 @@ impl Technique {
     }
 
     /// Its name in results.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Revolution => "revolution",
@@ -86,7 +82,6 @@ impl Technique {
     }
 
     /// True if the offset changes with height, for which the papers take more iterations.
-    #[must_use]
     pub fn is_beveled(self) -> bool {
         matches!(self, Self::Beveled | Self::Chamfered | Self::Mixed)
     }
@@ -94,7 +89,6 @@ impl Technique {
 
 impl View {
     /// A scene under a name.
-    #[must_use]
     pub fn new(name: impl Into<String>, scene: Scene) -> Self {
         Self {
             name: name.into(),
@@ -106,61 +100,43 @@ impl View {
     }
 
     /// The form of its objects.
-    #[must_use]
     pub fn technique(&self) -> Technique {
-        let mut forms = self.scene.objects.iter().map(|o| Technique::of(&o.offset));
-        let first = forms.next().unwrap_or(Technique::Revolution);
-        if forms.all(|f| f == first) {
-            first
-        } else {
-            Technique::Mixed
+        let forms = self.scene.objects.iter().map(|o| Technique::of(&o.offset));
+        match self.scene.objects.is_empty() {
+            true => Technique::Revolution,
+            false => one(forms).unwrap_or(Technique::Mixed),
         }
     }
 
     /// The offset, where all objects have the same.
-    #[must_use]
     pub fn offset(&self) -> Option<Offset> {
-        let mut all = self.scene.objects.iter().map(|o| o.offset);
-        let first = all.next()?;
-        all.all(|o| o == first).then_some(first)
+        one(self.scene.objects.iter().map(|o| o.offset))
     }
 
     /// Solids to be seen, copies counted.
-    #[must_use]
     pub fn solids(&self) -> usize {
-        self.scene
-            .objects
-            .iter()
-            .map(|o| o.placements().len())
-            .sum()
+        let copies = self.scene.objects.iter().map(|o| o.placements().len());
+        copies.sum()
     }
 
     /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of
     /// depth errors. It does not depend on the rows of the map that is drawn, so that errors of
     /// different maps compare.
-    #[must_use]
     pub fn texel(&self) -> f64 {
         let placements = self.scene.objects.iter().flat_map(|o| o.placements());
         let least = placements.fold(f64::INFINITY, |s, p| s.min(p.scale.min_element()));
-        if least.is_finite() && least > 0.0 {
-            least / 512.0
-        } else {
-            1.0 / 512.0
-        }
+        let known = least.is_finite() && least > 0.0;
+        if known { least / 512.0 } else { 1.0 / 512.0 }
     }
 
     /// The same scene seen from `degrees` above the horizon: the eye moves on a circle about its
     /// target, towards or away from the zenith. The name gets `@degrees`.
-    #[must_use]
     pub fn at_elevation(mut self, degrees: f64) -> Self {
         let camera = &mut self.scene.camera;
         let back = camera.eye - camera.target;
-        let level = DVec3::new(back.x, back.y, 0.0);
-        let level = if level.length() > 1e-9 * back.length() {
-            level.normalize()
-        } else {
-            DVec3::X
-        };
+        let mut level = DVec3::new(back.x, back.y, 0.0);
+        let steep = level.length() <= 1e-9 * back.length();
+        level = if steep { DVec3::X } else { level.normalize() };
         let (sin, cos) = degrees.to_radians().sin_cos();
         camera.eye = camera.target + back.length() * (level * cos + DVec3::Z * sin);
         // Straight from above there is no up but sideways.
@@ -181,13 +157,9 @@ pub(crate) mod tests {
     /// A double cone.
     pub(crate) fn spindle() -> View {
         let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
-        let mut scene = Scene::new(Camera::new(
-            DVec3::new(2.0, 0.0, 0.5),
-            DVec3::new(0.0, 0.0, 0.5),
-        ));
-        scene
-            .objects
-            .push(Object::new("spindle", Arc::new(profile)));
+        let (eye, target) = (DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
+        let mut scene = Scene::new(Camera::new(eye, target));
+        scene.objects = vec![Object::new("spindle", Arc::new(profile))];
         View::new("spindle", scene)
     }
 
@@ -200,15 +172,12 @@ pub(crate) mod tests {
             (0.0, 0.2, 0.5, "chamfered"),
             (0.0, 0.2, 0.0, "revolution"),
         ] {
-            assert_eq!(
-                Technique::of(&Offset {
-                    extend,
-                    bevel,
-                    chamfer
-                })
-                .name(),
-                wanted
-            );
+            let offset = Offset {
+                extend,
+                bevel,
+                chamfer,
+            };
+            assert_eq!(Technique::of(&offset).name(), wanted);
         }
         let mut two = spindle();
         two.scene.objects.push(two.scene.objects[0].clone());
@@ -224,10 +193,8 @@ pub(crate) mod tests {
             let back = camera.eye - camera.target;
             assert!((back.length() - 2.0).abs() < 1e-12);
             assert!((back.z / 2.0 - degrees.to_radians().sin()).abs() < 1e-12);
-            assert!(
-                back.normalize().cross(camera.up).length() > 0.1,
-                "{degrees}"
-            );
+            let across = back.normalize().cross(camera.up);
+            assert!(across.length() > 0.1, "{degrees}");
         }
         assert_eq!(spindle().at_elevation(25.0).name, "spindle@25");
     }

@@ -5,9 +5,9 @@ use revmap::settings::DrawStage;
 use revmap_lab::method::Edges;
 use revmap_lab::report::DeviceBench;
 use revmap_lab::report::measure::{Observer, measure};
+use revmap_lab::report::pictures::Sheets;
 use revmap_lab::report::plan::{Overrides, embedded};
 use revmap_lab::report::row::Row;
-use revmap_lab::report::sheet::Sheets;
 use std::sync::atomic::AtomicBool;
 
 #[test]
@@ -49,12 +49,8 @@ fn four_samples_bring_meshes_closer_to_64_rays() {
     );
     assert!(rows.iter().all(|r| r.time().is_some_and(|t| t.value > 0.0)));
     for stage in ["fragment", "compute"] {
-        assert!(
-            folder
-                .path()
-                .join(format!("antialiasing-vase-{stage}.png"))
-                .exists()
-        );
+        let file = format!("antialiasing-vase-{stage}.png");
+        assert!(folder.path().join(&file).exists(), "{file}");
     }
     let found = |mesh, edges| -> &Row {
         let own = |r: &&Row| r.settings.method.is_mesh() == mesh && r.settings.edges == edges;

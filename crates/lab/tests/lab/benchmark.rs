@@ -1,15 +1,15 @@
 //! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it
 //! draws once, and what it keeps.
 
-use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_within};
+use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan, run_within};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::exhibit::Extra;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::pictures::Album;
 use revmap_lab::report::plan::{Labels, TimeBudget, embedded};
 use revmap_lab::report::report::Run;
+use revmap_lab::report::table::Table;
 use std::sync::atomic::AtomicBool;
 
 /// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour;
@@ -74,27 +74,17 @@ fn a_time_that_is_never_resolved_ends_at_the_limit() {
 fn no_truth_is_drawn_twice() {
     for mixed in [false, true] {
         let mut plan = plan();
-        let sizes: Vec<_> = plan.cases.clone();
-        for case in sizes {
-            plan.add(
-                case.view,
-                MethodSettings {
-                    width: 32,
-                    height: 24,
-                    ..case.settings
-                },
-                "",
-            );
+        for case in plan.cases.clone() {
+            let smaller = MethodSettings {
+                width: 32,
+                height: 24,
+                ..case.settings
+            };
+            plan.add(case.view, smaller, "");
         }
         plan.mixed = mixed;
         let mut bench = StandIn::new(Fault::None);
-        let mut observer = Observer {
-            stop: &AtomicBool::new(false),
-            progress: &|_, _, _| {},
-            picture: &mut |_| Ok(()),
-            passed: &mut |_| Ok(()),
-        };
-        measure(&plan, &mut bench, &LIMITS, &mut observer).unwrap();
+        run_plan(&plan, &LIMITS, &mut bench, &AtomicBool::new(false)).unwrap();
         let mut asked = bench.truths.clone();
         asked.sort();
         asked.dedup();
@@ -109,11 +99,8 @@ fn an_interrupt_keeps_what_was_measured() {
     // In the second round of the first group.
     bench.stop_after = Some((7, &STOP));
     let outcome = run(&mut bench, &STOP).unwrap();
-    assert!(
-        outcome.interrupted && outcome.rows.len() == 3,
-        "{}",
-        outcome.rows.len()
-    );
+    assert!(outcome.interrupted);
+    assert_eq!(outcome.rows.len(), 3);
     assert!(outcome.rows.iter().all(|r| !r.frame_ms().is_empty()));
     // Before anything is done there is nothing to keep.
     let error = run(&mut StandIn::new(Fault::None), &AtomicBool::new(true)).unwrap_err();
@@ -125,35 +112,22 @@ fn an_interrupt_keeps_what_was_measured() {
 #[test]
 fn a_runs_folder_is_whole() {
     let folder = tempfile::tempdir().unwrap();
-    let machine = Machine::here(
-        "stand-in",
-        "none",
-        "driver 1, with a comma",
-        "0",
-        "revmap bench",
-    );
+    let driver = "driver 1, with a comma";
+    let machine = Machine::here("stand-in", "none", driver, "0", "revmap bench");
     let plan = plan();
-    let mut album = Album::new(
-        folder.path(),
-        Labels::new(plan.cases.iter().map(|c| &c.settings)),
-        true,
-    )
-    .unwrap();
-    let outcome = measure(
-        &plan,
-        &mut StandIn::new(Fault::ClockLies),
-        &LIMITS,
-        &mut Observer {
-            stop: &AtomicBool::new(false),
-            progress: &|_, _, _| {},
-            picture: &mut |seen| album.add(seen),
-            passed: &mut |rows| {
-                assert_eq!(rows.len(), 6, "after each pass every row is there");
-                folder::write_rows(folder.path(), rows, &plan, &machine, 0.25)
-            },
+    let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
+    let mut album = Album::new(folder.path(), labels, true).unwrap();
+    let mut observer = Observer {
+        stop: &AtomicBool::new(false),
+        progress: &|_, _, _| {},
+        picture: &mut |seen| album.add(seen),
+        passed: &mut |rows| {
+            assert_eq!(rows.len(), 6, "after each pass every row is there");
+            folder::write_rows(folder.path(), rows, &plan, &machine, 0.25)
         },
-    )
-    .unwrap();
+    };
+    let mut bench = StandIn::new(Fault::ClockLies);
+    let outcome = measure(&plan, &mut bench, &LIMITS, &mut observer).unwrap();
     folder::write(folder.path(), &plan, &outcome, &machine, 0.25).unwrap();
     // All tables and charts of both kinds of runs.
     let mut file = embedded::plan("usual").unwrap();
@@ -165,26 +139,28 @@ fn a_runs_folder_is_whole() {
         machine: &machine,
         album: &album,
         flights: &[],
-        extra: Extra::default(),
+        maps: &[],
     };
     let text = report.write(folder.path()).unwrap();
-    assert!(
-        text.contains("RBM baseline") && text.contains("2 pictures"),
-        "{text}"
-    );
-    for (file, records) in [("results.csv", 6), ("excluded.csv", 2)] {
-        let table = revmap_lab::report::table::Table::load(&folder.path().join(file)).unwrap();
+    for wanted in ["RBM baseline", "2 pictures"] {
+        assert!(text.contains(wanted), "{text}");
+    }
+    let samples: usize = outcome.rows.iter().map(|r| r.frame_ms().len()).sum();
+    for (file, records) in [
+        ("results.csv", 6),
+        ("excluded.csv", 2),
+        ("raw.csv", samples),
+    ] {
+        let table = Table::load(&folder.path().join(file)).unwrap();
         assert_eq!(table.records.len(), records, "{file}");
     }
-    let raw = revmap_lab::report::table::Table::load(&folder.path().join("raw.csv")).unwrap();
-    let samples: usize = outcome.rows.iter().map(|r| r.frame_ms().len()).sum();
-    assert_eq!(raw.records.len(), samples);
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let picture = "data:image/png;base64,";
     for wanted in [
         "stand-in",
         "clocks disagree",
         "<svg",
-        "data:image/png;base64,",
+        picture,
         "revmap bench",
     ] {
         assert!(page.contains(wanted), "{wanted}");

@@ -4,16 +4,15 @@ use crate::stand_in::{Fault, StandIn, measured, plan, run};
 use revmap::error::ErrorKind;
 use revmap::settings::Solver;
 use revmap_lab::method::Method;
-use revmap_lab::report::chart::{Mark, front::front};
+use revmap_lab::report::chart::front::front;
 use revmap_lab::report::columns::Context;
-use revmap_lab::report::exhibit::{self, Extra};
+use revmap_lab::report::exhibit;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::plan::is_rbm_baseline;
 use revmap_lab::report::ratios::{Over, Ratio, over};
 use revmap_lab::report::report::results;
 use revmap_lab::report::row::{Clocks, Row};
-use revmap_lab::report::series_style::SeriesStyles;
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 
@@ -32,15 +31,11 @@ fn live(rows: &[Row]) -> Ratio<'_> {
 /// Places of (time, error) on a chart and which of them are on the front, of the first view.
 fn on_front(rows: &[Row]) -> Vec<Method> {
     let first: Vec<&Row> = rows.iter().filter(|r| r.view == 0).collect();
-    let points: Vec<_> = first
-        .iter()
-        .map(|r| {
-            (
-                r.time().map_or(f64::NAN, |t| t.value),
-                r.errors.depth.map_or(f64::NAN, |d| d.p99),
-            )
-        })
-        .collect();
+    let place = |r: &&Row| {
+        let error = r.errors.depth.map_or(f64::NAN, |d| d.p99);
+        (r.time().map_or(f64::NAN, |t| t.value), error)
+    };
+    let points: Vec<_> = first.iter().map(place).collect();
     front(&points, 1.0)
         .into_iter()
         .map(|i| first[i].settings.method)
@@ -73,15 +68,13 @@ fn without_a_fault_all_is_as_it_was_planted() {
 fn a_search_that_sleeps_is_charted_slower() {
     let outcome = measured(Fault::Sleeps);
     let live = live(&outcome.rows);
+    let time = live.time;
     assert!(
-        (live.time.value - 1.5).abs() < 0.08 && live.time.low > 1.0,
-        "{:?}",
-        live.time
+        (time.value - 1.5).abs() < 0.08 && time.low > 1.0,
+        "{time:?}"
     );
-    let (slept, other) = (
-        of(&outcome.rows, Method::Search(Solver::Live)),
-        of(&outcome.rows, Method::Search(CIRCLE)),
-    );
+    let slept = of(&outcome.rows, Method::Search(Solver::Live));
+    let other = of(&outcome.rows, Method::Search(CIRCLE));
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
     }
@@ -90,27 +83,14 @@ fn a_search_that_sleeps_is_charted_slower() {
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let plan = plan();
-    let context = Context {
-        rows: &outcome.rows,
-        plan: &plan,
-        styles: SeriesStyles::of(&outcome.rows),
-        device: &machine.device,
-        driver: &machine.driver,
-        resolved: 0.25,
-    };
+    let all: Vec<&Row> = outcome.rows.iter().collect();
+    let context = Context::new(&all, &plan, &machine, 0.25);
     let charts = exhibit::all(&[]).unwrap();
     let chart = &charts.iter().find(|e| e.name == "error").unwrap().chart[0];
-    let figure = chart
-        .figures(&context, &rows, &Extra::default())
-        .unwrap()
-        .remove(0);
-    let lefts: Vec<f64> = figure
-        .marks
-        .iter()
-        .filter(|m| matches!(m, Mark::Shape { .. }))
-        .map(|m| m.bounds()[0])
-        .collect();
-    assert!(lefts[0] > lefts[1] + 20.0, "{lefts:?}");
+    let figures = chart.figures(&context, &rows, &[]);
+    let figure = figures.unwrap().remove(0);
+    let dots = figure.shapes();
+    assert!(dots[0][0] > dots[1][0] + 20.0, "{dots:?}");
 }
 
 #[test]
@@ -121,11 +101,8 @@ fn a_search_that_returns_the_boxs_face_is_charted_wrong() {
         assert!(row.errors.depth.unwrap().p99 > 10.0 && row.errors.normal.unwrap().rms > 10.0);
         assert!(row.errors.wrong() > 0.2);
     }
-    assert_eq!(
-        on_front(&outcome.rows),
-        [Method::Search(CIRCLE)],
-        "it must not stand on the front"
-    );
+    // It must not stand on the front.
+    assert_eq!(on_front(&outcome.rows), [Method::Search(CIRCLE)]);
     assert!(over(&outcome.rows, Over::Baseline)[0].wrong() > 0.2);
 }
 
@@ -136,27 +113,18 @@ fn a_clock_that_lies_is_rejected() {
         assert!(matches!(row.clocks(), Clocks::Disagree { .. }));
         assert_eq!(row.time(), None);
     }
-    assert!(
-        over(&outcome.rows, Over::Baseline)
-            .iter()
-            .all(|r| r.settings.method != Solver::Live)
-    );
+    let ratios = over(&outcome.rows, Over::Baseline);
+    assert!(ratios.iter().all(|r| r.settings.method != Solver::Live));
     assert!(!on_front(&outcome.rows).contains(&Method::Search(Solver::Live)));
     let marked = folder::excluded(&plan(), &outcome);
     assert_eq!(marked.records.len(), 2);
-    assert!(
-        marked.records[0][4].contains("more than 15 % apart"),
-        "{:?}",
-        marked.records[0]
-    );
+    let first = &marked.records[0];
+    assert!(first[4].contains("more than 15 % apart"), "{first:?}");
     // In results.csv the lie is not told.
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let results = results(&outcome.rows, &plan(), &machine, 0.25).unwrap();
-    let (method, gpu, frame) = (
-        results.column("solver").unwrap(),
-        results.column("gpu_ms_median").unwrap(),
-        results.column("frame_ms_median").unwrap(),
-    );
+    let [method, gpu, frame] =
+        ["solver", "gpu_ms_median", "frame_ms_median"].map(|c| results.column(c).unwrap());
     for record in &results.records {
         assert_eq!(record[gpu].is_empty(), record[method] == "live");
         assert!(!record[frame].is_empty());
@@ -168,10 +136,7 @@ fn what_does_not_apply_is_left_out_with_its_reason() {
     let outcome = measured(Fault::Refuses);
     assert_eq!((outcome.rows.len(), outcome.left_out.len()), (4, 2));
     assert!(outcome.left_out[0].1.contains("does not apply"));
-    let error = run(
-        &mut StandIn::new(Fault::DeviceLost),
-        &AtomicBool::new(false),
-    )
-    .unwrap_err();
+    let mut lost = StandIn::new(Fault::DeviceLost);
+    let error = run(&mut lost, &AtomicBool::new(false)).unwrap_err();
     assert_eq!(error.kind, ErrorKind::DeviceLost);
 }

@@ -93,10 +93,10 @@ impl StandIn {
 
     fn refusal(&self, settings: &MethodSettings) -> Result<()> {
         match self.fault {
-            Fault::Refuses if settings.method == Solver::Live => Err(Error::new(
-                ErrorKind::Other,
-                "this search does not apply to this profile",
-            )),
+            Fault::Refuses if settings.method == Solver::Live => {
+                let message = "this search does not apply to this profile";
+                Err(Error::new(ErrorKind::Other, message))
+            }
             Fault::DeviceLost => Err(Error::new(ErrorKind::DeviceLost, "the device is gone")),
             _ => Ok(()),
         }
@@ -112,27 +112,21 @@ impl Bench for StandIn {
         self.refusal(settings)?;
         self.made += 1;
         let live = settings.method == Solver::Live;
-        let base = if is_rbm_baseline(settings) {
-            20.0
-        } else {
-            10.0
+        let papers = is_rbm_baseline(settings);
+        let base = if papers { 20.0 } else { 10.0 };
+        let factor = match self.fault {
+            Fault::Sleeps if live => 3.0,
+            Fault::Bout if live && self.made <= 3 => 2.0,
+            // Six are made in each pass.
+            Fault::Grows if live => {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                2f64.powf((self.made / 6) as f64)
+            }
+            _ => 1.0,
         };
-        let frame_ms = base
-            * match self.fault {
-                Fault::Sleeps if live => 3.0,
-                Fault::Bout if live && self.made <= 3 => 2.0,
-                // Six are made in each pass.
-                Fault::Grows if live => {
-                    std::thread::sleep(std::time::Duration::from_millis(5));
-                    2f64.powf((self.made / 6) as f64)
-                }
-                _ => 1.0,
-            };
-        let gpu_ms = if live && self.fault == Fault::ClockLies {
-            frame_ms / 100.0
-        } else {
-            frame_ms * 0.98
-        };
+        let frame_ms = base * factor;
+        let lies = live && self.fault == Fault::ClockLies;
+        let gpu_ms = frame_ms * if lies { 0.01 } else { 0.98 };
         Ok(Box::new(Timed {
             gpu_ms,
             frame_ms,
@@ -154,11 +148,8 @@ impl Bench for StandIn {
         }
         let mut frame = reference::draw(&view.scene, &settings.into(), &|_, _| {})?;
         // Nobody is perfect: a little error for all, or all would be on one front.
-        let error = if settings.method == Solver::Live {
-            1e-6
-        } else {
-            2e-6
-        };
+        let live = settings.method == Solver::Live;
+        let error = if live { 1e-6 } else { 2e-6 };
         frame.distance.iter_mut().for_each(|d| *d += error);
         Ok((frame, 1000))
     }
@@ -217,13 +208,23 @@ pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
 
 /// Measures the plan.
 pub fn run_within(limits: &TimeBudget, bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
+    run_plan(&plan(), limits, bench, stop)
+}
+
+/// Measures a plan.
+pub fn run_plan(
+    plan: &Plan,
+    limits: &TimeBudget,
+    bench: &mut StandIn,
+    stop: &AtomicBool,
+) -> Result<Measured> {
     let mut observer = Observer {
         stop,
         progress: &|_, _, _| {},
         picture: &mut |_| Ok(()),
         passed: &mut |_| Ok(()),
     };
-    measure(&plan(), bench, limits, &mut observer)
+    measure(plan, bench, limits, &mut observer)
 }
 
 /// Measures the plan with a fault.

@@ -1,7 +1,7 @@
 //! Charts of one value a line, each a marker on its interval: times and ratios side by side.
 
 use super::axis::{Axis, Scale};
-use super::legend::{EDGE, Sheet, TEXT, WIDTH, dot, strike, unresolved};
+use super::legend::{EDGE, Sheet, TEXT, UNRESOLVED, WIDTH, dot, strike};
 use super::letters::width;
 use super::style::{Dash, INK, PALE, Style};
 use super::{Anchor, Figure};
@@ -11,11 +11,8 @@ use crate::report::stats::Interval;
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Its name.
     pub name: String,
-    /// Its value.
     pub value: Interval,
-    /// How its marker looks.
     pub style: Style,
     /// True if its interval is too wide: it is struck through, and its number in brackets.
     pub unresolved: bool,
@@ -36,28 +33,22 @@ impl Line {
 pub struct Block {
     /// The heading; may be empty.
     pub name: String,
-    /// The lines.
     pub lines: Vec<Line>,
 }
 
 /// A chart of values with intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DotChart {
-    /// Its title.
     pub title: String,
-    /// The axis across.
     pub axis: Axis,
     /// A value to which all are compared.
     pub mark: Option<f64>,
-    /// The lines.
     pub blocks: Vec<Block>,
 }
 
 const STEP: f64 = 22.0;
 
 impl DotChart {
-    /// Lays the chart out.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         let lines = || self.blocks.iter().flat_map(|b| &b.lines);
         // An interval without an end or too wide must not stretch the axis.
@@ -84,15 +75,15 @@ impl DotChart {
             }
         }
         if let Some(x) = self.mark.and_then(at) {
-            sheet.line([(x, top), (x, bottom)], PALE, 1.5, Dash::Guide);
+            sheet.line([(x, top), (x, bottom)], PALE, 1.5, Dash::GUIDE);
         }
-        sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::Solid);
+        sheet.line([(left, bottom), (right, bottom)], INK, 1.0, Dash::SOLID);
         self.lines(&mut sheet, (top, left), at);
         sheet.axis((left, right), bottom, &self.axis.label);
         let mut end = bottom + 2.0 * TEXT + 16.0;
         if lines().any(|l| l.unresolved) {
-            let (name, key) = unresolved();
-            end = sheet.legend(end + TEXT, &[(name, vec![key])]);
+            let (name, key) = UNRESOLVED;
+            end = sheet.legend(end + TEXT, &[(name.to_owned(), vec![key])]);
         }
         Figure {
             width: WIDTH,
@@ -120,12 +111,8 @@ impl DotChart {
                 let ends = line.value.ends();
                 if let Some((Some(a), Some(b))) = ends.map(|(low, high)| (at(low), at(high))) {
                     let width = if line.style.heavy { 3.0 } else { 2.0 };
-                    sheet.line(
-                        [(a, level), (b, level)],
-                        line.style.color,
-                        width,
-                        Dash::Solid,
-                    );
+                    let ends = [(a, level), (b, level)];
+                    sheet.line(ends, line.style.color, width, Dash::SOLID);
                 }
                 if let Some(x) = at(line.value.value) {
                     sheet.0.push(dot(line.style, (x, level)));
@@ -140,66 +127,45 @@ impl DotChart {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Mark;
     use super::super::style::{Marker, color};
     use super::*;
 
     fn chart(values: &[f64]) -> DotChart {
         let line = |(k, v): (usize, &f64)| Line {
             name: format!("search {k}, of several words"),
-            value: Interval {
-                value: *v,
-                low: v * 0.9,
-                high: if k == 1 { f64::INFINITY } else { v * 1.2 },
-            },
+            value: Interval::new(*v, v * 0.9, if k == 1 { f64::INFINITY } else { v * 1.2 }),
             style: Style {
                 filled: k % 2 == 0,
                 ..Style::new(color::ALL[k], Marker::ALL[k])
             },
             unresolved: k == 1,
         };
+        let block = |name: &str| Block {
+            name: name.to_owned(),
+            lines: values.iter().enumerate().map(line).collect(),
+        };
         DotChart {
             title: "Time over that of the RBM baseline".into(),
             axis: Axis::log("time / time of the RBM baseline"),
             mark: Some(1.0),
-            blocks: vec![
-                Block {
-                    name: "fragment".into(),
-                    lines: values.iter().enumerate().map(line).collect(),
-                },
-                Block {
-                    name: String::new(),
-                    lines: values.iter().enumerate().map(line).collect(),
-                },
-            ],
+            blocks: ["fragment", ""].map(block).to_vec(),
         }
     }
 
     #[test]
     fn no_words_cover_each_other() {
-        for values in [
-            &[0.2, 0.5, 1.0, 1.4][..],
-            &[1.0],
-            &[1e-3, 1e3],
-            &[20.0, 21.0, 22.0],
-        ] {
-            assert_eq!(
-                chart(values).figure().faults(),
-                Vec::<String>::new(),
-                "{values:?}"
-            );
+        let many = [0.2, 0.5, 1.0, 1.4];
+        for values in [&many[..], &[1.0], &[1e-3, 1e3], &[20.0, 21.0, 22.0]] {
+            let faults = chart(values).figure().faults();
+            assert_eq!(faults, [""; 0], "{values:?}");
         }
     }
 
     #[test]
     fn slower_stands_further_right() {
         let figure = chart(&[0.2, 0.5, 1.4]).figure();
-        let dots: Vec<f64> = figure
-            .marks
-            .iter()
-            .filter(|m| matches!(m, Mark::Shape { .. }))
-            .map(|m| m.bounds()[0])
-            .collect();
-        assert!(dots[0] < dots[1] && dots[1] < dots[2] && (dots[0] - dots[3]).abs() < 1e-9);
+        let dots = figure.shapes();
+        assert!(dots[0][0] < dots[1][0] && dots[1][0] < dots[2][0]);
+        assert!((dots[0][0] - dots[3][0]).abs() < 1e-9);
     }
 }

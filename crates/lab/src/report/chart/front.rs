@@ -6,26 +6,20 @@
 ///
 /// A slower point must bring the error below `gain` times that of the last point on the front: with
 /// a gain below 1, noise in the last digit puts nothing on it.
-#[must_use]
 pub fn front(points: &[(f64, f64)], gain: f64) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len())
-        .filter(|&i| !points[i].0.is_nan() && !points[i].1.is_nan())
-        .collect();
+    let known = |i: &usize| !points[*i].0.is_nan() && !points[*i].1.is_nan();
+    let mut order: Vec<usize> = (0..points.len()).filter(known).collect();
     order.sort_by(|&a, &b| {
-        points[a]
-            .0
-            .total_cmp(&points[b].0)
-            .then(points[a].1.total_cmp(&points[b].1))
+        let (a, b) = (points[a], points[b]);
+        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     let mut best = f64::INFINITY;
-    let mut all = Vec::new();
-    for i in order {
-        if points[i].1 < gain * best {
-            best = points[i].1;
-            all.push(i);
-        }
-    }
-    all
+    order.retain(|&i| {
+        let better = points[i].1 < gain * best;
+        best = if better { points[i].1 } else { best };
+        better
+    });
+    order
 }
 
 /// The gain in error that is worth a place on a chart's front.
@@ -33,14 +27,8 @@ pub const WORTH: f64 = 0.95;
 
 /// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
 pub(crate) fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let mut all = Vec::new();
-    for (i, p) in points.iter().enumerate() {
-        if i > 0 {
-            all.push((p.0, points[i - 1].1));
-        }
-        all.push(*p);
-    }
-    all
+    let steps = points.windows(2).flat_map(|w| [(w[1].0, w[0].1), w[1]]);
+    points.iter().take(1).copied().chain(steps).collect()
 }
 
 #[cfg(test)]
@@ -49,15 +37,11 @@ mod tests {
 
     #[test]
     fn what_is_beaten_is_not_on_the_front() {
-        let points = [
-            (2.0, 5.0),
-            (1.0, 9.0),
-            (3.0, 5.0),
-            (3.0, 1.0),
-            (2.0, 6.0),
-            (f64::NAN, 0.0),
-            (9.0, 1.0),
-        ];
+        let (times, errors) = (
+            [2.0, 1.0, 3.0, 3.0, 2.0, f64::NAN, 9.0],
+            [5.0, 9.0, 5.0, 1.0, 6.0, 0.0, 1.0],
+        );
+        let points: Vec<(f64, f64)> = times.into_iter().zip(errors).collect();
         assert_eq!(front(&points, 1.0), [1, 0, 3]);
         assert_eq!(front(&points, 0.5), [1, 3]);
         assert_eq!(front(&[(1.0, 1.0), (1.0, 1.0)], 1.0), [0]);
@@ -74,9 +58,8 @@ mod tests {
         let points: Vec<_> = (0..200).map(|_| (next(), next())).collect();
         let found = front(&points, 1.0);
         let beaten = |i: usize| {
-            points
-                .iter()
-                .any(|q| q.0 <= points[i].0 && q.1 <= points[i].1 && *q != points[i])
+            let p: (f64, f64) = points[i];
+            points.iter().any(|q| q.0 <= p.0 && q.1 <= p.1 && *q != p)
         };
         for i in 0..points.len() {
             assert_eq!(found.contains(&i), !beaten(i), "{i}");

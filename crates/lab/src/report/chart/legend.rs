@@ -3,7 +3,7 @@
 use super::letters::{width, wrap};
 use super::style::color::GREY;
 use super::style::{Dash, GRID, INK, Marker, PAPER, Style};
-use super::{Anchor, Mark};
+use super::{Anchor, Mark, Place};
 
 /// Width of every chart, pixels: read well on a phone, where it is shown at four fifths of that.
 pub(super) const WIDTH: f64 = 460.0;
@@ -35,33 +35,22 @@ impl Key {
 }
 
 /// The marker of a style at a place.
-pub(super) fn dot(style: Style, (x, y): (f64, f64)) -> Mark {
-    let (fill, stroke) = if style.filled {
-        (style.color, (PAPER, 0.8))
-    } else {
-        (PAPER, (style.color, 1.8))
+pub(super) fn dot(style: Style, place: Place) -> Mark {
+    let (fill, stroke) = match style.filled {
+        true => (style.color, (PAPER, 0.8)),
+        false => (PAPER, (style.color, 1.8)),
     };
-    Mark::Shape {
-        points: style.corners(x, y, MARKER),
-        fill,
-        stroke: Some(stroke),
-    }
+    Mark::Shape(style.corners(place, MARKER), fill, Some(stroke))
 }
 
 /// The entry of a legend that explains the strokes.
-pub(super) fn unresolved() -> (String, Key) {
-    ("not resolved".to_owned(), Key::Struck)
-}
+pub(super) const UNRESOLVED: (&str, Key) = ("not resolved", Key::Struck);
 
 /// The stroke through the marker of what is not resolved.
-pub(super) fn strike((x, y): (f64, f64)) -> Mark {
+pub(super) fn strike((x, y): Place) -> Mark {
     let reach = 0.75 * MARKER;
-    Mark::Line {
-        points: vec![(x - reach, y + reach), (x + reach, y - reach)],
-        color: INK,
-        width: 1.2,
-        dash: Dash::Solid,
-    }
+    let points = vec![(x - reach, y + reach), (x + reach, y - reach)];
+    Mark::Line(points, INK, 1.2, Dash::SOLID)
 }
 
 /// Marks in the making.
@@ -71,28 +60,22 @@ pub(super) struct Sheet(pub(super) Vec<Mark>);
 impl Sheet {
     pub(super) fn line(
         &mut self,
-        points: impl Into<Vec<(f64, f64)>>,
+        points: impl Into<Vec<Place>>,
         color: &'static str,
         width: f64,
         dash: Dash,
     ) {
-        let points = points.into();
-        self.0.push(Mark::Line {
-            points,
-            color,
-            width,
-            dash,
-        });
+        self.0.push(Mark::Line(points.into(), color, width, dash));
     }
 
-    pub(super) fn word(&mut self, at: (f64, f64), text: &str, anchor: Anchor, color: &'static str) {
+    pub(super) fn word(&mut self, at: Place, text: &str, anchor: Anchor, color: &'static str) {
         self.0.push(Mark::word(at, text, TEXT, anchor, color));
     }
 
     /// A line of the grid across a plot, and its value below; a word that would touch the last one,
     /// which ends at `end`, or leave the figure, is left out.
     pub(super) fn tick(&mut self, x: f64, (top, bottom): (f64, f64), text: &str, end: &mut f64) {
-        self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::Solid);
+        self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::SOLID);
         let half = width(text, TEXT) / 2.0;
         if x - half > *end + 6.0 && x + half < WIDTH {
             self.word((x, bottom + TEXT + 5.0), text, Anchor::Middle, INK);
@@ -145,7 +128,7 @@ impl Sheet {
                     }
                     Key::Struck => {
                         let middle = ((left + right) / 2.0 - 1.0, level);
-                        self.0.push(dot(Style::new(GREY, Marker::Disk), middle));
+                        self.0.push(dot(Style::new(GREY, Marker::DISK), middle));
                         self.0.push(strike(middle));
                     }
                     Key::Line(color, dash) => self.line(ends, color, 1.6, dash),
@@ -155,10 +138,7 @@ impl Sheet {
             self.word((left + 4.0, y + TEXT * 0.45), name, Anchor::Start, INK);
             x += needed;
         }
-        if entries.is_empty() {
-            top - TEXT
-        } else {
-            y + TEXT * 0.7
-        }
+        let none = entries.is_empty();
+        if none { top - TEXT } else { y + TEXT * 0.7 }
     }
 }

@@ -19,15 +19,13 @@ pub(super) fn face() -> Option<Face<'static>> {
 }
 
 fn advance(face: &Face, letter: char) -> f64 {
-    face.glyph_index(letter)
-        .and_then(|glyph| face.glyph_hor_advance(glyph))
-        .map_or(WIDE, |units| {
-            f64::from(units) / f64::from(face.units_per_em())
-        })
+    let glyph = face.glyph_index(letter);
+    let units = glyph.and_then(|glyph| face.glyph_hor_advance(glyph));
+    let em = f64::from(face.units_per_em());
+    units.map_or(WIDE, |units| f64::from(units) / em)
 }
 
 /// The width of a word at a size, pixels.
-#[must_use]
 pub fn width(text: &str, size: f64) -> f64 {
     match face() {
         Some(face) => size * text.chars().map(|c| advance(&face, c)).sum::<f64>(),
@@ -36,7 +34,6 @@ pub fn width(text: &str, size: f64) -> f64 {
 }
 
 /// Cuts a text into lines no wider than `limit`, between words.
-#[must_use]
 pub fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -60,13 +57,10 @@ mod tests {
         assert!(width("iiii", 10.0) < width("WWWW", 10.0));
         assert!((width("ab", 20.0) - 2.0 * (width("a", 10.0) + width("b", 10.0))).abs() < 1e-9);
         // Every sign that charts use is in the font: none has the width of what is missing.
-        let face = face();
-        for sign in "aZ09 .,:;()%/<>=×–≤≥≈·°⁻⁰¹²³⁴⁵⁶⁷⁸⁹µ…→".chars()
-        {
-            assert!(
-                face.as_ref().is_some_and(|f| f.glyph_index(sign).is_some()),
-                "{sign}"
-            );
+        let glyph = |sign| face().and_then(|f| f.glyph_index(sign));
+        let signs = "aZ09 .,:;()%/<>=×–≤≥≈·°⁻⁰¹²³⁴⁵⁶⁷⁸⁹µ…→";
+        for sign in signs.chars() {
+            assert!(glyph(sign).is_some(), "{sign}");
         }
     }
 

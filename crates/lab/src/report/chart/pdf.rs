@@ -23,8 +23,7 @@ const GLYPHS: SystemInfo = SystemInfo {
 };
 
 /// A figure as a PDF of one page.
-#[must_use]
-pub fn pdf(figure: &Figure) -> Vec<u8> {
+pub(crate) fn pdf(figure: &Figure) -> Vec<u8> {
     let points = COLUMN / figure.width.max(1.0);
     let height = figure.height - figure.top;
     let mut content = Content::new();
@@ -65,9 +64,8 @@ fn embed(file: &mut Pdf, [font, glyphs, descriptor, data, letters]: [Ref; 5]) {
         .to_unicode(letters);
     let unit = 1000.0 / f32::from(face.units_per_em());
     let advance = |glyph| {
-        let id = ttf_parser::GlyphId(glyph);
-        face.glyph_hor_advance(id)
-            .map_or(0.0, |a| unit * f32::from(a))
+        let advance = face.glyph_hor_advance(ttf_parser::GlyphId(glyph));
+        advance.map_or(0.0, |a| unit * f32::from(a))
     };
     let mut own = file.cid_font(glyphs);
     own.subtype(CidFontType::Type2).base_font(FONT_NAME);
@@ -105,15 +103,11 @@ fn embed(file: &mut Pdf, [font, glyphs, descriptor, data, letters]: [Ref; 5]) {
 
 fn draw(content: &mut Content, mark: &Mark) {
     match mark {
-        Mark::Shape {
-            points,
-            fill,
-            stroke,
-        } => {
+        Mark::Shape(points, fill, stroke) => {
             let [r, g, b] = rgb(fill);
             content.set_fill_rgb(r, g, b);
             if let Some((color, width)) = stroke {
-                pen(content, color, *width, Dash::Solid);
+                pen(content, color, *width, Dash::SOLID);
             }
             path(content, points);
             content.close_path();
@@ -122,36 +116,23 @@ fn draw(content: &mut Content, mark: &Mark) {
                 None => content.fill_nonzero(),
             };
         }
-        Mark::Line {
-            points,
-            color,
-            width,
-            dash,
-        } => {
+        Mark::Line(points, color, width, dash) => {
             pen(content, color, *width, *dash);
             path(content, points);
             content.stroke();
         }
-        Mark::Word {
-            at,
-            text,
-            size,
-            anchor,
-            color,
-            upwards,
-        } => {
-            let back = anchor.back(width(text, *size)) as f32;
-            let (x, y) = (at.0 as f32, at.1 as f32);
-            let matrix = if *upwards {
-                [0.0, -1.0, -1.0, 0.0, x, y + back]
-            } else {
-                [1.0, 0.0, 0.0, -1.0, x - back, y]
+        Mark::Word(word) => {
+            let back = word.anchor.back(width(&word.text, word.size)) as f32;
+            let (x, y) = (word.at.0 as f32, word.at.1 as f32);
+            let matrix = match word.upwards {
+                true => [0.0, -1.0, -1.0, 0.0, x, y + back],
+                false => [1.0, 0.0, 0.0, -1.0, x - back, y],
             };
-            let [r, g, b] = rgb(color);
+            let [r, g, b] = rgb(word.color);
             content.set_fill_rgb(r, g, b).begin_text();
-            content.set_font(FONT_KEY, *size as f32);
+            content.set_font(FONT_KEY, word.size as f32);
             content.set_text_matrix(matrix);
-            content.show(Str(&codes(text))).end_text();
+            content.show(Str(&codes(&word.text))).end_text();
         }
     }
 }
@@ -166,11 +147,10 @@ fn codes(text: &str) -> Vec<u8> {
 fn path(content: &mut Content, points: &[(f64, f64)]) {
     for (i, (x, y)) in points.iter().enumerate() {
         let (x, y) = (*x as f32, *y as f32);
-        if i == 0 {
-            content.move_to(x, y);
-        } else {
-            content.line_to(x, y);
-        }
+        match i {
+            0 => content.move_to(x, y),
+            _ => content.line_to(x, y),
+        };
     }
 }
 
@@ -178,7 +158,7 @@ fn pen(content: &mut Content, color: &str, width: f64, dash: Dash) {
     let [r, g, b] = rgb(color);
     content.set_stroke_rgb(r, g, b);
     content.set_line_width(width as f32);
-    content.set_dash_pattern(dash.pattern().iter().copied(), 0.0);
+    content.set_dash_pattern(dash.0.iter().copied(), 0.0);
 }
 
 /// `#rrggbb` as parts of 1.
@@ -198,12 +178,8 @@ mod tests {
     #[test]
     fn what_lies_below_the_title_is_on_the_page_as_text() {
         let word = |y, text| Mark::word((10.0, y), text, 10.0, Anchor::Start, INK);
-        let line = Mark::Line {
-            points: vec![(10.0, 50.0), (90.0, 70.0)],
-            color: "#ff0000",
-            width: 2.0,
-            dash: Dash::Guide,
-        };
+        let points = vec![(10.0, 50.0), (90.0, 70.0)];
+        let line = Mark::Line(points, "#ff0000", 2.0, Dash::GUIDE);
         let figure = Figure {
             width: 482.0,
             height: 80.0,
@@ -213,16 +189,11 @@ mod tests {
         };
         let bytes = pdf(&figure);
         let file = String::from_utf8_lossy(&bytes).into_owned();
-        assert!(
-            file.starts_with("%PDF-1.") && file.ends_with("%%EOF"),
-            "{file}"
-        );
-        assert!(file.contains("/MediaBox [0 0 241 30]"), "{file}");
-        assert!(
-            file.contains("1 0 0 RG") && file.contains("[5 4] 0 d"),
-            "{file}"
-        );
-        assert!(file.contains("10 50 m\n90 70 l\nS"), "{file}");
+        assert!(file.starts_with("%PDF-1.") && file.ends_with("%%EOF"));
+        let line = "10 50 m\n90 70 l\nS";
+        for part in ["/MediaBox [0 0 241 30]", "1 0 0 RG", "[5 4] 0 d", line] {
+            assert!(file.contains(part), "{part}: {file}");
+        }
         // One word is shown, as text; the title is not.
         assert_eq!(file.matches("Tj").count(), 1);
         assert!(file.contains("/FontFile2") && file.contains("/ToUnicode"));

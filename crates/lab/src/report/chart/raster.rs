@@ -13,7 +13,7 @@ use revmap_files::Picture;
 ///
 /// # Errors
 /// [`ErrorKind::TooLarge`] when the figure has no size, or one too large for a picture.
-pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
+pub(crate) fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
     let side = |v: f64| (v.ceil() * f64::from(scale)).clamp(0.0, 32_768.0) as u32;
     let (width, height) = (side(figure.width), side(figure.height));
     let refuse = |why: &str| {
@@ -24,21 +24,15 @@ pub fn raster(figure: &Figure, scale: f32) -> Result<Picture> {
     let mut options = Options::default();
     options.fontdb_mut().load_font_data(FONT.to_vec());
     let tree = Tree::from_str(&svg(figure), &options).map_err(|e| refuse(&e.to_string()))?;
-    resvg::render(
-        &tree,
-        Transform::from_scale(scale, scale),
-        &mut map.as_mut(),
-    );
+    let transform = Transform::from_scale(scale, scale);
+    resvg::render(&tree, transform, &mut map.as_mut());
     // The paper is opaque, so nothing is premultiplied by less than 1.
-    let rgba = map
-        .pixels()
-        .iter()
-        .map(|p| [p.red(), p.green(), p.blue(), 255])
-        .collect();
+    let pixels = map.pixels().iter();
+    let rgba = pixels.map(|p| [p.red(), p.green(), p.blue(), 255]);
     Ok(Picture {
         width,
         height,
-        rgba,
+        rgba: rgba.collect(),
     })
 }
 
@@ -52,27 +46,18 @@ mod tests {
     #[test]
     fn words_and_shapes_appear_where_they_stand() {
         let square = vec![(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0)];
-        let figure = Figure {
+        let square = Mark::Shape(square, "#d55e00", None);
+        let word = |at| Mark::word(at, "HHHH", 10.0, Anchor::Start, INK);
+        let mut turned = word((30.0, 70.0));
+        if let Mark::Word(word) = &mut turned {
+            word.upwards = true;
+        }
+        let mut figure = Figure {
             width: 100.0,
             height: 80.0,
             top: 0.0,
             title: String::new(),
-            marks: vec![
-                Mark::Shape {
-                    points: square,
-                    fill: "#d55e00",
-                    stroke: None,
-                },
-                Mark::word((50.0, 20.0), "HHHH", 10.0, Anchor::Start, INK),
-                Mark::Word {
-                    at: (30.0, 70.0),
-                    text: "HHHH".into(),
-                    size: 10.0,
-                    anchor: Anchor::Start,
-                    color: INK,
-                    upwards: true,
-                },
-            ],
+            marks: vec![square, word((50.0, 20.0)), turned],
         };
         let picture = raster(&figure, 2.0).unwrap();
         assert_eq!((picture.width, picture.height), (200, 160));
@@ -81,27 +66,15 @@ mod tests {
         for mark in &figure.marks[1..] {
             let b = mark.bounds();
             let ink = |b: [f64; 4]| {
-                let mut dark = 0;
-                for y in (b[1] * 2.0) as u32..(b[3] * 2.0) as u32 {
-                    for x in (b[0] * 2.0) as u32..(b[2] * 2.0) as u32 {
-                        dark += u32::from(at(x, y)[0] < 128);
-                    }
-                }
-                dark
+                let [left, top, right, bottom] = b.map(|v| (v * 2.0) as u32);
+                let pixels = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
+                pixels.filter(|&(x, y)| at(x, y)[0] < 128).count()
             };
             assert!(ink(b) > 60, "{b:?}: {}", ink(b));
             // Nothing of it stands beside its box.
             assert_eq!(ink([b[0], b[3] + 1.0, b[2], b[3] + 6.0]), 0);
         }
-        assert!(
-            raster(
-                &Figure {
-                    width: 0.0,
-                    ..figure
-                },
-                1.0
-            )
-            .is_err()
-        );
+        figure.width = 0.0;
+        assert!(raster(&figure, 1.0).is_err());
     }
 }

@@ -5,180 +5,128 @@
 pub const INK: &str = "#222222";
 /// Paler ink, of what matters less.
 pub const PALE: &str = "#666666";
-/// Lines of the grid.
 pub const GRID: &str = "#dddddd";
-/// Paper.
 pub const PAPER: &str = "#ffffff";
 
 /// Colours of series: the palette of Okabe and Ito (2008), which people of every kind of colour vision
 /// can tell apart. Grey takes the place of its yellow, which is too pale on white.
 pub mod color {
-    /// Orange.
     pub const ORANGE: &str = "#e69f00";
-    /// Sky blue.
     pub const SKY: &str = "#56b4e9";
-    /// Bluish green.
     pub const GREEN: &str = "#009e73";
-    /// Blue.
     pub const BLUE: &str = "#0072b2";
-    /// Vermilion, the one that stands out.
     pub const VERMILION: &str = "#d55e00";
-    /// Reddish purple.
     pub const PURPLE: &str = "#cc79a7";
-    /// Black.
     pub const BLACK: &str = "#000000";
-    /// Grey.
     pub const GREY: &str = "#999999";
-    /// All of them.
     pub const ALL: [&str; 8] = [VERMILION, BLUE, BLACK, GREEN, PURPLE, SKY, ORANGE, GREY];
 }
 
-/// Shapes of markers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Marker {
-    /// A disk.
-    Disk,
-    /// A square.
-    Square,
-    /// A triangle that points up.
-    Up,
-    /// A square on its corner.
-    Diamond,
-    /// A star of four points, upright.
-    Plus,
-    /// A triangle that points down.
-    Down,
-    /// A star of four points, slanting.
-    Cross,
-    /// A star of five points.
-    Star,
-    /// A triangle that points to the left.
-    Left,
-    /// A triangle that points to the right.
-    Right,
-    /// A star of six points.
-    Hexagram,
+/// The shape of a marker: corners on a ring, every second one at a part of its radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marker {
+    corners: u8,
+    /// The place of the first corner, as a part of a turn from the top.
+    turn: f64,
+    radius: f64,
+    inner: f64,
 }
 
 impl Marker {
-    /// All shapes.
+    pub const DISK: Self = Self::ring(24, 0.0, 1.1, 1.0);
+    pub const SQUARE: Self = Self::ring(4, 0.125, 1.35, 1.0);
+    pub const UP: Self = Self::ring(3, 0.0, 1.5, 1.0);
+    pub const DIAMOND: Self = Self::ring(4, 0.0, 1.4, 1.0);
+    pub const PLUS: Self = Self::ring(8, 0.0, 1.6, 0.45);
+    pub const DOWN: Self = Self::ring(3, 0.5, 1.5, 1.0);
+    pub const CROSS: Self = Self::ring(8, 0.125, 1.6, 0.45);
+    pub const STAR: Self = Self::ring(10, 0.0, 1.5, 0.45);
+    pub const LEFT: Self = Self::ring(3, 0.75, 1.5, 1.0);
+    pub const RIGHT: Self = Self::ring(3, 0.25, 1.5, 1.0);
+    pub const HEXAGRAM: Self = Self::ring(12, 0.0, 1.5, 0.577);
     pub const ALL: [Self; 11] = [
-        Self::Disk,
-        Self::Square,
-        Self::Up,
-        Self::Diamond,
-        Self::Plus,
-        Self::Down,
-        Self::Cross,
-        Self::Star,
-        Self::Left,
-        Self::Right,
-        Self::Hexagram,
+        Self::DISK,
+        Self::SQUARE,
+        Self::UP,
+        Self::DIAMOND,
+        Self::PLUS,
+        Self::DOWN,
+        Self::CROSS,
+        Self::STAR,
+        Self::LEFT,
+        Self::RIGHT,
+        Self::HEXAGRAM,
     ];
 
-    /// Its corners about `(x, y)`, of about the area of a square of side `size`.
-    #[must_use]
-    pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
-        let ring = |corners: usize, turn: f64, radius: f64, inner: f64| -> Vec<(f64, f64)> {
-            (0..corners)
-                .map(|k| {
-                    let angle = std::f64::consts::TAU * (k as f64 / corners as f64 + turn);
-                    let radius = if k % 2 == 0 { radius } else { radius * inner };
-                    (radius * angle.sin(), -radius * angle.cos())
-                })
-                .collect()
-        };
-        let corners = match self {
-            Self::Disk => ring(24, 0.0, 1.1, 1.0),
-            Self::Square => ring(4, 0.125, 1.35, 1.0),
-            Self::Up => ring(3, 0.0, 1.5, 1.0),
-            Self::Diamond => ring(4, 0.0, 1.4, 1.0),
-            Self::Plus => ring(8, 0.0, 1.6, 0.45),
-            Self::Down => ring(3, 0.5, 1.5, 1.0),
-            Self::Cross => ring(8, 0.125, 1.6, 0.45),
-            Self::Hexagram => ring(12, 0.0, 1.5, 0.577),
-            Self::Star => ring(10, 0.0, 1.5, 0.45),
-            Self::Left => ring(3, 0.75, 1.5, 1.0),
-            Self::Right => ring(3, 0.25, 1.5, 1.0),
-        };
-        corners
-            .into_iter()
-            .map(|(dx, dy)| (x + dx * size / 2.0, y + dy * size / 2.0))
-            .collect()
-    }
-}
-
-/// How a line is broken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dash {
-    /// It is not.
-    Solid,
-    /// Into dashes: of guides alone, fronts and prints, so that no search is taken for one.
-    Guide,
-    /// Into long dashes.
-    Long,
-    /// Into short dashes.
-    Short,
-    /// Into dots.
-    Dots,
-    /// Into dashes and dots.
-    DashDot,
-}
-
-impl Dash {
-    /// Lengths of dashes and gaps in turn, pixels; empty of a solid line.
-    #[must_use]
-    pub fn pattern(self) -> &'static [f32] {
-        match self {
-            Self::Solid => &[],
-            Self::Guide => &[5.0, 4.0],
-            Self::Long => &[12.0, 3.0],
-            Self::Short => &[3.0, 2.0],
-            Self::Dots => &[1.5, 3.0],
-            Self::DashDot => &[8.0, 3.0, 1.5, 3.0],
+    const fn ring(corners: u8, turn: f64, radius: f64, inner: f64) -> Self {
+        Self {
+            corners,
+            turn,
+            radius,
+            inner,
         }
     }
+
+    /// Its corners about `(x, y)`, of about the area of a square of side `size`.
+    pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
+        let corner = |k: u8| {
+            let turn = f64::from(k) / f64::from(self.corners) + self.turn;
+            let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+            let part = if k.is_multiple_of(2) { 1.0 } else { self.inner };
+            let radius = self.radius * part * size / 2.0;
+            (x + radius * sin, y - radius * cos)
+        };
+        (0..self.corners).map(corner).collect()
+    }
+}
+
+/// How a line is broken: lengths of dashes and gaps in turn, pixels; empty of a solid line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dash(pub &'static [f32]);
+
+impl Dash {
+    pub const SOLID: Self = Self(&[]);
+    /// Of guides alone, fronts and prints, so that no search is taken for one.
+    pub const GUIDE: Self = Self(&[5.0, 4.0]);
+    pub const LONG: Self = Self(&[12.0, 3.0]);
+    pub const SHORT: Self = Self(&[3.0, 2.0]);
+    pub const DOTS: Self = Self(&[1.5, 3.0]);
+    pub const DASH_DOT: Self = Self(&[8.0, 3.0, 1.5, 3.0]);
 }
 
 /// How a series looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
     /// Colour of its markers and lines, `#rrggbb`.
     pub color: &'static str,
-    /// Shape of its markers.
     pub marker: Marker,
-    /// How its lines are broken.
     pub dash: Dash,
     /// True if it is prominent: larger markers, thicker lines.
     pub heavy: bool,
-    /// True if its markers are filled.
     pub filled: bool,
 }
 
 impl Style {
     /// A filled marker on a solid line.
-    #[must_use]
     pub const fn new(color: &'static str, marker: Marker) -> Self {
         Self {
             color,
             marker,
-            dash: Dash::Solid,
+            dash: Dash::SOLID,
             heavy: false,
             filled: true,
         }
     }
 
     /// Width of its lines, pixels: thinner where markers are hollow.
-    #[must_use]
     pub fn line(self) -> f64 {
         let full = if self.heavy { 2.6 } else { 1.6 };
         if self.filled { full } else { 0.7 * full }
     }
 
-    /// The marker's corners about `(x, y)`, of the area of a square of side `size`, larger where it
+    /// The marker's corners about a place, of the area of a square of side `size`, larger where it
     /// stands out.
-    #[must_use]
-    pub fn corners(self, x: f64, y: f64, size: f64) -> Vec<(f64, f64)> {
+    pub fn corners(self, (x, y): (f64, f64), size: f64) -> Vec<(f64, f64)> {
         let size = if self.heavy { 1.3 * size } else { size };
         self.marker.corners(x, y, size)
     }
@@ -196,10 +144,10 @@ mod tests {
         }
         let heavy = Style {
             heavy: true,
-            ..Style::new(color::VERMILION, Marker::Disk)
+            ..Style::new(color::VERMILION, Marker::DISK)
         };
-        let light = Style::new(color::VERMILION, Marker::Disk);
+        let light = Style::new(color::VERMILION, Marker::DISK);
         assert!(heavy.line() > light.line());
-        assert!(heavy.corners(0.0, 0.0, 10.0)[0].1 < light.corners(0.0, 0.0, 10.0)[0].1);
+        assert!(heavy.corners((0.0, 0.0), 10.0)[0].1 < light.corners((0.0, 0.0), 10.0)[0].1);
     }
 }

@@ -1,10 +1,11 @@
 //! Charts of points over two axes: series joined by lines, fronts, fitted laws.
 
 use super::axis::{Axis, Scale};
-use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, WIDTH, dot, strike, unresolved};
+use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, UNRESOLVED, WIDTH, dot, strike};
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
-use super::{Anchor, Bounds, Figure, Mark, overlap};
+use super::{Anchor, Bounds, Figure, Mark, Place, Word, overlap};
+use crate::report::plan::grouped;
 
 /// Size of words beside points.
 const SMALL: f64 = 12.0;
@@ -12,9 +13,7 @@ const SMALL: f64 = 12.0;
 /// A point of a series.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Across.
     pub x: f64,
-    /// Up.
     pub y: f64,
     /// The ends of its interval across, where they are known.
     pub spread: Option<(f64, f64)>,
@@ -27,16 +26,25 @@ pub struct Point {
     pub label: Option<String>,
 }
 
+impl Point {
+    /// A point without an interval.
+    pub fn at(x: f64, y: f64) -> Self {
+        Self {
+            x,
+            y,
+            ..Self::default()
+        }
+    }
+}
+
 /// Points of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// Its name in the legend; empty: not listed. Series of one name share an entry there.
     pub name: String,
-    /// How it looks.
     pub style: Style,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
-    /// True if a line joins them.
     pub joined: bool,
 }
 
@@ -45,13 +53,9 @@ pub struct Series {
 pub struct Guide {
     /// Its name in the legend; empty: not listed.
     pub name: String,
-    /// Its points.
     pub points: Vec<(f64, f64)>,
-    /// Colour.
     pub color: &'static str,
-    /// How it is broken.
     pub dash: Dash,
-    /// Width, pixels.
     pub width: f64,
 }
 
@@ -62,7 +66,7 @@ impl Guide {
             name: name.to_owned(),
             points,
             color: PALE,
-            dash: Dash::Guide,
+            dash: Dash::GUIDE,
             width: 1.8,
         }
     }
@@ -71,13 +75,9 @@ impl Guide {
 /// A chart of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct XyChart {
-    /// Its title.
     pub title: String,
-    /// Across.
     pub x: Axis,
-    /// Up.
     pub y: Axis,
-    /// The points.
     pub series: Vec<Series>,
     /// Lines below them.
     pub guides: Vec<Guide>,
@@ -98,22 +98,20 @@ struct Plot {
 }
 
 impl Plot {
-    fn at(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+    fn at(&self, x: f64, y: f64) -> Option<Place> {
         let [left, top, right, bottom] = self.bounds;
         let (x, y) = (self.x.place(x)?, self.y.place(y)?);
         Some((left + x * (right - left), bottom - y * (bottom - top)))
     }
 
     /// The parts of a guide within the plot.
-    fn parts(&self, guide: &Guide) -> Vec<Vec<(f64, f64)>> {
+    fn parts(&self, guide: &Guide) -> Vec<Vec<Place>> {
         let points = guide.points.iter().filter_map(|p| self.at(p.0, p.1));
         clip(&points.collect::<Vec<_>>(), self.bounds)
     }
 }
 
 impl XyChart {
-    /// Lays the chart out.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         let points = || self.series.iter().flat_map(|s| &s.points);
         // Intervals that are too wide must not stretch an axis.
@@ -150,32 +148,20 @@ impl XyChart {
     }
 
     fn legend(&self, drawn: impl Fn(&Guide) -> bool) -> Vec<(String, Vec<Key>)> {
-        let series = self.series.iter().map(|s| {
-            (
-                s.name.clone(),
-                Key::Dot(s.style, s.joined && s.points.len() > 1),
-            )
-        });
-        let guides = self
-            .guides
-            .iter()
-            .filter(|g| drawn(g))
-            .map(|g| (g.name.clone(), Key::Line(g.color, g.dash)));
+        let line = |s: &Series| s.joined && s.points.len() > 1;
+        let dot = |s: &Series| Key::Dot(s.style, line(s));
+        let series = self.series.iter().map(|s| (&*s.name, dot(s)));
+        let guides = self.guides.iter().filter(|g| drawn(g));
+        let guides = guides.map(|g| (&*g.name, Key::Line(g.color, g.dash)));
         let mut points = self.series.iter().flat_map(|s| &s.points);
-        let struck = points.any(|p| p.unresolved).then(unresolved);
-        let mut all: Vec<(String, Vec<Key>)> = Vec::new();
-        for (name, key) in series
-            .chain(guides)
-            .chain(struck)
-            .filter(|(name, _)| !name.is_empty())
-        {
-            match all.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, keys)) if keys.contains(&key) => {}
-                Some((_, keys)) => keys.push(key),
-                None => all.push((name, vec![key])),
-            }
-        }
-        all
+        let struck = points.any(|p| p.unresolved).then_some(UNRESOLVED);
+        let all = series.chain(guides).chain(struck);
+        let named = grouped(all.filter(|(name, _)| !name.is_empty()), |(name, _)| *name);
+        let entry = |(name, keys): (&str, Vec<(&str, Key)>)| {
+            let keys = grouped(keys, |(_, key)| *key).into_iter();
+            (name.to_owned(), keys.map(|(key, _)| key).collect())
+        };
+        named.into_iter().map(entry).collect()
     }
 }
 
@@ -183,16 +169,17 @@ impl Drawing {
     /// Words keep off level and upright lines.
     fn guide(&mut self, plot: &Plot, guide: &Guide) {
         for points in plot.parts(guide) {
-            let straight = points
-                .windows(2)
-                .filter(|w| w[0].0 == w[1].0 || w[0].1 == w[1].1);
-            self.taken.extend(straight.map(|w| {
-                let (low, high) = (w[0].0.min(w[1].0), w[0].0.max(w[1].0));
-                let (upper, lower) = (w[0].1.min(w[1].1), w[0].1.max(w[1].1));
-                [low - 1.0, upper - 1.0, high + 1.0, lower + 1.0]
-            }));
-            self.sheet
-                .line(points, guide.color, guide.width, guide.dash);
+            for w in points.windows(2) {
+                let ([a, b], [upper, lower]) = ([w[0].0, w[1].0], [w[0].1, w[1].1]);
+                if a == b || upper == lower {
+                    let (left, top) = (a.min(b), upper.min(lower));
+                    let (right, bottom) = (a.max(b), upper.max(lower));
+                    let around = [left - 1.0, top - 1.0, right + 1.0, bottom + 1.0];
+                    self.taken.push(around);
+                }
+            }
+            let Guide { color, width, .. } = *guide;
+            self.sheet.line(points, color, width, guide.dash);
         }
     }
 
@@ -207,9 +194,9 @@ impl Drawing {
             let Some((Some(a), Some(b))) = ends else {
                 continue;
             };
-            self.taken
-                .push([a.0 - 1.0, a.1 - 1.0, b.0 + 1.0, b.1 + 1.0]);
-            self.sheet.line([a, b], color, 1.2, Dash::Solid);
+            let around = [a.0 - 1.0, a.1 - 1.0, b.0 + 1.0, b.1 + 1.0];
+            self.taken.push(around);
+            self.sheet.line([a, b], color, 1.2, Dash::SOLID);
         }
     }
 
@@ -218,13 +205,12 @@ impl Drawing {
         for series in all {
             let style = series.style;
             let points = series.points.iter();
-            let places: Vec<_> = points
-                .filter_map(|p| Some((plot.at(p.x, p.y)?, p)))
-                .collect();
+            let places = points.filter_map(|p| Some((plot.at(p.x, p.y)?, p)));
+            let places: Vec<_> = places.collect();
             if series.joined && places.len() > 1 {
                 let points: Vec<_> = places.iter().map(|(place, _)| *place).collect();
-                self.sheet
-                    .line(points, style.color, style.line(), style.dash);
+                let width = style.line();
+                self.sheet.line(points, style.color, width, style.dash);
             }
             for ((x, y), point) in places {
                 match point.unresolved {
@@ -266,31 +252,27 @@ fn axes(sheet: &mut Sheet, plot: &Plot, x_label: &str, y_label: &str) {
             continue;
         };
         let y = bottom - place * (bottom - top);
-        sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::Solid);
+        sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::SOLID);
         if y + TEXT * 0.6 < end {
             sheet.word((left - 7.0, y + TEXT * 0.35), text, Anchor::End, INK);
             end = y - TEXT * 0.6;
         }
     }
-    sheet.line(
-        [(left, top), (left, bottom), (right, bottom)],
-        INK,
-        1.0,
-        Dash::Solid,
-    );
+    let frame = [(left, top), (left, bottom), (right, bottom)];
+    sheet.line(frame, INK, 1.0, Dash::SOLID);
     sheet.axis((left, right), bottom, x_label);
-    sheet.0.push(Mark::Word {
+    sheet.0.push(Mark::Word(Word {
         at: (EDGE + TEXT * 0.8, (top + bottom) / 2.0),
         text: y_label.to_owned(),
         size: TEXT,
         anchor: Anchor::Middle,
         color: INK,
         upwards: true,
-    });
+    }));
 }
 
 /// A word beside a point, in the first of eight places that is free; none where all are taken.
-fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Option<Mark> {
+fn beside((x, y): Place, text: &str, plot: Bounds, taken: &[Bounds]) -> Option<Mark> {
     let (near, up, down) = (8.0, -8.0, 8.0 + 0.76 * SMALL);
     let level = 0.35 * SMALL;
     let places = [
@@ -303,40 +285,30 @@ fn beside((x, y): (f64, f64), text: &str, plot: Bounds, taken: &[Bounds]) -> Opt
         (-6.0, up, Anchor::End),
         (-6.0, down, Anchor::End),
     ];
-    places
-        .into_iter()
-        .map(|(dx, dy, anchor)| Mark::word((x + dx, y + dy), text, SMALL, anchor, PALE))
-        .find(|mark| {
-            let b = mark.bounds();
-            b[0] > plot[0]
-                && b[1] > plot[1]
-                && b[2] < plot[2]
-                && b[3] < plot[3]
-                // Two numbers side by side must not read as one.
-                && !taken.iter().any(|t| overlap(*t, [b[0] - 4.0, b[1], b[2] + 4.0, b[3]]))
-        })
+    let word = |(dx, dy, anchor)| Mark::word((x + dx, y + dy), text, SMALL, anchor, PALE);
+    places.into_iter().map(word).find(|mark| {
+        let b = mark.bounds();
+        let inside = b[0] > plot[0] && b[1] > plot[1] && b[2] < plot[2] && b[3] < plot[3];
+        // Two numbers side by side must not read as one.
+        let wider = [b[0] - 4.0, b[1], b[2] + 4.0, b[3]];
+        inside && !taken.iter().any(|t| overlap(*t, wider))
+    })
 }
 
 /// The parts of a line within a rectangle (Liang and Barsky, segment by segment).
-fn clip(points: &[(f64, f64)], plot: Bounds) -> Vec<Vec<(f64, f64)>> {
-    let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
+fn clip(points: &[Place], plot: Bounds) -> Vec<Vec<Place>> {
+    let mut parts: Vec<Vec<Place>> = Vec::new();
     for pair in points.windows(2) {
         let (p, q) = (pair[0], pair[1]);
         let (dx, dy) = (q.0 - p.0, q.1 - p.1);
         let (mut from, mut to) = (0.0f64, 1.0f64);
         let mut inside = true;
-        for (step, room) in [
-            (-dx, p.0 - plot[0]),
-            (dx, plot[2] - p.0),
-            (-dy, p.1 - plot[1]),
-            (dy, plot[3] - p.1),
-        ] {
-            if step == 0.0 {
-                inside &= room >= 0.0;
-            } else if step < 0.0 {
-                from = from.max(room / step);
-            } else {
-                to = to.min(room / step);
+        let rooms = [p.0 - plot[0], plot[2] - p.0, p.1 - plot[1], plot[3] - p.1];
+        for (step, room) in [-dx, dx, -dy, dy].into_iter().zip(rooms) {
+            match step {
+                0.0 => inside &= room >= 0.0,
+                ..0.0 => from = from.max(room / step),
+                _ => to = to.min(room / step),
             }
         }
         if !inside || from > to {

@@ -28,9 +28,7 @@ fn technique_of(scene: &str, technique: &str) -> String {
 
 /// The place of a technique's row; one that is not known is last.
 fn place_of(technique: &str) -> usize {
-    let known = TECHNIQUES
-        .iter()
-        .position(|name| technique.starts_with(name));
+    let known = TECHNIQUES.iter().position(|t| technique.starts_with(t));
     known.unwrap_or(TECHNIQUES.len())
 }
 
@@ -52,8 +50,8 @@ impl Cell {
             return "–".to_owned();
         }
         let mean = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
-        let end = |pick: fn(f64, f64) -> f64| self.logs.iter().copied().reduce(pick);
-        let ends = [f64::min, f64::max].map(|pick| end(pick).unwrap_or(0.0).exp());
+        let low = self.logs.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let depth = match self.depths.as_slice() {
             [] => "–".to_owned(),
             some => number(mean(some), 2),
@@ -61,8 +59,8 @@ impl Cell {
         format!(
             "**{}** ({} to {}); {depth}; {}",
             number(mean(&self.logs), 2),
-            number(ends[0], 2),
-            number(ends[1], 2),
+            number(low.exp(), 2),
+            number(high.exp(), 2),
             percent(self.wrong / self.pixels.max(1.0))
         )
     }
@@ -71,41 +69,33 @@ impl Cell {
 /// The default search in every run, as a Markdown table: its time over that of the RBM baseline in
 /// the same picture and stage (geometric mean, and the range over pictures), its depth error (99th
 /// percentile in h/512, geometric mean), and its wrong pixels over those of the picture.
-///
-/// # Errors
-/// A file of a folder cannot be read.
 pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
     // The key: the technique's place, its name and tolerance, and true for compute.
     let mut rows: BTreeMap<(usize, String, bool), Vec<Cell>> = BTreeMap::new();
     let mut drivers = Vec::new();
     for (column, folder) in folders.iter().enumerate() {
         let run = Run::load(folder.as_ref())?;
-        let table = &run.results;
-        let at = |name: &str| table.column(name);
-        let (solver, stage, tolerance) = (at("solver")?, at("stage")?, at("tolerance_px")?);
-        drivers.push(match table.records.first() {
-            Some(first) => first[at("driver")?].clone(),
-            None => String::new(),
-        });
-        for (index, record) in table.records.iter().enumerate() {
-            let ratio = run.over_baseline(index + 1);
+        drivers.push(run.machine()[1].1.to_owned());
+        for (row, record) in run.results.records.iter().enumerate() {
+            let at = |name: &str| run.at(record, name);
+            let ratio = run.over_baseline(row);
             let time = ratio.and_then(|passes| stats::geometric(&passes));
-            let (true, Some(time)) = (record[solver] == Method::DEFAULT.name(), time) else {
+            let (true, Some(time)) = (at("solver") == Method::DEFAULT.name(), time) else {
                 continue;
             };
-            let technique = technique_of(&record[at("scene")?], &record[at("technique")?]);
+            let technique = technique_of(at("scene"), at("technique"));
             let mut name = technique.clone();
-            if !matches!(record[tolerance].as_str(), "" | "0") {
-                name += &format!(", tolerance {} pixels", record[tolerance]);
+            if !matches!(at("tolerance_px"), "" | "0") {
+                name += &format!(", tolerance {} pixels", at("tolerance_px"));
             }
-            let key = (place_of(&technique), name, record[stage] == "compute");
+            let key = (place_of(&technique), name, at("stage") == "compute");
             let none = || folders.iter().map(|_| Cell::default()).collect();
             let cell = &mut rows.entry(key).or_insert_with(none)[column];
-            let value = |name: &str| Ok(record[at(name)?].parse::<f64>().unwrap_or(0.0));
+            let value = |name: &str| at(name).parse::<f64>().unwrap_or(0.0);
             cell.logs.push(time.value.ln());
-            cell.wrong += value("missed")? + value("ghost")?;
-            cell.pixels += value("width")? * value("height")?;
-            let depth = value("depth_p99_texels")?;
+            cell.wrong += value("missed") + value("ghost");
+            cell.pixels += value("width") * value("height");
+            let depth = value("depth_p99_texels");
             cell.depths.extend((depth > 0.0).then(|| depth.ln()));
         }
     }
@@ -122,12 +112,11 @@ pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::tests::folder_of;
     use super::*;
-    use crate::report::columns::tests::csv_of;
-    use crate::report::folder::{raw, write_text};
     use crate::report::plan::rbm_baseline;
     use crate::report::row::Row;
-    use crate::report::row::tests::row;
+    use crate::report::row::tests::timed;
     use crate::report::view::tests::spindle;
     use revmap::settings::DrawStage;
 
@@ -135,26 +124,18 @@ mod tests {
     fn run(driver: &str, ms: &[(&str, DrawStage, f64)]) -> tempfile::TempDir {
         let mut rows: Vec<Row> = Vec::new();
         for &(scene, stage, ms) in ms {
-            let mut ours = row(&[&[(None, ms)], &[(None, ms)]]);
+            let mut ours = timed(&[ms, ms]);
             ours.scene = scene.to_owned();
             ours.settings.stage = stage;
             ours.settings.method = Method::DEFAULT;
             ours.errors.missed = 48;
-            let mut papers = row(&[&[(None, 20.0)], &[(None, 20.0)]]);
+            let mut papers = timed(&[20.0, 20.0]);
             papers.scene = ours.scene.clone();
             papers.settings = rbm_baseline(&spindle(), &ours.settings);
             papers.source = papers.settings.map_source;
             rows.extend([ours, papers]);
         }
-        let folder = tempfile::tempdir().unwrap();
-        let files = [
-            ("results.csv", csv_of(&rows, "device", driver)),
-            ("raw.csv", raw(&rows)),
-        ];
-        for (file, table) in files {
-            write_text(&folder.path().join(file), &table.csv()).unwrap();
-        }
-        folder
+        folder_of(&rows, "device", driver)
     }
 
     #[test]
@@ -170,22 +151,14 @@ mod tests {
             ],
         );
         let second = run("two", &[("vase-revolution", fragment, 40.0)]);
-        let text = markdown(&[first.path(), second.path()]).unwrap();
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "| technique | stage | one 1.2 | two |");
-        assert_eq!(
-            lines[2],
-            "| revolution | fragment | **0.5** (0.25 to 1); –; 0.01 % | **2** (2 to 2); –; 0.01 % |"
-        );
-        assert_eq!(
-            lines[3],
-            "| revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |"
-        );
-        assert_eq!(
-            lines[4],
-            "| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |"
-        );
-        assert_eq!(lines.len(), 5);
+        let wanted = "\
+| technique | stage | one 1.2 | two |
+|---|---|---|---|
+| revolution | fragment | **0.5** (0.25 to 1); –; 0.01 % | **2** (2 to 2); –; 0.01 % |
+| revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |
+| textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |
+";
+        assert_eq!(markdown(&[first.path(), second.path()]).unwrap(), wanted);
         assert!(markdown(&[first.path().join("none")]).is_err());
     }
 }

@@ -3,20 +3,29 @@
 use crate::report::columns::{CONTRACT, results as columns};
 use crate::report::machine;
 use crate::report::stats;
-use crate::report::table::Table;
+use crate::report::table::{Table, text_of};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A run as read.
 pub(super) struct Run {
     /// `results.csv`.
     pub(super) results: Table,
-    /// Each row's medians by pass.
-    pub(super) medians: HashMap<usize, Vec<f64>>,
+    /// Times of each row (counted from 1) in each pass.
+    samples: BTreeMap<(usize, usize), Vec<f64>>,
     /// The processor, with its threads; empty without `machine.txt`.
     processor: String,
+}
+
+/// A record of `raw.csv`.
+#[derive(serde::Deserialize)]
+struct Sample {
+    row: usize,
+    pass: usize,
+    gpu_ms: Option<f64>,
+    frame_ms: f64,
 }
 
 /// Columns that make a row the RBM baseline, and their values.
@@ -27,21 +36,29 @@ const BASELINE: [(&str, &[&str]); 4] = [
     ("map_format", &["rgba8"]),
 ];
 
+/// Columns that name a picture in a stage.
+const PICTURE: [&str; 9] = [
+    "scene",
+    "technique",
+    "extend",
+    "bevel",
+    "chamfer",
+    "stage",
+    "width",
+    "height",
+    "objects",
+];
+
 impl Run {
     /// Reads the folder of a run.
     pub(super) fn load(folder: &Path) -> Result<Self> {
-        let mut results = Table::load(&folder.join("results.csv"))?;
+        let file = folder.join("results.csv");
+        let mut results = Table::load(&file)?;
         // Later versions may add columns.
-        let mut header = results.header.iter().map(String::as_str).take(CONTRACT);
-        if !columns()
-            .take(CONTRACT)
-            .all(|name| header.next() == Some(name))
-        {
-            return Err(Error::new(
-                ErrorKind::File,
-                "has other columns than this version writes; measure again",
-            )
-            .in_file(folder.join("results.csv")));
+        let header = results.header.iter().take(CONTRACT);
+        if !header.eq(columns().take(CONTRACT)) {
+            let message = "has other columns than this version writes; measure again";
+            return Err(Error::new(ErrorKind::File, message).in_file(file));
         }
         let solver = results.column("solver")?;
         for record in &mut results.records {
@@ -50,114 +67,75 @@ impl Run {
                 Solver::Exact.name().clone_into(&mut record[solver]);
             }
         }
-        let raw_file = folder.join("raw.csv");
-        let raw = Table::load(&raw_file)?;
-        let named = |name: &str| raw.column(name).map_err(|e| e.in_file(&raw_file));
-        let (row, pass, gpu, frame) = (
-            named("row")?,
-            named("pass")?,
-            named("gpu_ms")?,
-            named("frame_ms")?,
-        );
-        let mut samples: HashMap<usize, HashMap<usize, Vec<f64>>> = HashMap::new();
-        let gpu_column = results.column("gpu_ms_median")?;
-        for record in &raw.records {
-            let whole = |at: usize| {
-                record[at].parse::<usize>().map_err(|_| {
-                    Error::new(
-                        ErrorKind::File,
-                        format!("{:?} is no number; measure again", record[at]),
-                    )
-                    .in_file(&raw_file)
-                })
-            };
-            let row = whole(row)?;
-            let told = results
-                .records
-                .get(row.wrapping_sub(1))
-                .is_some_and(|r| !r[gpu_column].is_empty());
-            let ms = record[if told { gpu } else { frame }].parse::<f64>();
-            // A device's clock that was rejected has its wall clock in doubt as well.
-            let rejected = !told && !record[gpu].is_empty();
-            if let (Ok(ms), false) = (ms, rejected) {
-                samples
-                    .entry(row)
-                    .or_default()
-                    .entry(whole(pass)?)
-                    .or_default()
-                    .push(ms);
-            }
-        }
-        let medians = samples.into_iter().map(|(row, passes)| {
-            let mut passes: Vec<_> = passes.into_iter().collect();
-            passes.sort_by_key(|(pass, _)| *pass);
-            (
-                row,
-                passes
-                    .iter()
-                    .filter_map(|(_, times)| stats::median(times))
-                    .collect(),
-            )
-        });
+        let samples = samples(&folder.join("raw.csv"), &results)?;
         // Tables that were put together from several runs have none.
-        let note = std::fs::read_to_string(folder.join("machine.txt")).unwrap_or_default();
+        let note = std::fs::read_to_string(folder.join("machine.txt"));
+        let note = note.unwrap_or_default();
         Ok(Self {
             results,
-            medians: medians.collect(),
+            samples,
             processor: machine::field(&note, "processor", ':').unwrap_or_default(),
         })
     }
 
-    /// The passes' medians of a row (counted from 1), each over that of the RBM baseline which
+    /// A field of a record; empty where the run lacks the column.
+    pub(super) fn at<'a>(&self, record: &'a [String], name: &str) -> &'a str {
+        let place = self.results.column(name);
+        place.map_or("", |place| record[place].as_str())
+    }
+
+    /// The medians of a row (counted from 0) by pass; none where its clocks disagree.
+    pub(super) fn medians(&self, row: usize) -> Vec<f64> {
+        let passes = self.samples.range((row + 1, 0)..(row + 2, 0));
+        let medians = passes.filter_map(|(_, times)| stats::median(times));
+        medians.collect()
+    }
+
+    /// The passes' medians of a row (counted from 0), each over that of the RBM baseline which
     /// shows the same picture in the same stage.
     pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
-        let at = |name: &str| columns().position(|c| c == name);
-        let record = self.results.records.get(row.checked_sub(1)?)?;
-        let is_baseline = |r: &[String]| {
-            BASELINE
-                .iter()
-                .all(|(c, values)| at(c).is_some_and(|k| values.contains(&r[k].as_str())))
+        let record = self.results.records.get(row)?;
+        let baseline = |r: &[String]| {
+            let mut columns = BASELINE.iter();
+            columns.all(|(column, values)| values.contains(&self.at(r, column)))
         };
-        if is_baseline(record) {
-            return None;
-        }
-        let picture = [
-            "scene",
-            "technique",
-            "extend",
-            "bevel",
-            "chamfer",
-            "stage",
-            "width",
-            "height",
-            "objects",
-        ];
-        let same = |r: &[String]| {
-            picture
-                .iter()
-                .all(|c| at(c).is_some_and(|k| r[k] == record[k]))
-        };
-        let rival = self
-            .results
-            .records
-            .iter()
-            .position(|r| is_baseline(r) && same(r))?
-            + 1;
-        let (own, rival) = (self.medians.get(&row)?, self.medians.get(&rival)?);
-        Some(own.iter().zip(rival).map(|(a, b)| a / b).collect())
+        let same = |r: &[String]| PICTURE.iter().all(|c| self.at(r, c) == self.at(record, c));
+        let mut records = self.results.records.iter();
+        let rival = records.position(|r| baseline(r) && same(r))?;
+        let (own, rival) = (self.medians(row), self.medians(rival));
+        let over = own.iter().zip(rival).map(|(a, b)| a / b);
+        (!baseline(record)).then(|| over.collect())
     }
 
     /// Device, driver and processor, each with its name; empty where unknown.
-    pub(super) fn machine(&self) -> [(&'static str, String); 3] {
-        let first = |name: &str| {
-            let at = self.results.column(name).ok()?;
-            Some(self.results.records.first()?[at].clone())
-        };
-        let named = |name| (name, first(name).unwrap_or_default());
-        [
-            named("device"),
-            named("driver"),
-            ("processor", self.processor.clone()),
-        ]
+    pub(super) fn machine(&self) -> [(&'static str, &str); 3] {
+        let first = self.results.records.first();
+        let named = |name| (name, first.map_or("", |record| self.at(record, name)));
+        let processor = ("processor", self.processor.as_str());
+        [named("device"), named("driver"), processor]
     }
+}
+
+/// Reads the times of `raw.csv`.
+fn samples(file: &Path, results: &Table) -> Result<BTreeMap<(usize, usize), Vec<f64>>> {
+    let fault = |e: csv::Error| {
+        let message = format!("{e}; measure again");
+        Error::new(ErrorKind::File, message).in_file(file)
+    };
+    let gpu = results.column("gpu_ms_median")?;
+    let mut samples: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
+    let text = text_of(file)?;
+    for sample in csv::Reader::from_reader(text.as_bytes()).deserialize() {
+        let sample: Sample = sample.map_err(fault)?;
+        let record = results.records.get(sample.row.wrapping_sub(1));
+        let told = record.is_some_and(|r| !r[gpu].is_empty());
+        let ms = match sample.gpu_ms {
+            Some(ms) => told.then_some(ms),
+            None => (!told).then_some(sample.frame_ms),
+        };
+        // A device's clock that was rejected has its wall clock in doubt as well.
+        let pass = samples.entry((sample.row, sample.pass)).or_default();
+        pass.extend(ms);
+    }
+    Ok(samples)
 }

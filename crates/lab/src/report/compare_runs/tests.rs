@@ -4,25 +4,32 @@ use super::super::folder::{raw, write_text};
 use super::super::row::Row;
 use super::super::row::tests::row;
 use super::*;
+use crate::report::columns::results;
+use crate::report::plan::rbm_baseline;
+use crate::report::view::tests::spindle;
 use revmap::settings::DrawStage;
 
-fn run(rows: &[Row]) -> tempfile::TempDir {
+/// The folder of a run of these rows.
+pub(super) fn folder_of(rows: &[Row], device: &str, driver: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let results = csv_of(rows, "device, with a comma", "driver");
+    let results = csv_of(rows, device, driver);
     write_text(&folder.path().join("results.csv"), &results.csv()).unwrap();
     write_text(&folder.path().join("raw.csv"), &raw(rows).csv()).unwrap();
     folder
 }
 
+fn run(rows: &[Row]) -> tempfile::TempDir {
+    folder_of(rows, "device, with a comma", "driver")
+}
+
+fn verdicts(found: &Against) -> Vec<Verdict> {
+    found.pairs.iter().map(Pair::verdict).collect()
+}
+
 fn timed(times: [f64; 4], stage: DrawStage) -> Row {
-    let passes = times.map(|t| {
-        [
-            (Some(t * 0.99), t),
-            (Some(t), t * 1.01),
-            (Some(t * 0.98), t),
-        ]
-    });
-    let mut row = row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>());
+    let pass = |t: f64| [(0.99 * t, t), (t, 1.01 * t), (0.98 * t, t)];
+    let passes = times.map(|t| pass(t).map(|(gpu, frame)| (Some(gpu), frame)));
+    let mut row = row(&passes.each_ref().map(|p| p.as_slice()));
     row.settings.stage = stage;
     row
 }
@@ -37,18 +44,13 @@ fn planted_changes_are_found() {
     slow.errors.missed = 40;
     let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
     let found = compare(old.path(), new.path()).unwrap();
-    assert_eq!(
-        found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
-        [Verdict::Slower, Verdict::Same]
-    );
+    assert_eq!(verdicts(&found), [Verdict::Slower, Verdict::Even]);
     assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
     assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
     let text = as_text(&found);
-    assert!(
-        text.contains("1 slower, 0 faster, 1 within")
-            && text.contains("less exact: fragment: missed 0 to 40"),
-        "{text}"
-    );
+    assert!(text.contains("1 slower, 0 faster, 1 within"), "{text}");
+    let worse = "less exact: fragment: missed 0 to 40";
+    assert!(text.contains(worse), "{text}");
     let back = compare(new.path(), old.path()).unwrap();
     assert_eq!(back.pairs[0].verdict(), Verdict::Faster);
     assert_eq!(back.pairs[0].better.len(), 1);
@@ -60,10 +62,7 @@ fn planted_changes_are_found() {
 fn a_slower_machine_is_told_from_a_slower_search() {
     let papers = |times| {
         let mut row = timed(times, DrawStage::Fragment);
-        row.settings = crate::report::plan::rbm_baseline(
-            &crate::report::view::tests::spindle(),
-            &row.settings,
-        );
+        row.settings = rbm_baseline(&spindle(), &row.settings);
         row.source = row.settings.map_source;
         row
     };
@@ -83,10 +82,8 @@ fn a_slower_machine_is_told_from_a_slower_search() {
         search([15.0, 15.2, 14.8, 15.0], 40),
     ]);
     let found = compare(old.path(), new.path()).unwrap();
-    assert_eq!(
-        found.pairs.iter().map(Pair::verdict).collect::<Vec<_>>(),
-        [Verdict::Slower, Verdict::Same, Verdict::Slower]
-    );
+    let wanted = [Verdict::Slower, Verdict::Even, Verdict::Slower];
+    assert_eq!(verdicts(&found), wanted);
     assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
     assert!(as_text(&found).contains("the RBM baseline itself differs"));
 }
@@ -100,56 +97,48 @@ fn two_machines_are_named() {
         write_text(&folder.path().join("machine.txt"), &text).unwrap();
     };
     note(&old, "Xeon, 2 threads");
+    let warnings = || compare(old.path(), new.path()).unwrap().warnings;
     // A run without the note: nothing is known to differ.
-    assert_eq!(compare(old.path(), new.path()).unwrap().warnings, [""; 0]);
+    assert_eq!(warnings(), [""; 0]);
     note(&new, "Xeon, 2 threads");
-    assert_eq!(compare(old.path(), new.path()).unwrap().warnings, [""; 0]);
+    assert_eq!(warnings(), [""; 0]);
     note(&new, "EPYC, 2 threads");
-    let warnings = compare(old.path(), new.path()).unwrap().warnings;
-    assert_eq!(warnings.len(), 1);
+    let said = warnings();
+    assert_eq!(said.len(), 1);
     for word in ["processor", "Xeon, 2 threads", "EPYC, 2 threads"] {
-        assert!(warnings[0].contains(word), "{warnings:?}");
+        assert!(said[0].contains(word), "{said:?}");
     }
     let other = csv_of(&rows, "another device", "another driver");
     write_text(&new.path().join("results.csv"), &other.csv()).unwrap();
-    let warnings = compare(old.path(), new.path()).unwrap().warnings;
-    assert_eq!(warnings.len(), 3);
-    assert!(warnings[0].contains("device, with a comma") && warnings[0].contains("another device"));
-    assert!(warnings[1].contains("another driver"));
+    let said = warnings();
+    assert_eq!(said.len(), 3);
+    for name in ["device, with a comma", "another device"] {
+        assert!(said[0].contains(name), "{said:?}");
+    }
+    assert!(said[1].contains("another driver"));
 }
 
 #[test]
 fn a_rejected_clock_gives_no_verdict() {
     let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
     let mut lies = timed([10.0; 4], DrawStage::Fragment);
-    lies.passes
-        .iter_mut()
-        .flatten()
-        .for_each(|s| s.gpu_ms = Some(0.036));
+    let samples = lies.passes.iter_mut().flatten();
+    samples.for_each(|s| s.gpu_ms = Some(0.036));
     let lies = run(&[lies]);
     let found = compare(fine.path(), lies.path()).unwrap();
-    assert_eq!(found.pairs[0].verdict(), Verdict::Unknown);
+    assert_eq!(verdicts(&found), [Verdict::Unresolved]);
 }
 
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
     let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
-    assert!(
-        compare(a.path(), b.path())
-            .unwrap_err()
-            .to_string()
-            .contains("in common")
-    );
+    let refused = || compare(a.path(), b.path()).unwrap_err().to_string();
+    assert!(refused().contains("in common"));
     let empty = tempfile::tempdir().unwrap();
     let error = compare(a.path(), empty.path()).unwrap_err();
     assert!(error.file.unwrap().ends_with("results.csv"));
     std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
-    assert!(
-        compare(a.path(), b.path())
-            .unwrap_err()
-            .to_string()
-            .contains("other columns")
-    );
+    assert!(refused().contains("other columns"));
     assert_eq!(results().nth(KEY - 1), Some("objects"));
 }

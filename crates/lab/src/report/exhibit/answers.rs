@@ -3,8 +3,7 @@
 
 use crate::method::Method;
 use crate::report::columns::{Cell, Context};
-use crate::report::names::number;
-use crate::report::picture_groups::pictures_of;
+use crate::report::names::{count, number, range};
 use crate::report::plan::{grouped, is_rbm_baseline};
 use crate::report::ratios::{Over, Ratio, between, mean_ms, over};
 use crate::report::row::Row;
@@ -25,7 +24,6 @@ pub enum Question {
 
 impl Question {
     /// The answers from these rows, a sentence or two each; none where the rows do not tell.
-    #[must_use]
     pub fn answers(self, context: &Context, rows: &[&Row]) -> Vec<String> {
         match self {
             Self::Stages => stages(context, rows),
@@ -34,45 +32,66 @@ impl Question {
     }
 }
 
-/// `1 picture`, `4 pictures`.
-pub(in crate::report) fn count(number: usize, what: &str) -> String {
-    match number {
-        1 => format!("1 {what}"),
-        number => format!("{number} {what}s"),
+/// The sentences at the top of a report: a reader wants them first.
+pub(in crate::report) fn findings(context: &Context) -> Vec<String> {
+    let mut all = Question::Stages.answers(context, context.rows);
+    let mesh = "the coarsest mesh that is at least as accurate";
+    for (reference, name) in [
+        (Over::Baseline, context.baseline()),
+        (Over::Mesh, mesh.to_owned()),
+    ] {
+        let mut ratios = over(context.rows.iter().copied(), reference);
+        ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
+        let told = ratios.iter().map(|r| {
+            let (way, stage) = (context.styles.way(&r.settings), r.settings.stage.name());
+            let time = context.known(Some(r.time)).shown();
+            format!(
+                "{way}, {stage} stage: {time} over {}",
+                count(r.pairs.len(), "picture")
+            )
+        });
+        let told = told.collect::<Vec<_>>().join("; ");
+        if !told.is_empty() {
+            all.push(format!(
+                "The default takes this part of the time of {name} (95 % interval): {told}."
+            ));
+        }
     }
+    all
 }
 
-fn owned(rows: &[&Row]) -> Vec<Row> {
-    rows.iter().map(|r| (*r).clone()).collect()
-}
-
-/// `0.97 to 1.07`.
-fn range((low, high): (f64, f64)) -> String {
-    format!("{} to {}", number(low, 3), number(high, 3))
+/// How many times are not resolved, if any is not.
+pub(in crate::report) fn unresolved(context: &Context) -> Option<String> {
+    let wide = |r: &&&Row| r.time().is_some() && !r.resolved(context.resolved);
+    let number = context.rows.iter().filter(wide).count();
+    (number > 0).then(|| {
+        format!(
+            "{number} of {} are not resolved: their 95 % intervals reach more than {:.0} % to either side. They are marked, and are on no front and in no verdict. Measure longer on a quiet machine (--passes, --max-seconds).",
+            count(context.rows.len(), "time"),
+            100.0 * context.resolved
+        )
+    })
 }
 
 /// The answer for each way of drawing by the default search; for other searches where the plan has
 /// it not.
 fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
-    let own = owned(rows);
-    let all = over(&own, Over::Fragment);
-    let default = |r: &&Ratio| r.settings.method == Method::DEFAULT;
-    let drawn = |stage: DrawStage| {
-        let own = |r: &Row| (r.settings.method, r.settings.stage) == (Method::DEFAULT, stage);
-        rows.iter().any(|r| own(r))
-    };
-    let both = drawn(DrawStage::Fragment) && drawn(DrawStage::Compute);
-    if both && !all.iter().any(|r| default(&r)) {
+    let mut ratios = over(rows.iter().copied(), Over::Fragment);
+    let default = |r: &Ratio| r.settings.method == Method::DEFAULT;
+    let both = [DrawStage::Fragment, DrawStage::Compute].map(|stage| {
+        let own = |r: &&Row| (r.settings.method, r.settings.stage) == (Method::DEFAULT, stage);
+        rows.iter().any(own)
+    });
+    let both = both == [true; 2];
+    if both && !ratios.iter().any(default) {
         return vec![format!(
             "On {} the stages cannot be compared for `{}`: in no picture do the clocks agree in both.",
             context.device,
             Method::DEFAULT.name()
         )];
     }
-    let other = |r: &&Ratio| r.settings.method != Method::Floor && !is_rbm_baseline(&r.settings);
-    let chosen = all
-        .iter()
-        .filter(|r| if both { default(r) } else { other(r) });
+    let other = |r: &Ratio| r.settings.method != Method::Floor && !is_rbm_baseline(&r.settings);
+    ratios.retain(|r| if both { default(r) } else { other(r) });
     let sentence = |r: &Ratio| {
         let pictures = r.pairs.len();
         let spread = match pictures {
@@ -97,44 +116,38 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
             count(pictures, "picture"),
         )
     };
-    chosen.map(sentence).collect()
+    ratios.iter().map(sentence).collect()
 }
 
 /// Ways of drawing, the times of both stages side by side, over the pictures that both drew.
 pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
-    let own = owned(rows);
-    let record = |r: &Ratio| {
-        let (compute, fragment): (Vec<&Row>, Vec<&Row>) = r.pairs.iter().copied().unzip();
-        let faster = match r.time.verdict(context.resolved) {
-            Verdict::Faster => "compute",
-            Verdict::Slower => "fragment",
-            Verdict::Even => "no difference resolved",
-            Verdict::Unresolved => "not resolved",
-        };
-        vec![
-            context.styles.way(&r.settings),
-            context.known(mean_ms(&fragment)).shown(),
-            context.known(mean_ms(&compute)).shown(),
-            Cell::Known(r.time).shown(),
-            faster.to_owned(),
-            match r.pairs.len() {
-                1 => Cell::Empty.shown(),
-                _ => range(r.range),
-            },
-            r.pairs.len().to_string(),
-        ]
+    let mean = |rows: Vec<&Row>| context.known(mean_ms(&rows)).shown();
+    let faster = |r: &Ratio| match r.time.verdict(context.resolved) {
+        Verdict::Faster => "compute",
+        Verdict::Slower => "fragment",
+        Verdict::Even => "no difference resolved",
+        Verdict::Unresolved => "not resolved",
     };
-    let header = [
-        "method",
-        "fragment (ms)",
-        "compute (ms)",
-        "compute / fragment",
-        "faster",
-        "range over pictures",
-        "pictures",
-    ];
-    let records = over(&own, Over::Fragment);
-    Table::new(header, records.iter().map(record).collect())
+    let over_pictures = |r: &Ratio| match r.pairs.len() {
+        1 => Cell::Empty.shown(),
+        _ => range(r.range),
+    };
+    Table::of(
+        &over(rows.iter().copied(), Over::Fragment),
+        &[
+            ("method", &|r| context.styles.way(&r.settings)),
+            ("fragment (ms)", &|r| {
+                mean(r.pairs.iter().map(|p| p.1).collect())
+            }),
+            ("compute (ms)", &|r| {
+                mean(r.pairs.iter().map(|p| p.0).collect())
+            }),
+            ("compute / fragment", &|r| Cell::Known(r.time).shown()),
+            ("faster", &|r| faster(r).to_owned()),
+            ("range over pictures", &over_pictures),
+            ("pictures", &|r| r.pairs.len().to_string()),
+        ],
+    )
 }
 
 /// A row of the default search, the fastest other search, and the ratio of their times.
@@ -149,21 +162,15 @@ fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
 }
 
 /// The pair whose ratio is largest, of those that are resolved.
-fn worst<'a, 'b>(context: &Context, pairs: &'b [Pair<'a>]) -> Option<&'b Pair<'a>> {
-    let known = |p: &&Pair| p.2.verdict(context.resolved) != Verdict::Unresolved;
-    let known = pairs.iter().filter(known);
+fn worst<'a, 'b>(
+    context: &Context,
+    pairs: impl Iterator<Item = &'b Pair<'a>>,
+) -> Option<&'b Pair<'a>>
+where
+    'a: 'b,
+{
+    let known = pairs.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
     known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
-}
-
-/// `vase:hard at 64x48 in the compute stage, against quadric`.
-fn named((row, other, _): &Pair) -> String {
-    format!(
-        "{} at {} in the {} stage, against `{}`",
-        row.scene,
-        row.size(),
-        row.settings.stage.name(),
-        other.settings.method
-    )
 }
 
 fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
@@ -171,20 +178,21 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
     if all.is_empty() {
         return None;
     }
-    let of = |verdict: Verdict| {
-        let own = all
-            .iter()
-            .filter(|p| p.2.verdict(context.resolved) == verdict);
-        own.count()
+    let of = |verdict| {
+        let verdicts = all.iter().map(|p| p.2.verdict(context.resolved));
+        verdicts.filter(|v| *v == verdict).count()
     };
-    let pictures = pictures_of(rows).len();
-    let Some(pair) = worst(context, &all) else {
+    let pictures = grouped(rows, |r| r.picture()).len();
+    let Some((row, other, time)) = worst(context, all.iter()) else {
         return Some("No ratio to another search is resolved.".to_owned());
     };
     Some(format!(
-        "The default search takes at most {} of the time of the fastest other search: {}. It is faster in {} of {} measurements ({}), another search in {}; in {} no difference is resolved, and {} are not resolved.",
-        Cell::Known(pair.2).shown(),
-        named(pair),
+        "The default search takes at most {} of the time of the fastest other search: {} at {} in the {} stage, against `{}`. It is faster in {} of {} measurements ({}), another search in {}; in {} no difference is resolved, and {} are not resolved.",
+        Cell::Known(*time).shown(),
+        row.scene,
+        row.size(),
+        row.settings.stage.name(),
+        other.settings.method,
         of(Verdict::Faster),
         all.len(),
         count(pictures, "picture"),
@@ -196,28 +204,24 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
 
 /// For each kind of shadows and size the largest ratio of each stage, and which picture it is of.
 pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
-    let all = pairs(context, rows);
-    let key = |p: &Pair| (p.0.shadow, p.0.settings.width, p.0.settings.height);
-    let mut groups = grouped(&all, |a, b| key(a) == key(b));
+    let mut groups = grouped(pairs(context, rows), |p| {
+        (p.0.shadow, p.0.settings.width, p.0.settings.height)
+    });
     let place = |shadow: Shadow| Shadow::NAMES.iter().position(|n| n.1 == shadow);
-    groups.sort_by_key(|g| (place(g[0].0.shadow), g[0].0.settings.width));
-    let record = |group: &Vec<Pair>| {
-        let first = group[0].0;
-        let mut record = vec![
-            name_of(&Shadow::NAMES, &first.shadow).to_owned(),
-            first.size(),
-        ];
+    groups.sort_by_key(|((shadow, width, _), _)| (place(*shadow), *width));
+    let record = |((shadow, width, height), group): &((Shadow, u32, u32), Vec<Pair>)| {
+        let shadow = name_of(&Shadow::NAMES, shadow).to_owned();
+        let mut record = vec![shadow, format!("{width}x{height}")];
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
-            let own = group.iter().filter(|p| p.0.settings.stage == stage);
-            let own: Vec<Pair> = own.copied().collect();
-            match (worst(context, &own), own.len()) {
-                (Some((row, other, time)), _) => record.extend([
+            let own = || group.iter().filter(|p| p.0.settings.stage == stage);
+            record.extend(match (worst(context, own()), own().count()) {
+                (Some((row, other, time)), _) => [
                     Cell::Known(*time).shown(),
                     format!("{}, {}", other.settings.method, row.scene),
-                ]),
-                (None, 0) => record.extend(["–", "–"].map(str::to_owned)),
-                (None, _) => record.extend(["not resolved", "–"].map(str::to_owned)),
-            }
+                ],
+                (None, 0) => ["–", "–"].map(str::to_owned),
+                (None, _) => ["not resolved", "–"].map(str::to_owned),
+            });
         }
         record
     };
@@ -238,13 +242,17 @@ mod tests {
     use super::*;
     use crate::compare::Spread;
     use crate::report::columns::tests::with_context;
-    use crate::report::row::tests::row;
+    use crate::report::row::tests;
     use revmap::settings::Solver;
+
+    fn depth(p99: f64) -> Spread {
+        let (rms, max) = (p99, p99);
+        Spread { rms, p99, max }
+    }
 
     /// A row of a search in a stage of a picture; its passes take these times.
     fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
-        let passes: Vec<_> = passes.iter().map(|ms| [(None, *ms)]).collect();
-        let mut row = row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>());
+        let mut row = tests::timed(passes);
         row.settings = crate::method::MethodSettings {
             method,
             stage,
@@ -252,20 +260,17 @@ mod tests {
         };
         row.view = view;
         row.scene = format!("scene{view}");
-        let exact = 0.01;
-        row.errors.depth = Some(Spread {
-            rms: exact,
-            p99: exact,
-            max: exact,
-        });
+        row.errors.depth = Some(depth(0.01));
         row
     }
 
     fn stages_of(rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
-        let all: Vec<&Row> = rows.iter().collect();
         with_context(rows, |context| {
-            let table = stages_table(context, &all);
-            (Question::Stages.answers(context, &all), table.records)
+            let table = stages_table(context, context.rows);
+            (
+                Question::Stages.answers(context, context.rows),
+                table.records,
+            )
         })
     }
 
@@ -343,11 +348,7 @@ mod tests {
         let quadric = Method::Search(Solver::Quadric);
         let live = Method::Search(Solver::Live);
         let mut wrong = timed(live, Fragment, 0, &[1.0, 1.0, 1.0]);
-        wrong.errors.depth = Some(crate::compare::Spread {
-            rms: 1.0,
-            p99: 1.5,
-            max: 9.0,
-        });
+        wrong.errors.depth = Some(depth(1.5));
         let rows = [
             timed(Method::DEFAULT, Fragment, 0, &[5.0, 5.1, 5.0]),
             timed(quadric, Fragment, 0, &[10.0, 10.2, 10.0]),
@@ -357,10 +358,12 @@ mod tests {
             timed(Method::DEFAULT, Fragment, 1, &[9.0, 40.0, 20.0]),
             timed(quadric, Fragment, 1, &[5.0, 5.0, 5.0]),
         ];
-        let all: Vec<&Row> = rows.iter().collect();
         let (answers, records) = with_context(&rows, |context| {
-            let table = rivals_table(context, &all);
-            (Question::Rivals.answers(context, &all), table.records)
+            let table = rivals_table(context, context.rows);
+            (
+                Question::Rivals.answers(context, context.rows),
+                table.records,
+            )
         });
         assert_eq!(
             answers,

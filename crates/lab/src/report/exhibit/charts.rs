@@ -9,7 +9,7 @@ use crate::report::chart::xy::{Guide, Point, Series, XyChart};
 use crate::report::columns::{self, Cell, Context};
 use crate::report::growth::growing;
 use crate::report::map_error::MapError;
-use crate::report::plan::is_rbm_baseline;
+use crate::report::plan::{grouped, is_rbm_baseline};
 use crate::report::ratios::{Over, over};
 use crate::report::row::Row;
 use crate::report::series_style::{self, floor_line, of_source};
@@ -85,13 +85,6 @@ pub enum SeriesBy {
     Source,
 }
 
-/// Figures in charts that are not rows.
-#[derive(Clone, Debug, Default)]
-pub struct Extra {
-    /// Errors of maps alone.
-    pub maps: Vec<MapError>,
-}
-
 /// A point before it is part of a line.
 struct Item {
     name: String,
@@ -113,57 +106,55 @@ impl Chart {
     }
 
     /// Draws the chart over these rows: none where there is nothing to show, several where one
-    /// would be longer than a page.
-    ///
-    /// # Errors
-    /// A column of this name does not exist.
-    pub fn figures(&self, context: &Context, rows: &[&Row], extra: &Extra) -> Result<Vec<Figure>> {
-        match self.kind {
-            Kind::Dots => Ok(self.dots(context, rows)),
-            Kind::MapRows => Ok(self.map_rows(context, rows, extra)?.into_iter().collect()),
-            Kind::Points => Ok(self.points(context, rows)?.into_iter().collect()),
+    /// would be longer than a page. `maps`: errors of maps alone, which are not rows.
+    pub fn figures(
+        &self,
+        context: &Context,
+        rows: &[&Row],
+        maps: &[MapError],
+    ) -> Result<Vec<Figure>> {
+        if self.kind == Kind::Dots {
+            return Ok(self.dots(context, rows));
         }
-    }
-
-    fn points(&self, context: &Context, rows: &[&Row]) -> Result<Option<Figure>> {
         let mut rows = rows.to_vec();
         // Meshes from coarse to fine.
         rows.sort_by_key(|r| r.settings.method.quads());
-        let (items, floors) = match self.over {
-            Some(reference) => self.of_ways(context, &rows, reference)?,
-            None => self.of_rows(context, &rows)?,
+        let rows = rows.as_slice();
+        let (items, floors) = match (self.kind, self.over) {
+            (Kind::MapRows, _) => (self.of_maps(context, rows, maps)?, Vec::new()),
+            (_, Some(reference)) => self.of_ways(context, rows, reference)?,
+            (_, None) => self.of_rows(context, rows)?,
         };
         if items.is_empty() {
-            return Ok(None);
+            return Ok(Vec::new());
         }
-        let fronts = fronts(&items);
-        let mut series: Vec<Series> = Vec::new();
-        for item in items {
-            let same = |s: &&mut Series| s.name == item.name && s.style.filled == item.style.filled;
-            match series.iter_mut().find(same) {
-                Some(known) => known.points.push(item.point),
-                None => series.push(Series {
-                    name: item.name,
-                    style: item.style,
-                    points: vec![item.point],
-                    joined: item.joined,
-                }),
-            }
-        }
+        let fronts = match self.front {
+            true => fronts(&items),
+            false => Vec::new(),
+        };
+        let lines = grouped(items, |i| (i.name.clone(), i.style.filled)).into_iter();
+        let mut series: Vec<Series> = lines
+            .map(|((name, _), own)| Series {
+                name,
+                style: own[0].style,
+                joined: own[0].joined,
+                points: own.into_iter().map(|i| i.point).collect(),
+            })
+            .collect();
         self.thin_labels(&mut series, &fronts);
         let (x, y) = self.axes(context, &series, &floors)?;
-        let mut guides = Vec::new();
+        let front = |(stage, best): &(DrawStage, Vec<(f64, f64)>)| Guide {
+            dash: match stage {
+                DrawStage::Fragment => Dash::GUIDE,
+                DrawStage::Compute => Dash::DASH_DOT,
+            },
+            ..Guide::dashed(&format!("Pareto front, {}", stage.name()), stairs(best))
+        };
+        let mut guides: Vec<Guide> = fronts.iter().map(front).collect();
         if self.front {
-            guides.extend(fronts.iter().map(|(stage, best)| Guide {
-                dash: match stage {
-                    DrawStage::Fragment => Dash::Guide,
-                    DrawStage::Compute => Dash::DashDot,
-                },
-                ..Guide::dashed(&format!("Pareto front, {}", stage.name()), stairs(best))
-            }));
             guides.extend(floors);
         }
-        guides.extend(self.guides(context, &rows, &series)?);
+        guides.extend(self.guides(context, rows, &series)?);
         let chart = XyChart {
             title: self.title.clone(),
             x,
@@ -171,20 +162,13 @@ impl Chart {
             series,
             guides,
         };
-        Ok(Some(chart.figure()))
+        Ok(vec![chart.figure()])
     }
 
     /// True if rows without a time have no place in the chart.
     pub fn is_timed(&self) -> bool {
-        match self.kind {
-            Kind::MapRows => false,
-            _ => {
-                self.kind == Kind::Dots
-                    || self.over.is_some()
-                    || is_timed(&self.x)
-                    || is_timed(&self.y)
-            }
-        }
+        let timed = self.over.is_some() || is_timed(&self.x) || is_timed(&self.y);
+        self.kind == Kind::Dots || (self.kind == Kind::Points && timed)
     }
 
     /// Points that are rows, and the lines of floors.
@@ -198,7 +182,7 @@ impl Chart {
                 floors.extend(row.time().map(|time| floor_line(s, time.value)));
                 continue;
             }
-            let (Some(x), Some(y)) = (across.value(), up.value()) else {
+            let (Some(x), Some(height)) = (across.value(), up.value()) else {
                 continue;
             };
             let Some((name, style, joined)) = self.line(context, row) else {
@@ -206,8 +190,7 @@ impl Chart {
             };
             // Zero has no place on a logarithmic axis without a floor.
             let [even_x, even_y] = self.linear;
-            let y_floor = columns::named(&self.y)?.floor;
-            if (x <= 0.0 && !even_x) || (y <= 0.0 && !even_y && y_floor == 0.0) {
+            if (x <= 0.0 && !even_x) || (height <= 0.0 && !even_y && y.floor == 0.0) {
                 continue;
             }
             let label = match self.series {
@@ -215,11 +198,12 @@ impl Chart {
                     Some(format!("{} {}", s.method.name(), row.map_rows.unwrap_or(0)))
                 }
                 SeriesBy::Method => label(context, s),
-                SeriesBy::Way => s.method.is_mesh().then(|| label(context, s)).flatten(),
+                SeriesBy::Way => label(context, s).filter(|_| s.method.is_mesh()),
                 SeriesBy::Scene => None,
             };
             let wide = |name: &str, cell: &Cell| match cell {
-                Cell::Known(_) | Cell::Unresolved(_) => matches!(cell, Cell::Unresolved(_)),
+                Cell::Known(_) => false,
+                Cell::Unresolved(_) => true,
                 _ => is_timed(name) && !row.resolved(context.resolved),
             };
             let unresolved = wide(&self.x, &across) || wide(&self.y, &up);
@@ -230,7 +214,7 @@ impl Chart {
                 stage: s.stage,
                 point: Point {
                     x,
-                    y,
+                    y: height,
                     spread: ends(&self.x, &across, row),
                     rise: ends(&self.y, &up, row),
                     unresolved,
@@ -248,15 +232,14 @@ impl Chart {
         rows: &[&Row],
         reference: Over,
     ) -> Result<(Vec<Item>, Vec<Guide>)> {
-        let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
         let (mut items, mut floors) = (Vec::new(), Vec::new());
-        for ratio in over(&own, reference) {
+        for ratio in over(rows.iter().copied(), reference) {
             let s = &ratio.settings;
             if s.method == Method::Floor {
                 floors.push(floor_line(s, ratio.time.value));
                 continue;
             }
-            let up = tables::cell(context, &own, (reference, &ratio), &self.y)?;
+            let up = tables::cell(context, rows, (reference, &ratio), &self.y)?;
             let Some(y) = up.value() else { continue };
             items.push(Item {
                 name: context.line(s),
@@ -276,6 +259,45 @@ impl Chart {
         Ok((items, floors))
     }
 
+    /// The errors of maps alone beside what the most exact search draws from them, over their rows.
+    fn of_maps(&self, context: &Context, rows: &[&Row], maps: &[MapError]) -> Result<Vec<Item>> {
+        let column = columns::named(&self.y)?;
+        let item = |name: &str, style: Style, count: u32, y: f64| Item {
+            name: name.to_owned(),
+            style,
+            joined: true,
+            stage: DrawStage::Fragment,
+            point: Point::at(count.into(), y),
+        };
+        let Some(method) = most_exact(rows) else {
+            return Ok(Vec::new());
+        };
+        let drawn = |row: &&Row| {
+            let (source, count) = (row.settings.map_source?, row.settings.map_rows?);
+            let y = (column.cell)(context, row).value()?;
+            Some(item(
+                &format!("{}, drawn", source.name),
+                of_source(source),
+                count,
+                y,
+            ))
+        };
+        let own = rows.iter().filter(|r| r.settings.method == method);
+        let own = own.filter(|r| !is_rbm_baseline(&r.settings));
+        let mut items: Vec<Item> = own.filter_map(drawn).collect();
+        // Colours and normals of maps are not compared.
+        let compared = self.y == "depth_p99_texels";
+        let alone = |error: &&MapError| compared && rows.iter().any(|r| r.view == error.view);
+        items.extend(maps.iter().filter(alone).filter_map(|error| {
+            let mut style = of_source(error.source);
+            style.filled = false;
+            let name = format!("{}, the map by itself", error.source.name);
+            Some(item(&name, style, error.rows, error.errors.depth?.p99))
+        }));
+        items.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
+        Ok(items)
+    }
+
     /// The name and look of a row's line, and whether its points are joined.
     fn line(&self, context: &Context, row: &Row) -> Option<(String, Style, bool)> {
         let s = &row.settings;
@@ -283,25 +305,16 @@ impl Chart {
             SeriesBy::Method => (context.line(s), series_style::style(s), true),
             SeriesBy::Way => {
                 let way = growing(s);
-                (
-                    context.styles.way(&way),
-                    context.styles.style(&way),
-                    !self.law,
-                )
+                let (name, style) = (context.styles.way(&way), context.styles.style(&way));
+                (name, style, !self.law)
             }
-            SeriesBy::Source => (
-                s.map_source?.name.to_owned(),
-                of_source(s.map_source?),
-                false,
-            ),
+            SeriesBy::Source => {
+                let source = s.map_source?;
+                (source.name.to_owned(), of_source(source), false)
+            }
             SeriesBy::Scene => {
-                let mut scenes: Vec<&str> = Vec::new();
-                for other in context.rows {
-                    if !scenes.contains(&other.scene.as_str()) {
-                        scenes.push(&other.scene);
-                    }
-                }
-                let k = scenes.iter().position(|s| *s == row.scene).unwrap_or(0);
+                let scenes = grouped(context.rows, |r| &r.scene);
+                let k = scenes.iter().position(|s| *s.0 == row.scene).unwrap_or(0);
                 let paint = color::ALL[k % color::ALL.len()];
                 let style = Style::new(paint, Marker::ALL[k % Marker::ALL.len()]);
                 (row.scene.clone(), style, true)
@@ -321,7 +334,7 @@ impl Chart {
                     _ => joined && (k == 0 || k == last),
                 };
                 let mut best = fronts.iter().flat_map(|f| &f.1);
-                let on_front = self.front && best.any(|p| *p == (point.x, point.y));
+                let on_front = best.any(|p| *p == (point.x, point.y));
                 let kept = |label: &String| self.over.is_some() && label.contains('x');
                 if !end && !on_front {
                     point.label = point.label.take().filter(kept);
@@ -329,6 +342,15 @@ impl Chart {
             }
         }
     }
+}
+
+/// The search whose drawn pictures are nearest to the truth: what is left of its error is the
+/// map's. Of those that read maps of every source.
+fn most_exact(rows: &[&Row]) -> Option<Method> {
+    let own = rows.iter().filter(|r| r.settings.map_source.is_some());
+    let own = own.filter(|r| !is_rbm_baseline(&r.settings));
+    let errors = own.filter_map(|r| Some((r.settings.method, r.errors.depth?.p99)));
+    errors.min_by(|a, b| a.1.total_cmp(&b.1)).map(|e| e.0)
 }
 
 /// The resolved points that no other of their stage beats. A stage without such points has no
@@ -372,10 +394,7 @@ fn label(context: &Context, s: &MethodSettings) -> Option<String> {
         method => name.strip_prefix(method.name()),
     }?;
     let rest = rest.trim_start_matches([' ', ',']);
-    let rest = rest
-        .strip_suffix(" steps")
-        .or(rest.strip_suffix(" rows"))
-        .unwrap_or(rest);
+    let rest = rest.trim_end_matches(" steps").trim_end_matches(" rows");
     (!rest.is_empty()).then(|| rest.to_owned())
 }
 

@@ -6,80 +6,63 @@ use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::dots::{Block, DotChart, Line};
 use crate::report::columns::Context;
+use crate::report::plan::grouped;
 use crate::report::ratios::over;
 use crate::report::row::Row;
 use crate::report::stats::Interval;
-use revmap::settings::DrawStage;
 
 /// Lines of dots on one page.
 const DOTS: usize = 44;
 
+/// A line with its picture and the heading of its stage there.
+type Placed = ((String, String), Line);
+
 impl Chart {
     pub(super) fn dots(&self, context: &Context, rows: &[&Row]) -> Vec<Figure> {
-        let mut lines: Vec<(String, Line)> = Vec::new();
-        let mut add = |block: String, settings: &MethodSettings, value: Interval| {
-            let line = Line {
-                name: context.styles.way(settings),
-                value,
-                style: context.styles.style(settings),
-                unresolved: value.relative() > context.resolved,
-            };
-            lines.push((block, line));
+        let line = |settings: &MethodSettings, value: Interval| Line {
+            name: context.styles.way(settings),
+            value,
+            style: context.styles.style(settings),
+            unresolved: value.relative() > context.resolved,
         };
-        if let Some(reference) = self.over {
-            let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
-            let ratios = over(&own, reference);
-            for stage in [DrawStage::Fragment, DrawStage::Compute] {
-                for ratio in ratios.iter().filter(|r| r.settings.stage == stage) {
-                    add(
-                        format!("{} stage", stage.name()),
-                        &ratio.settings,
-                        ratio.time,
-                    );
-                }
+        let (lines, axis): (Vec<Placed>, String) = match self.over {
+            Some(reference) => {
+                let block =
+                    |s: &MethodSettings| (String::new(), format!("{} stage", s.stage.name()));
+                let ratios = over(rows.iter().copied(), reference).into_iter();
+                let lines = ratios.map(|r| (block(&r.settings), line(&r.settings, r.time)));
+                (lines.collect(), format!("time / {}", context.baseline()))
             }
-        } else {
-            for row in rows {
-                let block = format!(
-                    "{}, {}, {} stage",
-                    row.scene,
-                    row.size(),
-                    row.settings.stage.name()
-                );
-                if let Some(time) = row.time() {
-                    add(block, &row.settings, time);
-                }
+            None => {
+                let block = |row: &Row| {
+                    let picture = format!("{}, {}", row.scene, row.size());
+                    let name = format!("{picture}, {} stage", row.settings.stage.name());
+                    (picture, name)
+                };
+                let placed = |row: &&Row| Some((block(row), line(&row.settings, row.time()?)));
+                let lines = rows.iter().filter_map(placed);
+                (lines.collect(), "time of a frame (ms)".to_owned())
             }
-        }
+        };
         // A picture's lines stay together.
-        let picture = |line: &(String, Line)| line.0.rsplit_once(", ").map(|p| p.0.to_owned());
-        let mut pages: Vec<Vec<(String, Line)>> = Vec::new();
-        for group in lines.chunk_by(|a, b| picture(a) == picture(b)) {
+        let mut pages: Vec<Vec<Placed>> = Vec::new();
+        for group in lines.chunk_by(|a, b| a.0.0 == b.0.0) {
             match pages.last_mut() {
                 Some(page) if page.len() + group.len() <= DOTS => page.extend_from_slice(group),
                 _ => pages.push(group.to_vec()),
             }
         }
-        let axis = match self.over {
-            Some(_) => format!("time / {}", context.baseline()),
-            None => "time of a frame (ms)".to_owned(),
-        };
-        let figure = |page: Vec<(String, Line)>| {
-            let mut blocks: Vec<Block> = Vec::new();
-            for (name, line) in page {
-                match blocks.iter_mut().find(|b| b.name == name) {
-                    Some(block) => block.lines.push(line),
-                    None => blocks.push(Block {
-                        name,
-                        lines: vec![line],
-                    }),
-                }
-            }
+        let figure = |page: Vec<Placed>| {
+            let blocks = grouped(page, |line| line.0.1.clone()).into_iter();
+            let block = |(name, lines): (_, Vec<(_, Line)>)| Block {
+                name,
+                lines: lines.into_iter().map(|line| line.1).collect(),
+            };
             let chart = DotChart {
                 title: self.title.clone(),
                 axis: Axis::log(axis.as_str()),
                 mark: self.over.map(|_| 1.0),
-                blocks,
+                blocks: blocks.map(block).collect(),
             };
             chart.figure()
         };

@@ -1,5 +1,6 @@
 //! Axes of charts, lines to compare points with, and fitted laws.
 
+use super::charts::Kind;
 use super::{Chart, tables};
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Series};
@@ -16,39 +17,30 @@ impl Chart {
         series: &[Series],
         floors: &[Guide],
     ) -> Result<(Axis, Axis)> {
-        let even = |label: &str, linear: bool| match linear {
-            true => Axis::linear(label),
-            false => Axis::log(label),
-        };
+        let maps = self.kind == Kind::MapRows;
         let mut x = match self.over {
             Some(_) => Axis::log(format!("time / {}", context.baseline())).with(1.0),
-            None => even(columns::named(&self.x)?.heading, self.linear[0]),
+            None if maps => Axis::log(columns::named("map_rows")?.heading),
+            None => Axis::log(columns::named(&self.x)?.heading),
         };
-        let name = self
-            .y
-            .split_once(' ')
-            .map_or(self.y.as_str(), |(_, column)| column);
         let heading = match self.over {
             Some(over) => tables::heading(&self.y, over)?,
             None => columns::named(&self.y)?.heading.to_owned(),
         };
-        let mut y = even(&heading, self.linear[1]);
-        if let Ok(column) = columns::named(name)
-            && column.floor > 0.0
-        {
-            y = y.from(column.floor);
-        }
+        let mut y = Axis::log(heading);
+        (x.log, y.log) = (!self.linear[0], !self.linear[1]);
+        let parts = self.y.split_once(' ');
+        let name = parts.map_or(&*self.y, |(_, column)| column);
+        let floor = columns::named(name).map_or(0.0, |column| column.floor);
+        y.floor = (floor > 0.0).then_some(floor);
         if self.front {
-            for place in floors.iter().filter_map(|floor| floor.points.first()) {
-                x = x.with(place.0);
-            }
+            let places = floors.iter().filter_map(|floor| floor.points.first());
+            x.include.extend(places.map(|place| place.0));
         }
-        if self.ticks {
+        if self.ticks || maps {
             x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
         }
-        for (_, rate) in self.published() {
-            y = y.with(rate);
-        }
+        y.include.extend(self.published().iter().map(|p| p.1));
         Ok((x, y))
     }
 
@@ -72,13 +64,10 @@ impl Chart {
     ) -> Result<Vec<Guide>> {
         let mut all = Vec::new();
         if self.guide == "equal" {
-            let mut values: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|p| p.x).collect();
+            let values = series.iter().flat_map(|s| &s.points).map(|p| p.x);
+            let mut values: Vec<f64> = values.filter(|v| *v > 0.0).collect();
             values.sort_by(f64::total_cmp);
-            let points = values
-                .into_iter()
-                .filter(|v| *v > 0.0)
-                .map(|v| (v, v))
-                .collect();
+            let points = values.into_iter().map(|v| (v, v)).collect();
             all.push(Guide::dashed("the tolerance", points));
         }
         let line = self.published();

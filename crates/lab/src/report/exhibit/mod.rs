@@ -5,12 +5,11 @@ mod answers;
 mod charts;
 mod dots;
 mod guides;
-mod map_rows;
 mod tables;
 
 pub use answers::Question;
-pub(in crate::report) use answers::count;
-pub use charts::{Chart, Extra};
+pub(in crate::report) use answers::{findings, unresolved};
+pub use charts::Chart;
 pub use tables::{Records, Table, left, ways_table};
 
 use super::columns::{self, Context};
@@ -79,9 +78,6 @@ const OWN: [&str; 3] = [
 ];
 
 /// The program's own exhibits, then `more`.
-///
-/// # Errors
-/// [`ErrorKind::Other`] if the program's own are damaged.
 pub fn all(more: &[Exhibit]) -> Result<Vec<Exhibit>> {
     let mut all = more.to_vec();
     for text in OWN {
@@ -96,27 +92,17 @@ pub fn all(more: &[Exhibit]) -> Result<Vec<Exhibit>> {
 
 impl Exhibit {
     /// Checks names of columns and of the plan's entries.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`], naming the exhibit.
     pub fn check(&self, sweeps: &[&str]) -> Result<()> {
         let at = |e: Error| e.at_key(format!("exhibit {}", self.name));
         for name in self.only.iter().chain(&self.except) {
             if !sweeps.contains(&name.as_str()) {
-                let message = format!(
-                    "{name:?} is no name of a [[measure]]; give one of {}",
-                    sweeps.join(", ")
-                );
+                let all = sweeps.join(", ");
+                let message = format!("{name:?} is no name of a [[measure]]; give one of {all}");
                 return Err(at(Error::new(ErrorKind::Content, message)));
             }
         }
-        for chart in &self.chart {
-            chart.check().map_err(at)?;
-        }
-        for table in &self.table {
-            table.check().map_err(at)?;
-        }
-        Ok(())
+        self.chart.iter().try_for_each(Chart::check).map_err(at)?;
+        self.table.iter().try_for_each(Table::check).map_err(at)
     }
 
     /// The answers of its question from these rows.
@@ -136,14 +122,14 @@ impl Exhibit {
         let counts = |row: &&Row| {
             (self.only.is_empty() || row.sweeps & only != 0) && row.sweeps & !except != 0
         };
-        context.rows.iter().filter(counts).collect()
+        context.rows.iter().copied().filter(counts).collect()
     }
 }
 
 /// Checks that a name is that of a column, or a name that tables over ways have.
 fn check_column(name: &str, over: Option<Over>) -> Result<()> {
     match over {
-        Some(_) => tables::check_summary(name),
+        Some(over) => tables::heading(name, over).map(|_| ()),
         None => columns::named(name).map(|_| ()),
     }
 }

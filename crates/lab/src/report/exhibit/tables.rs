@@ -5,9 +5,8 @@ use crate::method::Method;
 use crate::report::chart::front::{WORTH, front};
 use crate::report::columns::{self, Cell, Context};
 use crate::report::growth::growth;
-use crate::report::names::{number, percent};
-use crate::report::picture_groups::pictures_of;
-use crate::report::plan::variant;
+use crate::report::names::{number, percent, range};
+use crate::report::plan::{grouped, variant};
 use crate::report::published::published;
 use crate::report::ratios::{Over, Ratio, mean_ms, over};
 use crate::report::row::Row;
@@ -63,62 +62,39 @@ pub enum Records {
     Flights,
 }
 
-/// Kinds of cells that sum rows up.
-const SUMS: [&str; 4] = ["mean", "worst", "average", "other"];
-
-pub(super) fn check_summary(name: &str) -> Result<()> {
-    match name.split_once(' ') {
-        Some((sum, column)) if SUMS.contains(&sum) => columns::named(column).map(|_| ()),
-        Some(("known", "ms") | ("total", "wrong") | ("no", "worse")) => Ok(()),
-        Some(("ratio" | "interval" | "range" | "known", other)) => reference(other).map(|_| ()),
-        None if name == "pictures" || name == "pair" => Ok(()),
-        _ => columns::named(name).map(|_| ()),
-    }
-}
-
 fn reference(name: &str) -> Result<Over> {
-    let known = [
-        ("baseline", Over::Baseline),
-        ("exact", Over::Exact),
-        ("1-ray", Over::Exact),
-        ("one", Over::One),
-        ("mesh", Over::Mesh),
-    ];
-    known
-        .iter()
-        .find(|(n, _)| *n == name)
-        .map(|(_, over)| *over)
-        .ok_or_else(|| {
+    Ok(match name {
+        "baseline" => Over::Baseline,
+        "exact" | "1-ray" => Over::Exact,
+        "one" => Over::One,
+        "mesh" => Over::Mesh,
+        _ => {
             let message = format!(
                 "{name:?} is nothing to put times over; give baseline, exact, 1-ray, one or mesh"
             );
-            Error::new(ErrorKind::Content, message)
-        })
+            return Err(Error::new(ErrorKind::Content, message));
+        }
+    })
 }
 
 impl Table {
     pub(super) fn check(&self) -> Result<()> {
-        self.columns
-            .iter()
-            .try_for_each(|name| check_column(name, self.over))
+        let mut names = self.columns.iter();
+        names.try_for_each(|name| check_column(name, self.over))
     }
 
     /// The table over these rows, for a page.
-    ///
-    /// # Errors
-    /// A column of this name does not exist.
     pub fn shown(&self, context: &Context, rows: &[&Row]) -> Result<Text> {
         match self.of {
             Records::Rows => context.page(rows, &self.columns),
             Records::Pictures => {
-                let pictures = pictures_of(rows);
-                let firsts = pictures.iter().filter_map(|p| p.first().copied());
-                context.page(&firsts.collect::<Vec<_>>(), &self.columns)
+                let pictures = grouped(rows, |r| r.picture());
+                let firsts: Vec<&Row> = pictures.iter().map(|(_, p)| *p[0]).collect();
+                context.page(&firsts, &self.columns)
             }
             Records::Ways => {
-                let own: Vec<Row> = rows.iter().map(|r| (*r).clone()).collect();
                 let over = self.over.unwrap_or(Over::Baseline);
-                ways_table(context, &own, over, &self.columns)
+                ways_table(context, rows, over, &self.columns)
             }
             Records::Fronts => Ok(fronts(context, rows)),
             Records::Stages => Ok(answers::stages_table(context, rows)),
@@ -131,7 +107,6 @@ impl Table {
 }
 
 /// Which columns of a page's table are words: they stand to the left.
-#[must_use]
 pub fn left(table: &Text) -> Vec<usize> {
     let word = |c: &usize| {
         let mut fields = table.records.iter().filter_map(|r| r.get(*c));
@@ -141,26 +116,22 @@ pub fn left(table: &Text) -> Vec<usize> {
 }
 
 /// The table of ways of drawing over others.
-///
-/// # Errors
-/// A column of this name does not exist.
 pub fn ways_table(
     context: &Context,
-    rows: &[Row],
+    rows: &[&Row],
     reference: Over,
     names: &[impl AsRef<str>],
 ) -> Result<Text> {
-    let header: Vec<String> = names
-        .iter()
-        .map(|n| heading(n.as_ref(), reference))
-        .collect::<Result<_>>()?;
-    let ratios = over(rows, reference);
-    let record = |ratio: &Ratio| -> Result<Vec<String>> {
-        let shown = |n: &_| Ok(cell(context, rows, (reference, ratio), AsRef::as_ref(n))?.shown());
-        names.iter().map(shown).collect()
+    let names = || names.iter().map(AsRef::as_ref);
+    let header = names().map(|name| heading(name, reference));
+    let header = header.collect::<Result<Vec<String>>>()?;
+    let record = |ratio: Ratio| -> Result<Vec<String>> {
+        let shown = |name| Ok(cell(context, rows, (reference, &ratio), name)?.shown());
+        names().map(shown).collect()
     };
-    let records = ratios.iter().map(record).collect::<Result<_>>()?;
-    Ok(Text::new(header, records))
+    let ratios = over(rows.iter().copied(), reference);
+    let records = ratios.into_iter().map(record);
+    Ok(Text::new(header, records.collect::<Result<_>>()?))
 }
 
 /// The heading of a column of ways.
@@ -168,17 +139,19 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
     let head = |column: &str| columns::named(column).map(|c| c.heading);
     Ok(match name.split_once(' ') {
         Some(("known", "ms")) => "time (ms)".to_owned(),
-        Some(("ratio" | "known", other)) => match other {
-            "baseline" => "time / RBM baseline".to_owned(),
-            other => format!("time / {}", other.replace('-', " ")),
-        },
-        Some(("interval", _)) => "95 % interval".to_owned(),
-        Some(("range", _)) => "range over pictures".to_owned(),
+        Some((kind @ ("ratio" | "known" | "interval" | "range"), other)) => {
+            match (kind, reference(other)?) {
+                ("interval", _) => "95 % interval".to_owned(),
+                ("range", _) => "range over pictures".to_owned(),
+                (_, Over::Baseline) => "time / RBM baseline".to_owned(),
+                _ => format!("time / {}", other.replace('-', " ")),
+            }
+        }
         Some(("worst", column)) => format!("worst {}", head(column)?),
         Some(("other", column)) => format!("mesh {}", head(column)?),
         Some(("mean" | "average", column)) => head(column)?.to_owned(),
-        Some(("no", _)) => "mesh at least as accurate".to_owned(),
-        Some(("total", _)) => "wrong pixels".to_owned(),
+        Some(("no", "worse")) => "mesh at least as accurate".to_owned(),
+        Some(("total", "wrong")) => "wrong pixels".to_owned(),
         None if name == "pictures" => name.to_owned(),
         None if name == "pair" => "method / mesh".to_owned(),
         _ if over == Over::Mesh && name == "method" => "method / mesh".to_owned(),
@@ -189,19 +162,15 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
 /// The cell of a way over the rows of a reference.
 pub(super) fn cell(
     context: &Context,
-    rows: &[Row],
+    rows: &[&Row],
     (primary, ratio): (Over, &Ratio),
     name: &str,
 ) -> Result<Cell> {
     let values = |column: &str, other: bool| -> Result<Vec<f64>> {
         let column = columns::named(column)?;
-        let value = |(row, of): &(&Row, &Row)| {
-            let row = if other { of } else { row };
-            (column.cell)(context, row)
-                .value()
-                .map(|v| v.max(column.floor))
-        };
-        Ok(ratio.pairs.iter().filter_map(value).collect())
+        let rows = ratio.pairs.iter().map(|p| if other { p.1 } else { p.0 });
+        let values = rows.filter_map(|row| (column.cell)(context, row).value());
+        Ok(values.map(|v| v.max(column.floor)).collect())
     };
     let mean = |column: &str, other| {
         Ok::<_, Error>(stats::geometric(&values(column, other)?).map(|m| m.value))
@@ -211,7 +180,7 @@ pub(super) fn cell(
         if wanted == primary {
             return Ok(Some((ratio.time, ratio.range)));
         }
-        let all = over(rows, wanted);
+        let all = over(rows.iter().copied(), wanted);
         let own = all.iter().find(|r| r.settings == ratio.settings);
         Ok(own.map(|r| (r.time, r.range)))
     };
@@ -230,9 +199,7 @@ pub(super) fn cell(
         Some(("interval", other)) => {
             time(other)?.map_or(Cell::Empty, |t| Cell::Text(context.ends(&t.0)))
         }
-        Some(("range", other)) => time(other)?.map_or(Cell::Empty, |(_, (least, most))| {
-            Cell::Text(format!("{} to {}", number(least, 3), number(most, 3)))
-        }),
+        Some(("range", other)) => time(other)?.map_or(Cell::Empty, |t| Cell::Text(range(t.1))),
         Some(("mean", column)) => Cell::number(mean(column, false)?),
         Some(("other", column)) => Cell::number(mean(column, true)?),
         Some(("worst", column)) => {
@@ -245,9 +212,8 @@ pub(super) fn cell(
         Some(("total", _)) => Cell::Share(ratio.wrong()),
         None if name == "pictures" => Cell::Count(ratio.pairs.len() as u64),
         None if name == "pair" => {
-            let mesh = ratio
-                .mesh
-                .map_or("coarsest as accurate".to_owned(), |m| m.to_string());
+            let mesh = ratio.mesh.map(|m| m.to_string());
+            let mesh = mesh.unwrap_or("coarsest as accurate".to_owned());
             Cell::Text(format!("{} / {mesh}", ratio.settings.method))
         }
         _ => {
@@ -258,81 +224,83 @@ pub(super) fn cell(
     Ok(found)
 }
 
+/// A way of drawing on fronts of its stage.
+struct OnFront<'a> {
+    row: &'a Row,
+    /// On how many fronts, of how many pictures.
+    count: (usize, usize),
+    /// Its worst depth error and share of wrong pixels on them.
+    worst: (f64, f64),
+}
+
 /// The ways of drawing that are on the front of depth error against time of at least one picture in
 /// their stage, the most frequent of each stage first.
 fn fronts(context: &Context, rows: &[&Row]) -> Text {
     let stages = [DrawStage::Fragment, DrawStage::Compute];
-    let records = stages.iter().flat_map(|s| front_records(context, rows, *s));
-    let header = [
-        "method",
-        "stage",
-        "on the front of",
-        "worst depth p99 (h/512)",
-        "worst wrong pixels",
-    ];
-    Text::new(header, records.collect())
+    let of = |stage| on_fronts(context, rows, stage);
+    let all: Vec<OnFront> = stages.into_iter().flat_map(of).collect();
+    Text::of(
+        &all,
+        &[
+            ("method", &|f| context.styles.way(&f.row.settings)),
+            ("stage", &|f| f.row.settings.stage.name().to_owned()),
+            ("on the front of", &|f| {
+                format!("{} of {}", f.count.0, f.count.1)
+            }),
+            ("worst depth p99 (h/512)", &|f| number(f.worst.0, 3)),
+            ("worst wrong pixels", &|f| percent(f.worst.1)),
+        ],
+    )
 }
 
-/// The records of one stage.
-fn front_records(context: &Context, rows: &[&Row], stage: DrawStage) -> Vec<Vec<String>> {
-    let own = rows.iter().filter(|r| r.settings.stage == stage);
-    let groups = pictures_of(&own.copied().collect::<Vec<_>>());
-    let mut counts: Vec<(&Row, usize, f64, f64)> = Vec::new();
-    for group in &groups {
+fn on_fronts<'a>(context: &Context, rows: &[&'a Row], stage: DrawStage) -> Vec<OnFront<'a>> {
+    let own = rows.iter().copied().filter(|r| r.settings.stage == stage);
+    let pictures = grouped(own, |r| r.picture());
+    let mut found: Vec<(&Row, f64)> = Vec::new();
+    for (_, group) in &pictures {
         let place = |r: &&Row| {
             let known = r.surface().filter(|_| r.resolved(context.resolved));
             let error = known.and_then(|e| e.depth).map_or(f64::NAN, |d| d.p99);
             (r.time().map_or(f64::NAN, |t| t.value), error)
         };
         let points: Vec<(f64, f64)> = group.iter().map(place).collect();
-        for i in front(&points, WORTH) {
-            let (row, depth, wrong) = (group[i], points[i].1, group[i].errors.wrong());
-            match counts
-                .iter_mut()
-                .find(|c| variant(&c.0.settings) == variant(&row.settings))
-            {
-                Some(c) => *c = (row, c.1 + 1, c.2.max(depth), c.3.max(wrong)),
-                None => counts.push((row, 1, depth, wrong)),
-            }
-        }
+        let best = front(&points, WORTH).into_iter();
+        found.extend(best.map(|i| (group[i], points[i].1)));
     }
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then(a.2.total_cmp(&b.2)));
-    let record = |(row, count, depth, wrong): &(&Row, usize, f64, f64)| {
-        vec![
-            context.styles.way(&row.settings),
-            stage.name().to_owned(),
-            format!("{count} of {}", groups.len()),
-            number(*depth, 3),
-            percent(*wrong),
-        ]
-    };
-    counts.iter().map(record).collect()
+    let ways = grouped(found, |(row, _)| variant(&row.settings)).into_iter();
+    let mut all: Vec<OnFront> = ways
+        .map(|(_, own)| OnFront {
+            row: own[0].0,
+            count: (own.len(), pictures.len()),
+            worst: own.iter().fold((0.0, 0.0), |(depth, wrong), (row, error)| {
+                (error.max(depth), row.errors.wrong().max(wrong))
+            }),
+        })
+        .collect();
+    all.sort_by(|a, b| b.count.cmp(&a.count).then(a.worst.0.total_cmp(&b.worst.0)));
+    all
 }
 
 fn growth_table(context: &Context, rows: &[&Row], x: &str) -> Result<Text> {
     let column = columns::named(x)?;
-    let record = |g: crate::report::growth::Growth| {
-        let ends = |p: Option<&(f64, f64)>| Cell::number(p.map(|p| p.1)).shown();
-        vec![
-            context.styles.way(&g.way),
-            g.way.stage.name().to_owned(),
-            format!("{} of {}", g.points.len(), g.measured),
-            ends(g.points.first()),
-            ends(g.points.last()),
-            g.exponent.map_or(Cell::Empty, Cell::Known).shown(),
-            Cell::number(g.last).shown(),
-        ]
-    };
-    let header = [
-        "method",
-        "stage",
-        "resolved",
-        "time at the least (ms)",
-        "time at the most (ms)",
-        "exponent (95 % interval)",
-        "exponent of the last step",
-    ];
     let x = |row: &Row| (column.cell)(context, row).value();
-    let all = growth(rows, x, context.resolved);
-    Ok(Text::new(header, all.into_iter().map(record).collect()))
+    let end = |p: Option<&(f64, f64)>| Cell::number(p.map(|p| p.1)).shown();
+    Ok(Text::of(
+        &growth(rows, x, context.resolved),
+        &[
+            ("method", &|g| context.styles.way(&g.way)),
+            ("stage", &|g| g.way.stage.name().to_owned()),
+            ("resolved", &|g| {
+                format!("{} of {}", g.points.len(), g.measured)
+            }),
+            ("time at the least (ms)", &|g| end(g.points.first())),
+            ("time at the most (ms)", &|g| end(g.points.last())),
+            ("exponent (95 % interval)", &|g| {
+                g.exponent.map_or(Cell::Empty, Cell::Known).shown()
+            }),
+            ("exponent of the last step", &|g| {
+                Cell::number(g.last).shown()
+            }),
+        ],
+    ))
 }

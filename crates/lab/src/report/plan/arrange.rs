@@ -76,9 +76,6 @@ pub(super) fn avenue(one: &View) -> View {
 }
 
 /// Copies of a pawn, a rook and a king between 41 and 412 units away: 20 to 2 pixels high at 800x600.
-///
-/// # Errors
-/// A solid that the program carries cannot be read.
 pub fn distant() -> Result<View> {
     let mut objects = Vec::new();
     let mut scene = None;
@@ -110,9 +107,6 @@ pub fn distant() -> Result<View> {
 
 /// `count` copies of ten solids in turn, of equal height, each turned by another angle; seen from
 /// within, over the heads of the first.
-///
-/// # Errors
-/// A solid that the program carries cannot be read.
 pub fn army(count: u32) -> Result<View> {
     let views = suite::views(&Extent::All, &[25.0])?;
     let mut scene = views[0].scene.clone();
@@ -157,7 +151,6 @@ pub fn army(count: u32) -> Result<View> {
 
 /// The camera of a flight over an army, `at` from 0 to 1: in a bow to the left and down among the
 /// solids, then up again.
-#[must_use]
 pub fn flight_camera(at: f64) -> Camera {
     let turn = std::f64::consts::TAU * at;
     let eye = DVec3::new(1.2 - 30.0 * at, 3.0 * turn.sin(), 1.7 + 0.5 * turn.cos());

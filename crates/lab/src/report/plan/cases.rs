@@ -23,6 +23,13 @@ pub struct Case {
     pub sweeps: u64,
 }
 
+impl Case {
+    /// The picture that it shows: a view at a size.
+    pub fn picture(&self) -> (usize, u32, u32) {
+        (self.view, self.settings.width, self.settings.height)
+    }
+}
+
 /// The picture that others are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Truth {
@@ -52,7 +59,6 @@ pub struct Plan {
 
 impl Plan {
     /// Views without measurements.
-    #[must_use]
     pub fn new(views: Vec<View>) -> Self {
         Self {
             views,
@@ -66,14 +72,11 @@ impl Plan {
 
     /// Adds a measurement; one that is there already becomes part of another entry.
     pub fn add(&mut self, view: usize, settings: MethodSettings, sweep: &str) {
-        let place = self
-            .sweeps
-            .iter()
-            .position(|s| s == sweep)
-            .unwrap_or_else(|| {
-                self.sweeps.push(sweep.to_owned());
-                self.sweeps.len() - 1
-            });
+        let known = self.sweeps.iter().position(|s| s == sweep);
+        let place = known.unwrap_or_else(|| {
+            self.sweeps.push(sweep.to_owned());
+            self.sweeps.len() - 1
+        });
         let sweeps = 1u64 << place.min(63);
         let same = |c: &&mut Case| (c.view, c.settings) == (view, settings);
         match self.cases.iter_mut().find(same) {
@@ -98,16 +101,16 @@ impl Plan {
         let mut all = Vec::new();
         for &(width, height) in &measure.sizes {
             for &stage in &measure.stages {
-                for method in measure.methods(named) {
-                    let base = MethodSettings {
-                        width,
-                        height,
-                        stage,
-                        planes: Planes::Color,
-                        ..MethodSettings::default()
-                    };
-                    all.extend(ways(seen, measure, base, method));
-                }
+                let base = MethodSettings {
+                    width,
+                    height,
+                    stage,
+                    planes: Planes::Color,
+                    tolerance: Tolerance::EXACT,
+                    ..MethodSettings::default()
+                };
+                let methods = measure.methods(named).into_iter();
+                all.extend(methods.flat_map(|method| ways(seen, measure, base, method)));
             }
         }
         let solids = seen.solids() as u64;
@@ -127,24 +130,24 @@ impl Plan {
 
     /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size
     /// in a mixed plan.
-    #[must_use]
     pub fn groups(&self) -> Vec<Vec<usize>> {
-        let size = |c: &Case| (c.settings.width, c.settings.height);
-        let all: Vec<usize> = (0..self.cases.len()).collect();
-        grouped(&all, |a, b| {
-            let (a, b) = (&self.cases[*a], &self.cases[*b]);
-            size(a) == size(b) && (self.mixed || a.view == b.view)
-        })
+        let key = |k: &usize| {
+            let (view, width, height) = self.cases[*k].picture();
+            (width, height, (!self.mixed).then_some(view))
+        };
+        let groups = grouped(0..self.cases.len(), key);
+        groups.into_iter().map(|(_, group)| group).collect()
     }
 
     /// Those of the measurements that are compared with one picture.
-    #[must_use]
     pub fn pictures(&self, group: &[usize]) -> Vec<Vec<usize>> {
-        let stage = |c: &Case| (self.truth != Truth::Reference).then_some(c.settings.stage);
-        grouped(group, |a, b| {
-            let (a, b) = (&self.cases[*a], &self.cases[*b]);
-            same_picture(a, b) && stage(a) == stage(b)
-        })
+        let rays = self.truth != Truth::Reference;
+        let key = |k: &usize| {
+            let case = &self.cases[*k];
+            (case.picture(), rays.then_some(case.settings.stage))
+        };
+        let groups = grouped(group.iter().copied(), key);
+        groups.into_iter().map(|(_, group)| group).collect()
     }
 }
 
@@ -164,72 +167,54 @@ fn ways(
     if measure.readers_only && !reads {
         return Vec::new();
     }
-    /// The list's values where it is read, else what the method takes.
-    fn values<T: Copy>(list: &[T], read: bool, own: Option<T>) -> Vec<Option<T>> {
-        match list {
-            [] => vec![own],
-            _ if !read => vec![own],
-            list => list.iter().copied().map(Some).collect(),
+    /// Every one with every value of a list; as they are where the list is empty or is not read.
+    fn with<T: Copy>(
+        all: Vec<MethodSettings>,
+        (list, read): (&[T], bool),
+        set: fn(&mut MethodSettings, T),
+    ) -> Vec<MethodSettings> {
+        if list.is_empty() || !read {
+            return all;
         }
+        let put = |mut one: MethodSettings, value: &T| {
+            set(&mut one, *value);
+            one
+        };
+        let of = |one| list.iter().map(move |value| put(one, value));
+        all.into_iter().flat_map(of).collect()
     }
     let searched = method.is_some();
     let maps = searched && own.reads_map();
     let bounded = searched && own.default_steps(false) > 1;
-    let formats = values(&measure.map_formats, maps, Some(base.map_format));
-    let tolerances = values(
-        &measure.tolerances,
-        own.follows_tolerance(),
-        Some(Tolerance::EXACT),
-    );
-    let edges = values(&measure.edges, searched, Some(Edges::OneRay));
-    let mut all = Vec::new();
-    for max_steps in values(&measure.max_steps, bounded, base.max_steps) {
-        for map_rows in values(&measure.map_rows, reads, base.map_rows) {
-            for map_source in values(&measure.map_sources, maps, base.map_source) {
-                for map_format in formats.iter().flatten() {
-                    for tolerance in tolerances.iter().flatten() {
-                        all.extend(edges.iter().flatten().map(|&edges| MethodSettings {
-                            max_steps,
-                            map_rows,
-                            map_source,
-                            map_format: *map_format,
-                            tolerance: *tolerance,
-                            edges,
-                            ..base
-                        }));
-                    }
-                }
-            }
-        }
-    }
-    all
+    let toleranced = own.follows_tolerance();
+    let m = measure;
+    let all = with(vec![base], (&m.max_steps, bounded), |s, v| {
+        s.max_steps = Some(v)
+    });
+    let all = with(all, (&m.map_rows, reads), |s, v| s.map_rows = Some(v));
+    let all = with(all, (&m.map_sources, maps), |s, v| s.map_source = Some(v));
+    let all = with(all, (&m.map_formats, maps), |s, v| s.map_format = v);
+    let all = with(all, (&m.tolerances, toleranced), |s, v| s.tolerance = v);
+    with(all, (&m.edges, searched), |s, v| s.edges = v)
 }
 
-/// Puts together what is alike, in the order in which it first appears.
-pub(in crate::report) fn grouped<T: Clone>(
-    all: &[T],
-    alike: impl Fn(&T, &T) -> bool,
-) -> Vec<Vec<T>> {
-    let mut groups: Vec<Vec<T>> = Vec::new();
+/// Puts together what has one key, in the order in which keys first appear.
+pub(in crate::report) fn grouped<T, K: PartialEq>(
+    all: impl IntoIterator<Item = T>,
+    key: impl Fn(&T) -> K,
+) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
     for one in all {
-        let same = |group: &&mut Vec<T>| group.first().is_some_and(|first| alike(first, one));
-        match groups.iter_mut().find(same) {
-            Some(group) => group.push(one.clone()),
-            None => groups.push(vec![one.clone()]),
+        let key = key(&one);
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, group)) => group.push(one),
+            None => groups.push((key, vec![one])),
         }
     }
     groups
 }
 
-/// True if two measurements show the same picture.
-#[must_use]
-pub fn same_picture(a: &Case, b: &Case) -> bool {
-    let key = |c: &Case| (c.view, c.settings.width, c.settings.height);
-    key(a) == key(b)
-}
-
 /// `solver` at the stage and size of `settings`, all else as drawing takes it.
-#[must_use]
 pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
     MethodSettings {
         width: settings.width,
@@ -243,15 +228,11 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
 /// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
-#[must_use]
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
+    let beveled = view.technique().is_beveled();
     MethodSettings {
         method: Method::Search(CIRCLE),
-        max_steps: Some(if view.technique().is_beveled() {
-            25
-        } else {
-            20
-        }),
+        max_steps: Some(if beveled { 25 } else { 20 }),
         map_source: Some(revmap_files::BINARY),
         map_format: MapFormat::Rgba8,
         map_rows: None,
@@ -261,7 +242,6 @@ pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
 }
 
 /// A way of drawing apart from its size: what a summary over views and sizes is told by.
-#[must_use]
 pub fn variant(settings: &MethodSettings) -> MethodSettings {
     MethodSettings {
         width: 0,
@@ -272,7 +252,6 @@ pub fn variant(settings: &MethodSettings) -> MethodSettings {
 }
 
 /// True if settings are those of [`rbm_baseline`].
-#[must_use]
 pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
     s.method == CIRCLE
         && matches!(s.max_steps, Some(20 | 25))
@@ -334,8 +313,8 @@ mod tests {
         seen.sort_unstable();
         assert_eq!(seen, (0..plan.cases.len()).collect::<Vec<_>>());
         for group in &groups {
-            let same = |&i: &usize| same_picture(&plan.cases[i], &plan.cases[group[0]]);
-            assert!(group.iter().all(same));
+            let picture = |i: usize| plan.cases[i].picture();
+            assert!(group.iter().all(|&i| picture(i) == picture(group[0])));
             assert_eq!(plan.pictures(group).len(), 1);
         }
         plan.mixed = true;
@@ -363,18 +342,14 @@ mod tests {
 
     #[test]
     fn labels_tell_apart_and_say_no_more() {
-        let ways: Vec<MethodSettings> = plan(1, &[entry()])
-            .cases
-            .iter()
-            .map(|c| c.settings)
-            .collect();
+        let cases = plan(1, &[entry()]).cases.into_iter();
+        let ways: Vec<MethodSettings> = cases.map(|c| c.settings).collect();
         let labels = Labels::new(&ways);
         assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
         assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
+        let both = [Method::Search(CIRCLE), Method::DEFAULT];
         let all = Measure {
-            methods: [Method::Search(CIRCLE), Method::DEFAULT]
-                .map(Pick::Method)
-                .to_vec(),
+            methods: both.map(Pick::Method).to_vec(),
             ..Measure::default()
         };
         let baseline = Measure {
@@ -384,9 +359,7 @@ mod tests {
         let plan = plan(1, &[all, baseline]);
         let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
         assert_eq!(labels.way(&plan.cases[0].settings), "circle");
-        assert_eq!(
-            labels.way(&plan.cases.last().unwrap().settings),
-            RBM_BASELINE
-        );
+        let last = plan.cases.last().unwrap().settings;
+        assert_eq!(labels.way(&last), RBM_BASELINE);
     }
 }

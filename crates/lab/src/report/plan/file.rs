@@ -3,7 +3,7 @@
 use super::cases::{Plan, Truth};
 use super::overrides::Overrides;
 use super::time_budget::TimeBudget;
-use super::values::{formats, parsed, sizes, sources, stages, tolerances};
+use super::values::list;
 use super::views::Views;
 use crate::method::{Edges, Method};
 use crate::report::exhibit::{self, Exhibit};
@@ -63,14 +63,11 @@ fn one_ray() -> u32 {
 /// The values of a quick look, in place of the plan's own.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)] // as in [`PlanFile`]
 pub struct Quick {
-    /// See [`PlanFile::time`].
     pub time: Option<TimeBudget>,
-    /// See [`PlanFile::views`].
     pub views: Option<Vec<Views>>,
-    /// See [`PlanFile::measure`].
     pub measure: Option<Vec<Measure>>,
-    /// See [`PlanFile::flights`].
     pub flights: Option<Vec<Flight>>,
 }
 
@@ -84,29 +81,29 @@ pub struct Measure {
     /// Names of the views that it draws; empty: all.
     pub views: Vec<String>,
     /// The stages in which rays are traced.
-    #[serde(deserialize_with = "stages")]
+    #[serde(deserialize_with = "list")]
     pub stages: Vec<DrawStage>,
     /// How the surface is found.
-    #[serde(deserialize_with = "parsed")]
+    #[serde(deserialize_with = "list")]
     pub methods: Vec<Pick>,
     /// Widths and heights, pixels.
-    #[serde(deserialize_with = "sizes")]
+    #[serde(deserialize_with = "list")]
     pub sizes: Vec<(u32, u32)>,
     /// Bounds on steps.
     pub max_steps: Vec<u32>,
     /// Rows of shape maps.
     pub map_rows: Vec<u32>,
     /// Sources of distances.
-    #[serde(deserialize_with = "sources")]
+    #[serde(deserialize_with = "list")]
     pub map_sources: Vec<MapSource>,
     /// Formats of the maps.
-    #[serde(deserialize_with = "formats")]
+    #[serde(deserialize_with = "list")]
     pub map_formats: Vec<MapFormat>,
     /// Allowed errors in pixels, of methods that follow one.
-    #[serde(deserialize_with = "tolerances")]
+    #[serde(deserialize_with = "list")]
     pub tolerances: Vec<Tolerance>,
     /// How edges are treated.
-    #[serde(deserialize_with = "parsed")]
+    #[serde(deserialize_with = "list")]
     pub edges: Vec<Edges>,
     /// True if methods that read neither a map nor a table are left out.
     pub readers_only: bool,
@@ -205,20 +202,16 @@ impl std::str::FromStr for Pick {
 impl Measure {
     /// The methods; `named`: those to take in place of the list's own searches and meshes. `None`
     /// stands for the RBM baseline.
-    #[must_use]
     pub fn methods(&self, named: &[Method]) -> Vec<Option<Method>> {
-        let searches: Vec<Method> = if named.is_empty() {
-            Method::ALL.to_vec()
-        } else {
-            named.to_vec()
-        };
+        let none = named.is_empty();
+        let searches = if none { &Method::ALL[..] } else { named };
         let (mut all, mut replaced) = (Vec::new(), false);
         for pick in &self.methods {
             match pick {
                 Pick::Baseline => all.push(None),
-                Pick::Kind(kind) => all.extend(kind.of(&searches).into_iter().map(Some)),
+                Pick::Kind(kind) => all.extend(kind.of(searches).into_iter().map(Some)),
                 Pick::Method(Method::Floor) => all.push(Some(Method::Floor)),
-                Pick::Method(own) if named.is_empty() => all.push(Some(*own)),
+                Pick::Method(own) if none => all.push(Some(*own)),
                 // Meshes by themselves are not replaced by searches.
                 Pick::Method(own) if !own.is_mesh() => replaced = true,
                 Pick::Method(_) => {}
@@ -261,13 +254,10 @@ impl PlanFile {
     }
 
     /// Reads the plan in a file.
-    ///
-    /// # Errors
-    /// See [`PlanFile::parse`]; also when the file cannot be read.
     pub fn load(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| {
-            let message =
-                format!("cannot be read ({e}); give a plan, `revmap bench --list` shows some");
+            let remedy = "give a plan, `revmap bench --list` shows some";
+            let message = format!("cannot be read ({e}); {remedy}");
             Error::new(ErrorKind::File, message).in_file(file)
         })?;
         Self::parse(&text).map_err(|e| e.in_file(file))
@@ -275,14 +265,10 @@ impl PlanFile {
 
     /// Names that lead nowhere, and lists that leave nothing to measure.
     fn check(&self) -> Result<()> {
-        let quick = self.quick.clone().unwrap_or_default();
-        let entries = |own: &[Measure], others: &[Option<Vec<Measure>>]| -> Vec<Measure> {
-            own.iter()
-                .chain(others.iter().flatten().flatten())
-                .cloned()
-                .collect()
-        };
-        let all = entries(&self.measure, &[quick.measure, self.combinations.clone()]);
+        let quick = self.quick.as_ref().and_then(|q| q.measure.as_ref());
+        let others = [quick, self.combinations.as_ref()].into_iter().flatten();
+        let all = self.measure.iter().chain(others.flatten());
+        let all: Vec<&Measure> = all.collect();
         let views: Vec<&str> = self.views.iter().map(|v| v.name.as_str()).collect();
         let sweeps: Vec<&str> = all.iter().map(|m| m.name.as_str()).collect();
         for measure in &all {
@@ -302,29 +288,29 @@ impl PlanFile {
             let message = "is empty; give at least one entry";
             Err(Error::new(ErrorKind::Content, message).at_key(key))
         };
-        match (self.views.is_empty(), self.measure.is_empty()) {
-            (true, _) => empty("views"),
-            (_, true) => empty("measure"),
+        match (&*self.views, &*self.measure) {
+            ([], _) => empty("views"),
+            (_, []) => empty("measure"),
             _ => Ok(()),
         }
     }
 
     /// Applies what the command line names.
     pub fn apply(&mut self, given: &Overrides) {
-        let quick = self.quick.take().unwrap_or_default();
+        fn put<T>(own: &mut T, other: Option<T>) {
+            if let Some(other) = other {
+                *own = other;
+            }
+        }
+        let quick = self.quick.take().filter(|_| given.quick);
+        let mut quick = quick.unwrap_or_default();
         if given.lists.combines() {
-            self.measure = self
-                .combinations
-                .take()
-                .unwrap_or_else(|| self.measure.clone());
-        } else if given.quick {
-            self.measure = quick.measure.unwrap_or_else(|| self.measure.clone());
+            quick.measure = self.combinations.take();
         }
-        if given.quick {
-            self.time = quick.time.unwrap_or(self.time);
-            self.views = quick.views.unwrap_or_else(|| self.views.clone());
-            self.flights = quick.flights.unwrap_or_else(|| self.flights.clone());
-        }
+        put(&mut self.time, quick.time);
+        put(&mut self.views, quick.views);
+        put(&mut self.measure, quick.measure);
+        put(&mut self.flights, quick.flights);
         for views in &mut self.views {
             views.apply(given);
         }
@@ -341,9 +327,6 @@ impl PlanFile {
     }
 
     /// The measurements.
-    ///
-    /// # Errors
-    /// A solid that the program carries cannot be read, or a map cannot be baked.
     pub fn plan(&self, given: &Overrides) -> Result<Plan> {
         let mut views = Vec::new();
         for group in &self.views {
@@ -369,10 +352,8 @@ fn known(key: &str, name: &str, all: &[&str], what: &str) -> Result<()> {
     if all.contains(&name) {
         return Ok(());
     }
-    let message = format!(
-        "{name:?} is not among {what}; give one of {}",
-        all.join(", ")
-    );
+    let all = all.join(", ");
+    let message = format!("{name:?} is not among {what}; give one of {all}");
     Err(Error::new(ErrorKind::Content, message).at_key(key))
 }
 
@@ -382,11 +363,9 @@ fn fault(text: &str, error: &toml::de::Error) -> Error {
     let before = text.get(..start).unwrap_or("");
     let number = before.matches('\n').count() + 1;
     let line = text.lines().nth(number - 1).unwrap_or("");
-    let key = line.split('=').next().unwrap_or(line).trim();
-    let place = if key.is_empty() {
-        format!("line {number}")
-    } else {
-        format!("line {number}, {key}")
+    let place = match line.split('=').next().unwrap_or(line).trim() {
+        "" => format!("line {number}"),
+        key => format!("line {number}, {key}"),
     };
     Error::new(ErrorKind::Content, error.message()).at_key(place)
 }

@@ -19,7 +19,6 @@ pub struct Labels {
 
 impl Labels {
     /// Labels for these ways; the RBM baseline, meshes and the floor have their own names and do not count.
-    #[must_use]
     pub fn new<'a>(ways: impl IntoIterator<Item = &'a MethodSettings>) -> Self {
         let own = |s: &MethodSettings| s.method.is_mesh() || s.method == Method::Floor;
         let counts = |s: &&MethodSettings| !is_baseline_of_any_rows(s) && !own(s);
@@ -40,7 +39,6 @@ impl Labels {
     }
 
     /// The search and what else tells this way from the others, without the stage.
-    #[must_use]
     pub fn way(&self, s: &MethodSettings) -> String {
         if is_baseline_of_any_rows(s) {
             let rows = s.map_rows.filter(|_| self.rows);

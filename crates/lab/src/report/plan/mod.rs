@@ -14,7 +14,7 @@ mod views;
 
 pub use arrange::{army, distant, flight_camera};
 pub(in crate::report) use cases::grouped;
-pub use cases::{Case, Plan, Truth, is_rbm_baseline, plain, rbm_baseline, same_picture, variant};
+pub use cases::{Case, Plan, Truth, is_rbm_baseline, plain, rbm_baseline, variant};
 pub use file::{Flight, Measure, Pick, PlanFile};
 pub use labels::{Labels, RBM_BASELINE};
 pub use overrides::{Lists, Overrides};

@@ -81,15 +81,16 @@ impl TryFrom<Names> for Extent {
                 "one" => Ok(Self::One),
                 "three" => Ok(Self::Three),
                 "all" => Ok(Self::All),
-                _ => Err(format!(
-                    "{word:?} is not known; give one, three, all or a list of names"
-                )),
+                _ => {
+                    let allowed = "give one, three, all or a list of names";
+                    Err(format!("{word:?} is not known; {allowed}"))
+                }
             },
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
-                Some(name) => Err(format!(
-                    "{name:?} is no solid; give one of {}",
-                    all.join(", ")
-                )),
+                Some(name) => {
+                    let all = all.join(", ");
+                    Err(format!("{name:?} is no solid; give one of {all}"))
+                }
                 None => Ok(Self::Named(list)),
             },
         }
@@ -98,9 +99,6 @@ impl TryFrom<Names> for Extent {
 
 /// The suite's views: each solid upright, filling nine tenths of the picture, from each of the
 /// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
-///
-/// # Errors
-/// A profile that the program carries cannot be read.
 pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
     let wanted = |place: usize, name: &str| match extent {
         Extent::One => place < 1,
@@ -118,15 +116,10 @@ pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
                 bytes,
                 ProfileAxis::Center,
             )?),
-            Source::Scene(text) => match revmap_files::SceneFile::parse(text, "")?
-                .scene(&[])?
-                .objects
-                .into_iter()
-                .next()
-            {
-                Some(object) => object.profile,
-                None => continue,
-            },
+            Source::Scene(text) => {
+                let mut scene = revmap_files::SceneFile::parse(text, "")?.scene(&[])?;
+                scene.objects.swap_remove(0).profile
+            }
         };
         let mut object = Object::new(name, profile);
         object.color = color;

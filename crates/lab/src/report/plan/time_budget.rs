@@ -45,13 +45,11 @@ impl Default for TimeBudget {
 
 impl TimeBudget {
     /// The time that all is meant to take.
-    #[must_use]
     pub fn time(&self) -> Duration {
         Duration::try_from_secs_f64(self.seconds).unwrap_or(Duration::MAX)
     }
 
     /// The time beyond which no pass may end.
-    #[must_use]
     pub fn limit(&self) -> Duration {
         let seconds = self.limit.unwrap_or(2.0 * self.seconds);
         Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)

@@ -3,7 +3,7 @@
 use super::arrange::{army, avenue, distant, field};
 use super::overrides::Overrides;
 use super::suite::{self, Extent};
-use super::values::{framings, shadows};
+use super::values::list;
 use crate::report::view::{Framing, View};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, ColorMap, ShapeMap};
@@ -22,7 +22,7 @@ pub struct Views {
     /// Degrees above the horizon from which a solid is looked at.
     pub elevations: Vec<f64>,
     /// How much of the picture is solid.
-    #[serde(deserialize_with = "framings")]
+    #[serde(deserialize_with = "list")]
     pub framings: Vec<Framing>,
     /// How copies are placed.
     pub arrange: Arrangement,
@@ -31,7 +31,7 @@ pub struct Views {
     /// Forms of the surface; none: as the solid is.
     pub forms: Vec<Form>,
     /// Shadows that the scene has; none: as the scene says.
-    #[serde(deserialize_with = "shadows")]
+    #[serde(deserialize_with = "list")]
     pub shadows: Vec<Shadow>,
     /// The view's name in results, in place of the solid's.
     pub call: Option<String>,
@@ -70,7 +70,7 @@ pub enum Arrangement {
 }
 
 /// A form of the surface.
-#[derive(Clone, Debug, serde::Deserialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Form {
     /// The ending of its views' names.
@@ -80,6 +80,7 @@ pub struct Form {
     /// The same key as in scene files.
     pub bevel: f64,
     /// The same key as in scene files.
+    #[serde(default = "whole")]
     pub chamfer: f64,
     /// True if `extend` and `bevel` are fractions of the largest distance that the published
     /// method's map of the solid holds.
@@ -92,19 +93,8 @@ pub struct Form {
     pub value: Option<f64>,
 }
 
-impl Default for Form {
-    fn default() -> Self {
-        Self {
-            name: String::new(),
-            extend: 0.0,
-            bevel: 0.0,
-            chamfer: 1.0,
-            relative: false,
-            cut: false,
-            textured: false,
-            value: None,
-        }
-    }
+fn whole() -> f64 {
+    1.0
 }
 
 impl Views {
@@ -127,8 +117,9 @@ impl Views {
         let mut all = Vec::new();
         for view in self.arranged(scenes)? {
             // Framings in their own order, whatever that of the list.
-            for framing in Framing::ALL.iter().filter(|f| self.framings.contains(f)) {
-                for view in self.formed(&view.clone().in_framing(*framing))? {
+            let framings = Framing::NAMES.map(|n| n.1).into_iter();
+            for framing in framings.filter(|f| self.framings.contains(f)) {
+                for view in self.formed(&view.clone().in_framing(framing))? {
                     all.extend(self.shadowed(view));
                 }
             }
@@ -169,11 +160,11 @@ impl Views {
         if self.elevations.is_empty() {
             return Ok(scenes.to_vec());
         }
-        let seen = |view: &View| {
-            let from = |&degrees: &f64| view.clone().at_elevation(degrees);
-            self.elevations.iter().map(from).collect::<Vec<_>>()
-        };
-        Ok(scenes.iter().flat_map(seen).collect())
+        let all = scenes.iter().flat_map(|view| {
+            let degrees = self.elevations.iter();
+            degrees.map(|&degrees| view.clone().at_elevation(degrees))
+        });
+        Ok(all.collect())
     }
 
     /// A view with each kind of shadows; names end in all but `off`.
@@ -200,10 +191,8 @@ impl Views {
             true => largest_distance(view)?,
             false => 1.0,
         };
-        self.forms
-            .iter()
-            .map(|form| form.of(view, largest))
-            .collect()
+        let forms = self.forms.iter();
+        forms.map(|form| form.of(view, largest)).collect()
     }
 }
 
@@ -211,10 +200,7 @@ impl Form {
     /// A view in this form.
     fn of(&self, view: &View, largest: f64) -> Result<View> {
         let unit = if self.relative { largest } else { 1.0 };
-        let map = match self.textured {
-            true => Some(Arc::new(chequered()?)),
-            false => None,
-        };
+        let map = self.textured.then(chequered).transpose()?.map(Arc::new);
         let mut view = view.clone();
         for object in &mut view.scene.objects {
             object.offset = Offset {

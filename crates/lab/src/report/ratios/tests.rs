@@ -1,8 +1,9 @@
 #![allow(clippy::unwrap_used)]
 use super::super::plan::rbm_baseline;
-use super::super::row::tests::row;
+use super::super::row::tests::{row, timed};
 use super::super::view::tests::spindle;
 use super::*;
+use crate::compare::Spread;
 use crate::method::Method;
 
 fn papers(mut row: Row) -> Row {
@@ -10,34 +11,35 @@ fn papers(mut row: Row) -> Row {
     row
 }
 
+/// Passes of the default and of the baseline in two views: 5 ms over 20 and 20 over 20.
+fn two_views(passes: [usize; 2]) -> Vec<Row> {
+    let rows = |(view, ours): (usize, f64)| {
+        let mut rows = [vec![ours; passes[view]], vec![20.0; passes[view]]]
+            .map(|times| timed(&times))
+            .map(|row| Row { view, ..row });
+        rows[1] = papers(rows[1].clone());
+        rows
+    };
+    [(0, 5.0), (1, 20.0)].into_iter().flat_map(rows).collect()
+}
+
 /// A machine that slows down to a third within a pass and between passes changes no ratio.
 #[test]
 fn drift_of_the_machine_cancels() {
     let ours = row(&[&[(None, 10.0), (None, 30.0)], &[(None, 20.0), (None, 11.0)]]);
-    let theirs = papers(row(&[
-        &[(None, 20.0), (None, 60.0)],
-        &[(None, 40.0), (None, 22.0)],
-    ]));
-    let rows = [ours, theirs];
+    let theirs = row(&[&[(None, 20.0), (None, 60.0)], &[(None, 40.0), (None, 22.0)]]);
+    let rows = [ours, papers(theirs)];
     let ratios = over(&rows, Over::Baseline);
     assert_eq!(ratios.len(), 2);
     let time = ratios[0].time;
-    assert!(
-        (time.value - 0.5).abs() < 1e-12 && (time.high - time.low) < 1e-9,
-        "{time:?}"
-    );
+    assert!((time.value - 0.5).abs() < 1e-12, "{time:?}");
+    assert!((time.high - time.low) < 1e-9, "{time:?}");
     assert!((ratios[1].time.value - 1.0).abs() < 1e-12);
 }
 
 #[test]
 fn views_are_averaged_geometrically() {
-    let mut rows = Vec::new();
-    for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
-        let mut a = row(&[&[(None, ours)], &[(None, ours)]]);
-        let mut b = papers(row(&[&[(None, 20.0)], &[(None, 20.0)]]));
-        (a.view, b.view) = (view, view);
-        rows.extend([a, b]);
-    }
+    let rows = two_views([2, 2]);
     let ratio = &over(&rows, Over::Baseline)[0];
     assert!((ratio.time.value - 0.5).abs() < 1e-12);
     assert!((ratio.range.0 - 0.25).abs() < 1e-12 && (ratio.range.1 - 1.0).abs() < 1e-12);
@@ -53,8 +55,8 @@ fn what_cannot_be_trusted_counts_for_nothing() {
     assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
     // A baseline that lies leaves nothing to compare with; that of the fragment stage is the one of
     // both stages.
-    assert!(over(&[row(&[&[(None, 20.0)]]), papers(lies)], Over::Baseline).is_empty());
-    let mut compute = row(&[&[(None, 20.0)]]);
+    assert!(over(&[timed(&[20.0]), papers(lies)], Over::Baseline).is_empty());
+    let mut compute = timed(&[20.0]);
     compute.settings.stage = DrawStage::Compute;
     assert_eq!(over(&[compute, fine], Over::Baseline).len(), 2);
 }
@@ -62,7 +64,7 @@ fn what_cannot_be_trusted_counts_for_nothing() {
 /// 8 ms against 20 where 5 go without a search: 3 of the 20 are above the floor.
 #[test]
 fn the_floor_is_taken_off() {
-    let timed = |ms: f64| row(&[&[(None, ms)], &[(None, ms)]]);
+    let timed = |ms: f64| timed(&[ms, ms]);
     let mut floor = timed(5.0);
     floor.settings.method = Method::Floor;
     let mut compute = timed(6.0);
@@ -76,17 +78,7 @@ fn the_floor_is_taken_off() {
 /// mean.
 #[test]
 fn a_pass_that_was_ended_early_is_left_out() {
-    let mut rows = Vec::new();
-    for (view, ours) in [5.0, 20.0].into_iter().enumerate() {
-        let passes: &[&[(Option<f64>, f64)]] = &[&[(None, ours)], &[(None, ours)]];
-        let count = if view == 0 { 2 } else { 1 };
-        let mut a = row(&passes[..count]);
-        let mut b = papers(row(
-            &[[(None, 20.0)].as_slice(), [(None, 20.0)].as_slice()][..count]
-        ));
-        (a.view, b.view) = (view, view);
-        rows.extend([a, b]);
-    }
+    let rows = two_views([2, 1]);
     let time = over(&rows, Over::Baseline)[0].time;
     assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
 }
@@ -95,17 +87,11 @@ fn a_pass_that_was_ended_early_is_left_out() {
 /// not.
 #[test]
 fn the_default_search_is_held_against_meshes() {
-    let depth = |p99| {
-        Some(crate::compare::Spread {
-            rms: p99,
-            p99,
-            max: p99,
-        })
-    };
     let timed = |method, ms: f64, p99| {
-        let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+        let mut row = timed(&[ms, ms]);
         row.settings.method = method;
-        row.errors.depth = depth(p99);
+        let (rms, max) = (p99, p99);
+        row.errors.depth = Some(Spread { rms, p99, max });
         row
     };
     let mesh = |n| Method::mesh(n, 2 * n).unwrap();
@@ -116,19 +102,16 @@ fn the_default_search_is_held_against_meshes() {
         timed(mesh(256), 18.0, 0.01),
     ];
     let duels = over(&rows, Over::Mesh);
-    let told: Vec<_> = duels
-        .iter()
-        .map(|d| (d.mesh, (d.time.value * 100.0).round(), d.no_worse()))
-        .collect();
-    assert_eq!(
-        told,
-        [
-            (Some(mesh(64)), 150.0, 0),
-            (Some(mesh(512)), 25.0, 1),
-            (Some(mesh(256)), 50.0, 1),
-            (None, 50.0, 1)
-        ]
-    );
+    let percent = |d: &Ratio| (d.time.value * 100.0).round();
+    let told = duels.iter().map(|d| (d.mesh, percent(d), d.no_worse()));
+    let wanted = [
+        (Some(64), 150.0, 0),
+        (Some(512), 25.0, 1),
+        (Some(256), 50.0, 1),
+        (None, 50.0, 1),
+    ];
+    let wanted = wanted.map(|(n, ratio, no_worse)| (n.map(mesh), ratio, no_worse));
+    assert_eq!(told.collect::<Vec<_>>(), wanted);
     // Without a mesh that errs no more there is no such ratio, and without the default search
     // none at all.
     assert_eq!(over(&rows[..2], Over::Mesh).len(), 1);
@@ -140,7 +123,7 @@ fn the_default_search_is_held_against_meshes() {
 #[test]
 fn both_stages_are_put_over_one_baseline() {
     let timed = |ms: f64, stage| {
-        let mut row = row(&[&[(None, ms)], &[(None, ms)]]);
+        let mut row = timed(&[ms, ms]);
         row.settings.stage = stage;
         row
     };
@@ -152,11 +135,8 @@ fn both_stages_are_put_over_one_baseline() {
         timed(8.0, Compute),
     ];
     let found = |rows: &[Row]| -> Vec<f64> {
-        let ratios = over(rows, Over::Baseline);
-        ratios
-            .iter()
-            .map(|r| (r.time.value * 1e6).round() / 1e6)
-            .collect()
+        let ratios = over(rows, Over::Baseline).into_iter();
+        ratios.map(|r| (r.time.value * 1e6).round() / 1e6).collect()
     };
     assert_eq!(baseline_stage(&rows), Fragment);
     assert_eq!(found(&rows), [0.5, 1.0, 0.8, 0.4]);

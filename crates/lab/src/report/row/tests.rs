@@ -9,14 +9,15 @@ use revmap_searches::CIRCLE;
 pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
     let frame = Frame::new(4, 3, [0.0; 4]).unwrap();
     let errors = compare(&frame, &frame, &CompareOptions::default()).unwrap();
+    let settings = MethodSettings {
+        method: Method::Search(CIRCLE),
+        map_format: revmap::maps::MapFormat::R16,
+        ..MethodSettings::default()
+    };
     let case = Case {
         view: 0,
         sweeps: 1,
-        settings: MethodSettings {
-            method: Method::Search(CIRCLE),
-            map_format: revmap::maps::MapFormat::R16,
-            ..MethodSettings::default()
-        },
+        settings,
     };
     let mut row = Row::new(&spindle(), &case, errors, Steps::of(&frame), 1000);
     let samples = |pass: &&[(Option<f64>, f64)]| {
@@ -26,6 +27,12 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
     };
     row.passes = passes.iter().map(samples).collect();
     row
+}
+
+/// A row without errors, one frame in each pass, timed by the wall clock.
+pub(crate) fn timed(passes: &[f64]) -> Row {
+    let passes: Vec<_> = passes.iter().map(|ms| [(None, *ms)]).collect();
+    row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>())
 }
 
 #[test]
@@ -46,11 +53,9 @@ fn clocks_that_disagree_are_told() {
     assert_eq!(lies.time(), None);
     assert_eq!(row(&[&[(Some(20.0 * 1.16), 20.0)]]).time(), None);
     assert!(row(&[&[(Some(17.0), 20.0)]]).time().is_some());
-    let alone = row(&[&[(None, 20.0)], &[(None, 20.0)]]);
-    assert_eq!(
-        (alone.clocks(), alone.time().unwrap().value.round()),
-        (Clocks::Wall, 20.0)
-    );
+    let alone = timed(&[20.0, 20.0]);
+    assert_eq!(alone.clocks(), Clocks::Wall);
+    assert_eq!(alone.time().unwrap().value.round(), 20.0);
 }
 
 #[test]
@@ -60,13 +65,7 @@ fn steps_count_where_the_search_ran() {
         frame.steps[k] = (k + 1) as f32;
     }
     frame.exhausted = 7;
-    assert_eq!(
-        Steps::of(&frame),
-        Steps {
-            mean: 50.5,
-            p99: 99.0,
-            max: 100.0,
-            exhausted: 7,
-        }
-    );
+    let steps = Steps::of(&frame);
+    assert_eq!((steps.mean, steps.p99, steps.max), (50.5, 99.0, 100.0));
+    assert_eq!(steps.exhausted, 7);
 }

@@ -32,39 +32,18 @@ fn crowded() -> XyChart {
 
 #[test]
 fn no_words_cover_each_other_however_crowded() {
-    assert_eq!(crowded().figure().faults(), Vec::<String>::new());
+    assert_eq!(crowded().figure().faults(), [""; 0]);
     for (low, high) in [(1e-9, 1e9), (0.999, 1.001), (21.0, 26.0), (3.0, 3.0)] {
         let mut chart = crowded();
         chart.series.truncate(1);
-        chart.series[0].points = [low, high]
-            .map(|v| Point {
-                x: v,
-                y: v,
-                ..Point::default()
-            })
-            .to_vec();
-        assert_eq!(
-            chart.figure().faults(),
-            Vec::<String>::new(),
-            "{low} to {high}"
-        );
+        chart.series[0].points = [low, high].map(|v| Point::at(v, v)).to_vec();
+        assert_eq!(chart.figure().faults(), [""; 0], "{low} to {high}");
     }
     // The check itself finds what is planted.
     let mut figure = crowded().figure();
-    figure.marks.push(Mark::word(
-        (20.0, 30.0),
-        "planted",
-        14.0,
-        Anchor::Start,
-        INK,
-    ));
-    figure.marks.push(Mark::word(
-        (-20.0, 300.0),
-        "outside",
-        14.0,
-        Anchor::Start,
-        INK,
-    ));
+    let word = |at, text| Mark::word(at, text, 14.0, Anchor::Start, INK);
+    figure.marks.push(word((20.0, 30.0), "planted"));
+    figure.marks.push(word((-20.0, 300.0), "outside"));
     assert!(figure.faults().len() >= 2);
 }
 
@@ -75,11 +54,8 @@ fn series_of_one_name_share_an_entry() {
     for (k, series) in chart.series.iter_mut().enumerate() {
         series.name = ["hull", "hull", "live"][k].to_owned();
     }
-    let keys: Vec<_> = chart
-        .legend(|_| true)
-        .into_iter()
-        .map(|(n, k)| (n, k.len()))
-        .collect();
+    let legend = chart.legend(|_| true).into_iter();
+    let keys: Vec<_> = legend.map(|(n, k)| (n, k.len())).collect();
     let wanted = [
         ("hull", 2),
         ("live", 1),
@@ -87,7 +63,7 @@ fn series_of_one_name_share_an_entry() {
         ("not resolved", 1),
     ];
     assert_eq!(keys, wanted.map(|(n, k)| (n.to_owned(), k)));
-    assert_eq!(chart.figure().faults(), Vec::<String>::new());
+    assert_eq!(chart.figure().faults(), [""; 0]);
 }
 
 #[test]
@@ -95,28 +71,16 @@ fn points_stand_where_their_values_are() {
     let mut chart = crowded();
     chart.series = vec![Series {
         name: String::new(),
-        style: Style::new(color::BLUE, Marker::Disk),
+        style: Style::new(color::BLUE, Marker::DISK),
         joined: false,
-        points: vec![],
+        points: [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
+            .map(|(x, y)| Point::at(x, y))
+            .to_vec(),
     }];
-    chart.series[0].points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
-        .map(|(x, y)| Point {
-            x,
-            y,
-            ..Point::default()
-        })
-        .to_vec();
     chart.guides.clear();
-    let centers: Vec<_> = chart
-        .figure()
-        .marks
-        .iter()
-        .filter_map(|m| match m {
-            Mark::Shape { .. } => Some(m.bounds()),
-            _ => None,
-        })
-        .map(|b| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0))
-        .collect();
+    let center = |b: Bounds| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0);
+    let dots = chart.figure().shapes().into_iter();
+    let centers: Vec<_> = dots.map(center).collect();
     assert_eq!(centers.len(), 3);
     // Equal ratios, equal ways; less error is further down.
     assert!((centers[1].0 * 2.0 - centers[0].0 - centers[2].0).abs() < 1e-6);
@@ -126,40 +90,32 @@ fn points_stand_where_their_values_are() {
 #[test]
 fn lines_are_cut_at_the_plot() {
     let plot = [0.0, 0.0, 10.0, 10.0];
-    assert_eq!(
-        clip(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (20.0, 20.0)], plot),
-        [vec![(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]
-    );
+    let line = [(-5.0, 5.0), (5.0, 5.0), (5.0, 20.0), (20.0, 20.0)];
+    assert_eq!(clip(&line, plot), [[(0.0, 5.0), (5.0, 5.0), (5.0, 10.0)]]);
     assert!(clip(&[(-5.0, -5.0), (-1.0, 20.0)], plot).is_empty());
 }
 
 /// Three series at one place: heavy and filled, hollow, filled.
 fn piled() -> XyChart {
-    let at = |style: Style| Series {
+    let series = |(heavy, filled)| Series {
         name: String::new(),
-        style,
+        style: Style {
+            heavy,
+            filled,
+            ..Style::new(color::BLUE, Marker::DISK)
+        },
         points: vec![Point {
-            x: 2.0,
-            y: 3.0,
             spread: Some((1.0, 4.0)),
-            ..Point::default()
+            ..Point::at(2.0, 3.0)
         }],
         joined: false,
     };
-    let plain = Style::new(color::BLUE, Marker::Disk);
-    let hollow = Style {
-        filled: false,
-        ..plain
-    };
-    let heavy = Style {
-        heavy: true,
-        ..plain
-    };
+    let looks = [(true, true), (false, true), (false, false)];
     XyChart {
         title: "A pile".into(),
         x: Axis::log("x"),
         y: Axis::log("y"),
-        series: vec![at(heavy), at(plain), at(hollow)],
+        series: looks.map(series).to_vec(),
         guides: vec![Guide::dashed("Pareto front", vec![(2.0, 3.0)])],
     }
 }
@@ -167,45 +123,33 @@ fn piled() -> XyChart {
 #[test]
 fn hollow_markers_hide_nothing_and_bars_lie_below() {
     let figure = piled().figure();
-    let fills: Vec<&str> = (figure.marks.iter())
-        .filter_map(|m| match m {
-            Mark::Shape { fill, .. } => Some(*fill),
-            _ => None,
-        })
-        .collect();
+    let fills = figure.marks.iter().filter_map(|m| match m {
+        Mark::Shape(_, fill, _) => Some(*fill),
+        _ => None,
+    });
+    let fills: Vec<&str> = fills.collect();
     assert_eq!(fills, [PAPER, color::BLUE, color::BLUE]);
-    let sizes: Vec<f64> = (figure.marks.iter())
-        .filter(|m| matches!(m, Mark::Shape { .. }))
-        .map(|m| m.bounds()[2] - m.bounds()[0])
-        .collect();
-    assert!(
-        sizes[1] > sizes[2],
-        "the heavier of the filled ones lies below"
-    );
+    let sizes: Vec<f64> = figure.shapes().iter().map(|b| b[2] - b[0]).collect();
+    // The heavier of the filled ones lies below.
+    assert!(sizes[1] > sizes[2]);
     // A bar from 1 to 4 is twice as long to the left of 2 as to its right, in octaves as long.
-    let bar = |m: &Mark| matches!(m, Mark::Line { color, .. } if *color == color::BLUE);
-    let first_dot = figure
-        .marks
-        .iter()
-        .position(|m| matches!(m, Mark::Shape { .. }));
-    assert_eq!(figure.marks.iter().filter(|m| bar(m)).count(), 3);
-    assert!(figure.marks.iter().rposition(bar) < first_dot);
+    let bar = |m: &Mark| matches!(m, Mark::Line(_, color, ..) if *color == color::BLUE);
+    let dot = |m: &Mark| matches!(m, Mark::Shape(..));
+    let mut marks = figure.marks.iter();
+    assert_eq!(marks.clone().filter(|m| bar(m)).count(), 3);
+    assert!(marks.clone().rposition(bar) < marks.position(dot));
 }
 
 #[test]
 fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
-    let words = |chart: &XyChart| {
+    let told = |chart: &XyChart| {
         let figure = chart.figure();
-        let said = figure.marks.into_iter().filter_map(|m| match m {
-            Mark::Word { text, .. } => Some(text),
-            _ => None,
-        });
-        said.collect::<Vec<_>>()
+        figure.words().iter().any(|w| w.0 == "Pareto front")
     };
     let mut chart = piled();
-    assert!(!words(&chart).contains(&"Pareto front".to_owned()));
+    assert!(!told(&chart));
     chart.guides[0].points.push((2.5, 3.0));
-    assert!(words(&chart).contains(&"Pareto front".to_owned()));
+    assert!(told(&chart));
 }
 
 /// Every unresolved point is struck through, and the legend says what that means; without one,
@@ -214,15 +158,14 @@ fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
 fn unresolved_points_are_struck_through() {
     let strokes = |chart: &XyChart| {
         let figure = chart.figure();
-        assert_eq!(figure.faults(), Vec::<String>::new());
-        let marks = figure.marks.iter();
-        let told = |m: &&Mark| matches!(m, Mark::Word { text, .. } if text == "not resolved");
+        assert_eq!(figure.faults(), [""; 0]);
+        let words = figure.words();
+        let told = words.iter().filter(|w| w.0 == "not resolved").count();
         let struck = |m: &&Mark| match m {
-            Mark::Line { points, .. } => points[0].0 != points[1].0 && points[0].1 != points[1].1,
+            Mark::Line(p, ..) => p[0].0 != p[1].0 && p[0].1 != p[1].1,
             _ => false,
         };
-        let count = marks.clone().filter(struck).count();
-        (count, marks.filter(told).count())
+        (figure.marks.iter().filter(struck).count(), told)
     };
     let mut chart = piled();
     assert_eq!(strokes(&chart), (0, 0));

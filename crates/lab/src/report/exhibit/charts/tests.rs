@@ -1,14 +1,13 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::report::chart::Mark;
 use crate::report::columns::tests::with_context;
-use crate::report::row::tests::row;
+use crate::report::row::tests::timed;
 use revmap::settings::Solver;
 
 fn item(stage: DrawStage, x: f64, y: f64, unresolved: bool) -> Item {
     Item {
         name: String::new(),
-        style: Style::new(color::BLUE, Marker::Disk),
+        style: Style::new(color::BLUE, Marker::DISK),
         joined: false,
         stage,
         point: Point {
@@ -45,8 +44,7 @@ fn each_stage_has_a_front_of_its_own() {
 #[test]
 fn charts_of_growth_mark_what_is_not_resolved() {
     let timed = |side: u32, passes: [f64; 3]| {
-        let [a, b, c] = passes.map(|ms| [(None, ms)]);
-        let mut row = row(&[&a, &b, &c]);
+        let mut row = timed(&passes);
         row.settings.method = Solver::Exact.into();
         (row.settings.width, row.settings.height) = (side, side);
         row
@@ -59,24 +57,16 @@ fn charts_of_growth_mark_what_is_not_resolved() {
     let exhibits = crate::report::exhibit::all(&[]).unwrap();
     let growth = exhibits.iter().find(|e| e.name == "growth-pixels").unwrap();
     let drawn = |rows: &[Row]| {
-        let all: Vec<&Row> = rows.iter().collect();
         with_context(rows, |context| {
-            let extra = Extra::default();
-            let figure = growth.chart[0]
-                .figures(context, &all, &extra)
-                .unwrap()
-                .remove(0);
-            let table = growth.table[0].shown(context, &all).unwrap();
-            (figure, table.records[0].clone())
+            let all = context.rows;
+            let figures = growth.chart[0].figures(context, all, &[]);
+            let table = growth.table[0].shown(context, all).unwrap();
+            (figures.unwrap().remove(0), table.records[0].clone())
         })
     };
     let told = |figure: &Figure| {
-        let told = |m: &Mark| matches!(m, Mark::Word { text, .. } if text == "not resolved");
-        let dots = figure
-            .marks
-            .iter()
-            .filter(|m| matches!(m, Mark::Shape { .. }));
-        (figure.marks.iter().any(told), dots.count())
+        let told = figure.words().iter().any(|w| w.0 == "not resolved");
+        (told, figure.shapes().len())
     };
     let (figure, record) = drawn(&rows);
     // Three markers, one in the legend, and the one that explains the stroke.

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
-use super::super::{Lists, embedded};
+use super::super::{Case, Lists, embedded, is_rbm_baseline};
 use super::*;
+use crate::method::MethodSettings;
 use crate::report::view::Framing;
 use crate::report::view::tests::spindle;
 use revmap::settings::Solver;
@@ -37,15 +38,11 @@ fn every_plan_of_the_program_is_sound() {
             assert!(!plan.cases.is_empty(), "{name}");
             for (i, view) in plan.views.iter().enumerate() {
                 view.scene.check().unwrap();
-                assert!(
-                    plan.views[..i].iter().all(|v| v.name != view.name),
-                    "{}",
-                    view.name
-                );
+                let mut others = plan.views[..i].iter();
+                assert!(others.all(|v| v.name != view.name), "{}", view.name);
             }
             for (i, case) in plan.cases.iter().enumerate() {
-                let same =
-                    |c: &super::super::Case| (c.view, c.settings) == (case.view, case.settings);
+                let same = |c: &Case| (c.view, c.settings) == (case.view, case.settings);
                 assert!(!plan.cases[..i].iter().any(same), "{name}: twice");
             }
         }
@@ -67,152 +64,59 @@ fn every_exhibit_of_the_program_is_sound() {
     }
 }
 
+/// Each fault: what is replaced in a sound plan (`|` ends a line), by what, and parts of the message.
+const FAULTS: &str = r#"
+about = "one" => about = 1 => line 1, about & string
+title = "t" => titel = "t" => line 2, titel & unknown field `titel`, expected one of `about`
+title = "t"| => => line 1 & missing field `title`
+title => title title => line 2 & expected
+["exact"] => ["magic"] => line 11, methods & give one of linear
+["exact"] => ["mesh:1x1"] => line 11, methods & at least 3 segments
+["64x48"] => ["64"] => line 12, sizes & WIDTHxHEIGHT
+["64x48"] => ["0x48"] => line 12, sizes & from 1 to 16384
+sizes = ["64x48"] => stages = ["cpu"] => line 12, stages & give one of fragment, compute
+sizes = ["64x48"] => map_sources = ["x"] => line 12, map_sources & binary, coverage, exact
+sizes = ["64x48"] => map_formats = ["x"] => line 12, map_formats & rgba8, r16, r32
+sizes = ["64x48"] => tolerances = [-1] => line 12, tolerances & tolerance
+sizes = ["64x48"] => edges = ["2 rays"] => line 12, edges & 4 rays
+sizes = ["64x48"] => size = ["64x48"] => line 12, size & unknown field `size`
+name = "a" => name = "a"|solids = "some" => line 7, solids & one, three, all
+name = "a" => name = "a"|solids = ["ball"] => line 7, solids & give one of vase
+name = "a" => name = "a"|framings = ["near"] => line 7, framings & whole, close
+name = "a" => name = "a"|arrange = "ring" => line 7, arrange & `field`
+["ratios"] => ["ratio"] => show & give one of stages, stages-by-size
+views = ["a"] => views = ["b"] => views & the names of [[views]]; give one of a
+[[measure]]|name = "m"|views = ["a"]|methods = ["exact"]|sizes = ["64x48"]| => measure = [] => measure
+[[views]]|name = "a"| => [time]|minutes = 1|[[views]]|name = "a"| => line 6, minutes & `seconds`
+[[views]] => [[exhibit]]|name = "e"|only = ["n"]|[[views]] => exhibit e & give one of m
+[[views]] => [[exhibit]]|name = "e"|[[exhibit.table]]|columns = ["speed"]|[[views]] => exhibit e & no column; give one of scene
+"#;
+
 #[test]
 fn faults_name_the_line_the_key_and_what_is_allowed() {
-    for (from, to, wanted) in [
-        ("about = \"one\"", "about = 1", ["line 1, about", "string"]),
-        (
-            "title = \"t\"",
-            "titel = \"t\"",
-            [
-                "line 2, titel",
-                "unknown field `titel`, expected one of `about`",
-            ],
-        ),
-        ("title = \"t\"\n", "", ["line 1", "missing field `title`"]),
-        ("title", "title title", ["line 2", "expected"]),
-        (
-            "[\"exact\"]",
-            "[\"magic\"]",
-            ["line 11, methods", "give one of linear"],
-        ),
-        (
-            "[\"exact\"]",
-            "[\"mesh:1x1\"]",
-            ["line 11, methods", "at least 3 segments"],
-        ),
-        (
-            "[\"64x48\"]",
-            "[\"64\"]",
-            ["line 12, sizes", "WIDTHxHEIGHT"],
-        ),
-        (
-            "[\"64x48\"]",
-            "[\"0x48\"]",
-            ["line 12, sizes", "from 1 to 16384"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "stages = [\"cpu\"]",
-            ["line 12, stages", "give one of fragment, compute"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "map_sources = [\"x\"]",
-            ["line 12, map_sources", "binary, coverage, exact"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "map_formats = [\"x\"]",
-            ["line 12, map_formats", "rgba8, r16, r32"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "tolerances = [-1]",
-            ["line 12, tolerances", "tolerance"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "edges = [\"2 rays\"]",
-            ["line 12, edges", "4 rays"],
-        ),
-        (
-            "sizes = [\"64x48\"]",
-            "size = [\"64x48\"]",
-            ["line 12, size", "unknown field `size`"],
-        ),
-        (
-            "name = \"a\"",
-            "name = \"a\"\nsolids = \"some\"",
-            ["line 7, solids", "one, three, all"],
-        ),
-        (
-            "name = \"a\"",
-            "name = \"a\"\nsolids = [\"ball\"]",
-            ["line 7, solids", "give one of vase"],
-        ),
-        (
-            "name = \"a\"",
-            "name = \"a\"\nframings = [\"near\"]",
-            ["line 7, framings", "whole, close"],
-        ),
-        (
-            "name = \"a\"",
-            "name = \"a\"\narrange = \"ring\"",
-            ["line 7, arrange", "`field`"],
-        ),
-        (
-            "[\"ratios\"]",
-            "[\"ratio\"]",
-            ["show", "give one of stages, stages-by-size"],
-        ),
-        (
-            "views = [\"a\"]",
-            "views = [\"b\"]",
-            ["views", "the names of [[views]]; give one of a"],
-        ),
-        (
-            "[[measure]]\nname = \"m\"\nviews = [\"a\"]\nmethods = [\"exact\"]\nsizes = [\"64x48\"]\n",
-            "measure = []",
-            ["", "measure"],
-        ),
-        (
-            "[[views]]\nname = \"a\"\n",
-            "[time]\nminutes = 1\n[[views]]\nname = \"a\"\n",
-            ["line 6, minutes", "`seconds`"],
-        ),
-        (
-            "[[views]]",
-            "[[exhibit]]\nname = \"e\"\nonly = [\"n\"]\n[[views]]",
-            ["exhibit e", "give one of m"],
-        ),
-        (
-            "[[views]]",
-            "[[exhibit]]\nname = \"e\"\n[[exhibit.table]]\ncolumns = [\"speed\"]\n[[views]]",
-            ["exhibit e", "no column; give one of scene"],
-        ),
-    ] {
-        let text = SOUND.replacen(from, to, 1);
+    for fault in FAULTS.trim().lines() {
+        let parts: Vec<&str> = fault.split("=> ").collect();
+        let [from, to] = [0, 1].map(|k: usize| parts[k].trim_end().replace('|', "\n"));
+        let text = SOUND.replacen(&from, &to, 1);
         assert_ne!(text, SOUND, "{from}");
-        let error = PlanFile::parse(&text)
-            .unwrap_err()
-            .in_file("mine.toml")
-            .to_string();
-        assert!(
-            error.starts_with("mine.toml: ") && !error.contains('\n'),
-            "{error}"
-        );
-        for part in wanted {
+        let error = PlanFile::parse(&text).unwrap_err();
+        let error = error.in_file("mine.toml").to_string();
+        let one_line = error.starts_with("mine.toml: ") && !error.contains('\n');
+        assert!(one_line, "{error}");
+        for part in parts[2].split(" & ") {
             assert!(error.contains(part), "{part}: {error}");
         }
     }
+    assert_eq!(FAULTS.trim().lines().count(), 24);
     PlanFile::parse(SOUND).unwrap();
-    assert!(
-        PlanFile::load(Path::new("missing.toml"))
-            .unwrap_err()
-            .to_string()
-            .contains("cannot be read")
-    );
+    let error = PlanFile::load(Path::new("missing.toml")).unwrap_err();
+    assert!(error.to_string().contains("cannot be read"));
 }
 
-fn cases(file: &mut PlanFile, given: &Overrides) -> Vec<crate::method::MethodSettings> {
+fn cases(file: &mut PlanFile, given: &Overrides) -> Vec<MethodSettings> {
     file.apply(given);
-    file.plan(given)
-        .unwrap()
-        .cases
-        .iter()
-        .map(|c| c.settings)
-        .collect()
+    let cases = file.plan(given).unwrap().cases.into_iter();
+    cases.map(|c| c.settings).collect()
 }
 
 #[test]
@@ -234,10 +138,8 @@ fn the_command_line_takes_the_place_of_lists() {
     let floors = usize::from(crate::floor::is_available());
     assert_eq!(all.len(), 2 * (3 + floors));
     assert_eq!((file.time.passes, file.time.rounds), ((3, 3), (3, 20)));
-    assert!(
-        all.iter()
-            .all(|s| s.stage == DrawStage::Fragment && s.width < 33)
-    );
+    let fragment = |s: &MethodSettings| s.stage == DrawStage::Fragment;
+    assert!(all.iter().all(|s| fragment(s) && s.width < 33));
     // Two framings of a scene from two elevations.
     let given = Overrides {
         elevations: vec![0.0, 30.0],
@@ -248,15 +150,8 @@ fn the_command_line_takes_the_place_of_lists() {
     file.apply(&given);
     let plan = file.plan(&given).unwrap();
     let names: Vec<&str> = plan.views.iter().map(|v| v.name.as_str()).collect();
-    assert_eq!(
-        names,
-        [
-            "spindle@0",
-            "spindle@0:close",
-            "spindle@30",
-            "spindle@30:close"
-        ]
-    );
+    let wanted = "spindle@0 spindle@0:close spindle@30 spindle@30:close";
+    assert_eq!(names.join(" "), wanted);
 }
 
 #[test]
@@ -269,15 +164,12 @@ fn a_sweep_moves_one_axis_at_a_time() {
     };
     let mut file = embedded::plan("chart").unwrap();
     let all = cases(&mut file, &given);
-    let of = |k: usize| {
-        let own = move |s: &&crate::method::MethodSettings| s.method == methods[k];
-        all.iter()
-            .filter(own)
-            .filter(|s| !super::super::is_rbm_baseline(s))
-            .count()
+    let of = |method: Method| {
+        let own = |s: &&MethodSettings| s.method == method && !is_rbm_baseline(s);
+        all.iter().filter(own).count()
     };
     // Steps in both stages, rows x sources and formats in one; rows of cones in both.
-    assert_eq!([of(0), of(1), of(2)], [6 * 2 + 5 * 3 + 3, 2, 5 * 2]);
+    assert_eq!(methods.map(of), [6 * 2 + 5 * 3 + 3, 2, 5 * 2]);
     // A list of bounds is combined with all others instead.
     let given = Overrides {
         lists: Lists {
@@ -289,14 +181,9 @@ fn a_sweep_moves_one_axis_at_a_time() {
     };
     let mut file = embedded::plan("chart").unwrap();
     let all = cases(&mut file, &given);
-    assert_eq!(
-        all.iter().filter(|s| s.max_steps == Some(10)).count(),
-        2 * 2
-    );
-    assert_eq!(
-        all.iter().filter(|s| s.method == Solver::Quadric).count(),
-        2
-    );
+    let count = |own: fn(&&MethodSettings) -> bool| all.iter().filter(own).count();
+    assert_eq!(count(|s| s.max_steps == Some(10)), 2 * 2);
+    assert_eq!(count(|s| s.method == Solver::Quadric), 2);
 }
 
 /// Every picture of the plan `sizes` has the default and its two rivals in both stages, at five
@@ -308,10 +195,10 @@ fn the_default_has_its_rivals_in_every_picture() {
     assert_eq!((plan.views.len(), plan.cases.len()), (9, 9 * 5 * 3 * 2));
     for group in plan.groups() {
         let of = |k: &usize| plan.cases[*k].settings;
-        let mut ways: Vec<(String, &str)> = group
+        let ways = group
             .iter()
-            .map(|k| (of(k).method.to_string(), of(k).stage.name()))
-            .collect();
+            .map(|k| (of(k).method.to_string(), of(k).stage.name()));
+        let mut ways: Vec<(String, &str)> = ways.collect();
         ways.sort();
         let methods = ["exact", "live", "quadric"];
         let both = |m: &str| ["compute", "fragment"].map(|stage| (m.to_owned(), stage));
@@ -341,11 +228,10 @@ fn meshes_grow_with_pixels_and_solids_alone() {
     file.apply(&given);
     let plan = file.plan(&given).unwrap();
     for (method, copies) in [("mesh:16x32", 4), ("mesh:64x128", 4)] {
-        let own = |c: &&super::super::Case| c.settings.method.to_string() == method;
+        let own = |c: &&Case| c.settings.method.to_string() == method;
         let of = || plan.cases.iter().filter(own);
-        assert!(
-            of().all(|c| c.settings.stage == DrawStage::Fragment && c.settings.map_rows.is_none())
-        );
+        let plain = |s: MethodSettings| s.stage == DrawStage::Fragment && s.map_rows.is_none();
+        assert!(of().all(|c| plain(c.settings)));
         assert_eq!(of().filter(|c| c.view == 0).count(), 5);
         assert_eq!(of().filter(|c| c.view > 0).count(), copies);
     }
