@@ -103,11 +103,12 @@ const MOST_PROXIES: usize = 64;
 const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
-/// shades. The first is for subgroups of at least [`LEAST_SUBGROUP`], the second for smaller ones,
-/// which take three times as long over a tree. The factors come from counts of instructions:
+/// shades: for one copy, and for several. The first pair is for subgroups of at least
+/// [`LEAST_SUBGROUP`], the second for smaller ones, which take three times as long over a tree.
 /// llvmpipe draws a solid by cells as fast as by tiles at 1,650 pixels per frustum. SwiftShader does
-/// at 340, extrapolated from solids of 1,205 pixels and more.
-const SOFTWARE_FRUSTUM: [u32; 2] = [11, 2];
+/// at 340, extrapolated from solids of 1,205 pixels and more. Of several copies, which tiles search
+/// one by one, llvmpipe draws 16 faster by cells, and 32 and 64 smaller ones faster by tiles.
+const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 
 /// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists
 /// take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer, 0.73 to 0.99 for 45,000 and
@@ -150,7 +151,7 @@ impl Conditions {
             match candidate {
                 Path::Cells { cut, .. } => {
                     let seen = of.surface.and_then(|s| {
-                        let least = self.least_pixels(of.object);
+                        let least = self.least_pixels(of.copies().len());
                         proxy::frusta(of.object, s, view, least).filter(|found| found.1 == cut)
                     });
                     if let Some((frusta, cut)) = seen {
@@ -173,13 +174,11 @@ impl Conditions {
         self.occlusion_culling && of.variant.search != Search::External
     }
 
-    /// Least pixels of the box per frustum at which cells are cheaper. The factors are those of
-    /// single solids: 64 copies by cells take 0.8 of the instructions of tiles.
-    fn least_pixels(&self, object: &Object) -> u32 {
+    /// Least pixels of the box per frustum at which cells are cheaper.
+    fn least_pixels(&self, copies: usize) -> u32 {
         let small = self.subgroup_size < LEAST_SUBGROUP;
-        let single = object.placements().len() == 1;
-        let factor = match self.software && single {
-            true => SOFTWARE_FRUSTUM[usize::from(small)],
+        let factor = match self.software {
+            true => SOFTWARE_FRUSTUM[usize::from(small)][usize::from(copies > 1)],
             false => 1,
         };
         self.least_pixels.saturating_mul(factor)

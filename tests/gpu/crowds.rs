@@ -245,3 +245,33 @@ fn what_is_out_of_view_is_nothing() {
     }
     device().check().unwrap();
 }
+
+/// Software drivers draw 64 copies of medium size as they draw 65: by cells they took five times as
+/// long.
+#[test]
+fn one_copy_more_changes_no_path() {
+    for count in [64, 65] {
+        let mut scene = crowd(vec![shapes::vase()], 0);
+        scene.camera = Camera::new(DVec3::new(9.0, 2.7, 6.0), DVec3::ZERO);
+        let at = |n: u32| Placement {
+            position: DVec3::new(f64::from(n % 8) - 3.5, f64::from(n / 8) - 3.5, 0.0),
+            ..Placement::default()
+        };
+        scene.objects[0].instances = (0..count).map(at).collect();
+        let settings = Settings {
+            width: 800,
+            height: 600,
+            ..settings(DrawStage::Fragment, true)
+        };
+        let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
+        offscreen.draw().unwrap();
+        let cells = count == 64 && device().report().kind != "cpu";
+        let path = if cells {
+            DrawPath::Cells
+        } else {
+            DrawPath::Tiles
+        };
+        assert_eq!(offscreen.draw_paths(), [path], "{count} copies");
+    }
+    device().check().unwrap();
+}
