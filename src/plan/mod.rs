@@ -378,13 +378,6 @@ impl FramePlan {
             };
             let first = &objects[layer.objects[0] as usize];
             let (solid, instance) = (first.number, first.first_instance);
-            let direct = |records: &Range<u32>| Pushed {
-                first: records.start,
-                count: records.end - records.start,
-                solid,
-                instance,
-                ..Pushed::default()
-            };
             for records in chunks(&tiles.listed) {
                 let count = records.end - records.start;
                 let (first, tiles) = (records.start, self.list_words);
@@ -417,13 +410,17 @@ impl FramePlan {
                 head += 4 * TILE_LISTS;
                 self.list_words += 4 * TILE_LISTS * count;
             }
-            for records in chunks(&tiles.single) {
-                let call = Call::Dispatch(records.len() as u32, direct(&records));
-                later.push(step(1, Kind::TileTree, base, call));
-            }
-            for records in chunks(&tiles.several) {
-                let call = Call::Dispatch(records.len() as u32, direct(&records));
-                later.push(step(phase, Kind::TileCopies, base, call));
+            let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
+            let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
+            for (phase, kind, records) in alone.chain(shared) {
+                let pushed = Pushed {
+                    first: records.start,
+                    solid,
+                    instance,
+                    ..Pushed::default()
+                };
+                let call = Call::Dispatch(records.len() as u32, pushed);
+                later.push(step(phase, kind, base, call));
             }
             phase += u32::from(!tiles.several.is_empty());
         }

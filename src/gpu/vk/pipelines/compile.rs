@@ -118,17 +118,16 @@ impl Pipelines {
             true => vk::PrimitiveTopology::POINT_LIST,
             false => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
-        let cull_mode = match is_quads {
-            true => vk::CullModeFlags::NONE,
-            false => vk::CullModeFlags::BACK,
-        };
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
         let raster = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(cull_mode)
+            .cull_mode(match is_quads {
+                true => vk::CullModeFlags::NONE,
+                false => vk::CullModeFlags::BACK,
+            })
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
