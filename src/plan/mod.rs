@@ -1,5 +1,5 @@
 //! The content of a frame as plain data: a view, objects and limits give a [`FramePlan`]. No module
-//! here uses Vulkan, and no function here fails.
+//! here uses Vulkan, and [`plan()`] cannot fail.
 //!
 //! The fragment stage draws proxies ([`proxy`]) or tiles. The compute stage draws tiles
 //! ([`tiles`]). Objects with the same pipeline and the same set of textures share

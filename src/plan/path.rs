@@ -103,11 +103,11 @@ const MOST_PROXIES: usize = 64;
 const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
-/// shades: for one copy, and for several. The first pair is for subgroups of at least
-/// [`LEAST_SUBGROUP`], the second for smaller ones, which take three times as long over a tree.
-/// llvmpipe draws a solid by cells as fast as by tiles at 1,650 pixels per frustum. SwiftShader does
-/// at 340, extrapolated from solids of 1,205 pixels and more. Of several copies, which tiles search
-/// one by one, llvmpipe draws 16 faster by cells, and 32 and 64 smaller ones faster by tiles.
+/// shades. Rows: subgroups of at least [`LEAST_SUBGROUP`], smaller ones, which take three times as
+/// long over a tree. Columns: one copy, several. On llvmpipe a single solid takes the same time by
+/// cells as by tiles at 1,650 pixels per frustum; 16 large copies are faster by cells, 32 or 64
+/// small ones by tiles. SwiftShader draws a solid equally fast at 340 pixels, extrapolated from
+/// solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 
 /// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists

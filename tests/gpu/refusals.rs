@@ -14,8 +14,9 @@ use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, HostDevice, ObjectId, Output, PassFormats, PassKind,
     Renderer, View,
 };
-use revmap::scene::{Camera, Object};
+use revmap::scene::{Camera, Lighting, Object, Shadow};
 use revmap::settings::{Planes, SearchSettings};
+use std::sync::Arc;
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const FLOAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -221,4 +222,37 @@ fn another_renderers_object_is_refused() {
         let error = one.object(ObjectId::from_bits(bits)).unwrap_err();
         assert_eq!(error.kind, Usage);
     }
+}
+
+/// Shadows between more objects than are drawn: the frame is refused, and the next one has the
+/// lights of the one before.
+#[test]
+fn a_refused_frame_leaves_the_lights_as_they_were() {
+    let mut renderer = Renderer::new(
+        device(),
+        dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1),
+        &SearchSettings::exact(),
+        1,
+    )
+    .unwrap();
+    for n in 0..65 {
+        let mut object = Object::new(format!("{n}"), Arc::new(shapes::sphere()));
+        object.placement.position.y = f64::from(n);
+        renderer.add(object).unwrap();
+    }
+    let camera = Camera::new(DVec3::new(9.0, 0.0, 2.0), DVec3::ZERO);
+    let view = View::from_camera(&camera, (64, 48), [0.1, 100.0]).unwrap();
+    renderer.plan(&view).unwrap();
+    let before = renderer.lighting().clone();
+    let shadows = Lighting {
+        shadow: Shadow::Hard,
+        ..before.clone()
+    };
+    renderer.set_lighting(&shadows).unwrap();
+    let refused = renderer.plan(&view).unwrap_err();
+    assert_eq!(refused.key.as_deref(), Some("shadow"), "{refused}");
+    assert_eq!(*renderer.lighting(), before);
+    renderer.plan(&view).unwrap();
+    renderer.set_lighting(&shadows).unwrap();
+    assert!(renderer.plan(&view).is_err());
 }

@@ -1,8 +1,9 @@
 //! The content of a renderer: objects and lights, the resources that are derived from them, and the
 //! plan of the last view. It records no commands.
 //!
-//! `objects.rs` adds, removes and changes objects. `refresh.rs` derives resources from new values.
-//! `planned.rs` plans a view's frame.
+//! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
+//! derives resources from new values. `planned.rs` plans a view's frame. `costs.rs` says what an
+//! object takes.
 
 pub(super) mod costs;
 pub(super) mod entry;
@@ -33,6 +34,8 @@ pub(super) struct Content {
     pub uploads: Uploads,
     pub geometry: Arc<Geometry>,
     pub lighting: Lighting,
+    /// The lights of the last refresh that succeeded.
+    lit: Lighting,
     /// Entries whose values differ from their prepared state.
     changed: Vec<u32>,
     /// True if the fallback draws every entry, because one has no surface and shadows meet all by
@@ -64,6 +67,7 @@ impl Content {
             uploads,
             geometry: Geometry::of(device)?,
             lighting: Lighting::default(),
+            lit: Lighting::default(),
             changed: Vec::new(),
             all_fall_back: false,
             casters: ShadowCasters::default(),

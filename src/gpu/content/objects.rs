@@ -266,6 +266,9 @@ impl Renderer {
             self.content.changed.extend(self.content.objects.numbers());
             self.content.version += 1;
         }
+        if codes(lighting) == codes(&self.content.lit) {
+            self.content.lit = lighting.clone();
+        }
         self.content.lighting = lighting.clone();
         Ok(())
     }

@@ -31,12 +31,21 @@ pub(crate) struct PlannedObject {
 }
 
 impl Content {
-    /// Returns the plan of a view. Makes a new plan if the last one is of another view or version.
-    pub fn planned(&mut self, view: &View) -> Result<Arc<Planned>> {
+    /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
+    /// the view's slot, is of this view and version.
+    pub fn planned(&mut self, view: &View, known: Option<&Arc<Planned>>) -> Result<Arc<Planned>> {
         self.refresh(Some(view))?;
         let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
-        if let Some(planned) = self.planned.as_ref().filter(same) {
-            return Ok(planned.clone());
+        if let Some(planned) = self
+            .planned
+            .as_ref()
+            .into_iter()
+            .chain(known)
+            .find(same)
+            .cloned()
+        {
+            self.planned = Some(planned.clone());
+            return Ok(planned);
         }
         let objects = self.with_surfaces(view)?;
         let with = self.conditions();

@@ -1,5 +1,5 @@
-//! Conversion of an object's values to device resources. All steps that can fail come first; then
-//! all values are applied at once.
+//! Conversion of an object's values to device resources. All objects are prepared before any new
+//! value is stored. A failure restores what shadows need of all objects.
 
 use super::Content;
 use super::entry::{Entry, Prepared};
@@ -41,8 +41,8 @@ impl Resolved {
 
 impl Content {
     /// Applies the values that were added and set since the last call. After an error, objects
-    /// added since that call are left out until they are set again. Everything else stays as it
-    /// was. `view` is the view of the next frame, if it is known.
+    /// added since that call are left out until they are set again. Lights and all other values but
+    /// placements and copies are again those of that call. `view` is the view of the next frame, if it is known.
     pub fn refresh(&mut self, view: Option<&View>) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
@@ -50,8 +50,13 @@ impl Content {
         let mut changed = std::mem::take(&mut self.changed);
         changed.sort_unstable();
         changed.dedup();
+        let before = (self.all_fall_back, self.casters, self.shadow_maps.clone());
         let result = self.apply(&changed, view);
-        if result.is_err() {
+        if result.is_ok() {
+            self.lit.clone_from(&self.lighting);
+        } else {
+            self.lighting.clone_from(&self.lit);
+            (self.all_fall_back, self.casters, self.shadow_maps) = before;
             for number in changed {
                 self.forget(number)?;
             }

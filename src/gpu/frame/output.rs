@@ -78,7 +78,7 @@ impl Output {
         let in_pass = matches!(self, Self::Pass(_));
         if matches!(self.planes(), Planes::Depth { .. }) && !(in_pass && exact) {
             let message =
-                "depth alone is drawn in a pass, by hull, quadric or live; give one of them";
+                "depth alone is drawn in a pass, by exact, quadric or live; give one of them";
             return Err(usage("planes", message.into()));
         }
         let Self::Pass(pass) = self else {

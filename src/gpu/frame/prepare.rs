@@ -1,5 +1,6 @@
-//! Preparation of a frame before it is recorded: plan, places of tables, pipelines, blocks. The
-//! cost follows what has changed.
+//! Preparation of a frame before it is recorded: plan, places of tables, pipelines, blocks. While a
+//! slot's view and the content stand still, it writes the frame block alone. Any change plans all
+//! objects anew.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::planned::Planned;
@@ -42,7 +43,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`].
     pub fn plan(&mut self, view: &View) -> Result<()> {
-        self.content.planned(view).map(|_| ())
+        self.content.planned(view, None).map(|_| ())
     }
 
     /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
@@ -69,7 +70,8 @@ impl Renderer {
         view: &View,
     ) -> Result<PreparedFrame> {
         self.check(slot, view)?;
-        let planned = self.content.planned(view)?;
+        let known = self.slots[slot].bound.as_ref().map(|bound| &bound.planned);
+        let planned = self.content.planned(view, known)?;
         self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
         let anew = {
             let bound = self.slots[slot].bound.as_ref();

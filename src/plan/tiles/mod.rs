@@ -115,8 +115,8 @@ pub(crate) struct TileWords {
 pub(crate) struct LayerTiles {
     /// Fragments: quads of one copy each.
     pub quads: Range<u32>,
-    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles of one
-    /// copy share pixels. The tiles are drawn before tiles of several copies.
+    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles that
+    /// have a single copy share pixels. The tiles are drawn before tiles of several copies.
     pub listed: Range<u32>,
     /// Compute: tiles of one copy each, without lists of patches.
     pub single: Range<u32>,
