@@ -108,7 +108,7 @@
 //!
 //! # A tour
 //!
-//! Data flows one way, and each module uses only those before it:
+//! Data flows one way:
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|

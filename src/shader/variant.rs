@@ -89,7 +89,7 @@ pub struct Variant {
     /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
     /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
-    /// 1 if all solids have one table, and a uniform buffer holds it.
+    /// 1 if the draw has one solid, and a uniform buffer holds its tables.
     pub own_tables: u32,
     /// 1 if there is one solid, and a uniform buffer holds it.
     pub one_solid: u32,

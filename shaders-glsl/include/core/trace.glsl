@@ -1,4 +1,5 @@
-// Traces one ray against one solid: clip, search, close. This is the only tracer; both stages call it.
+// Traces one ray against one solid: clip, search, close. Searches by the tree, by the map and of other crates trace
+// here, in both stages. Cells and listed tiles solve patches in search/patch_row.glsl.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "core/hit.glsl"

@@ -76,7 +76,7 @@ layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, 
 // 1: the box does not cut the solid, and the eye is outside it. Cells and listed patches always have the eye outside;
 // for them only the first condition counts.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
-layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: all solids share one table, held in a uniform buffer
+layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one solid, and a uniform buffer holds its tables
 layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
@@ -85,7 +85,7 @@ layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
 #endif
-layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 0: no list
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 1 if it walks the tree; 0: no list
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;

@@ -1,5 +1,5 @@
 // Intersects a ray of a hull's fragment with the patches of its cell, without branches. src/surface/hull.rs defines
-// cells and proves that no ray is lost; its `trace` is the CPU twin of this file.
+// cells and proves that no ray is lost; `trace_hull` of tests/common/walk.rs is the CPU twin of this file.
 #ifndef CELL_GLSL
 #define CELL_GLSL
 #extension GL_EXT_control_flow_attributes : require
