@@ -313,12 +313,18 @@ impl FramePlan {
             Drawer::Fragments
         };
         let mut dealt = visible.deal(drawer, &layer_of, layers.len());
+        for (layer, tiles) in layers.iter().zip(&mut dealt.layers) {
+            let patches = |&n: &u32| objects[n as usize].listed_patches();
+            let patches = layer.objects.iter().map(patches).sum();
+            if !with.gains_by_lists(tiles.listed.len() as u64, patches) {
+                tiles.unlist();
+            }
+        }
         let sum = |of: fn(u32) -> u32| -> u64 {
             let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
             dealt.layers.iter().map(counted).sum()
         };
-        let lists = sum(list_words) <= with.room() && with.pays_to_list(sum(|tiles| tiles));
-        if !lists {
+        if sum(list_words) > with.room() || !with.pays_to_list(sum(|tiles| tiles)) {
             dealt.layers.iter_mut().for_each(LayerTiles::unlist);
         }
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
@@ -326,8 +332,9 @@ impl FramePlan {
                 self.paths[n] = DrawPath::Nothing;
             }
             let shows = !copies.is_empty();
+            let lists = || !dealt.layers[layer_of[batch] as usize].listed.is_empty();
             self.parts[n].tables = shows;
-            self.parts[n].patches = shows && lists && visible.takes_lists(batch);
+            self.parts[n].patches = shows && visible.takes_lists(batch) && lists();
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {

@@ -110,10 +110,11 @@ const LEAST_SUBGROUP: u32 = 8;
 /// solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 
-/// Least pixels of a frame's listed tiles, in units of `proxy_min_pixels`. On lavapipe 22 lists
-/// take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer, 0.73 to 0.99 for 45,000 and
-/// more.
-const LISTED_PIXELS: u64 = 300;
+/// Least pixels of listed tiles, in units of `proxy_min_pixels`: of a frame, and for each patch of the
+/// object. Lists take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer on lavapipe 22.
+/// On lavapipe 25 they take 1.07 to 1.13 of it at 200 to 300 pixels for each patch, 0.95 to 1.0 at
+/// 360 to 600 and 0.79 to 0.93 beyond; on lavapipe 22 0.94, 0.73 to 0.86 and less.
+const LISTED_PIXELS: [u64; 2] = [300, 3];
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
 pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
@@ -201,11 +202,16 @@ impl Conditions {
         of.takes_patches && !self.casts && of.object.repeat == [1; 3]
     }
 
-    /// True if the time that lists save for so many tiles is more than the time of the dispatches
-    /// that make and read them. Without tiles there are no lists.
+    /// True if a frame's lists save more time than the dispatches that make and read them take.
+    /// Without tiles there are no lists.
     pub fn pays_to_list(&self, tiles: u64) -> bool {
-        let pixels = tiles * u64::from(GROUP_PIXELS * GROUP_PIXELS);
-        tiles == 0 || pixels >= LISTED_PIXELS * u64::from(self.least_pixels)
+        tiles == 0 || pixels(tiles) >= LISTED_PIXELS[0] * u64::from(self.least_pixels)
+    }
+
+    /// True if so many tiles of objects with so many patches are drawn faster by lists.
+    pub fn gains_by_lists(&self, tiles: u64, patches: u64) -> bool {
+        let least = LISTED_PIXELS[1] * u64::from(self.least_pixels);
+        pixels(tiles) >= least.saturating_mul(patches)
     }
 
     /// Most words that lists of tiles may take.
@@ -304,6 +310,11 @@ impl Conditions {
     }
 }
 
+/// Pixels of so many tiles.
+fn pixels(tiles: u64) -> u64 {
+    tiles * u64::from(GROUP_PIXELS * GROUP_PIXELS)
+}
+
 impl PlanObject<'_> {
     /// The object's copies, as input for finding tiles.
     pub fn copies(&self) -> Placements<'_> {
@@ -312,6 +323,11 @@ impl PlanObject<'_> {
         } else {
             Placements::Many(&self.object.instances)
         }
+    }
+
+    /// Patches that lists of the object's tiles are made from.
+    pub fn listed_patches(&self) -> u64 {
+        self.surface.map_or(0, |s| s.listed().len() as u64 / 3)
     }
 
     /// True if the box shows no more than the surface's patches.

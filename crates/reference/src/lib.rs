@@ -134,6 +134,20 @@ impl Reference {
         })
     }
 
+    /// The solids that contain a point of the world, and the others.
+    #[must_use]
+    pub fn split_at(&self, point: DVec3) -> [Self; 2] {
+        let here = Ray {
+            origin: point,
+            direction: DVec3::Z,
+        };
+        let contains = |part: &&Part| part.solid.lowest(part.local(here), 0.0, 1e-9, None) < 0.0;
+        let (around, others) = self.parts.list.iter().cloned().partition(|p| contains(&p));
+        [around, others].map(|parts| Self {
+            parts: Parts::new(parts),
+        })
+    }
+
     /// The first hit along a ray. An invalid ray (no direction, a number that is not finite) hits
     /// nothing.
     #[must_use]

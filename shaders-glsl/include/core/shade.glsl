@@ -52,13 +52,12 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 scale = look.scale_shininess.xyz;
     vec3 v = ray_direction(rays, pixel);
     vec3 dir = v * scale;
-    float square = dot(dir, dir);
-    float inverse_length = inversesqrt(square);
-    vec3 view = dir * -inverse_length;
+    float speed = length(dir);
+    vec3 view = dir / -speed;
     // The normal divided by the scale, times the product of the three scales.
     vec3 turned = unit(hit.normal * (scale.yzx * scale.zxy));
     float t = rays.base + hit.t; // relative to the eye
-    s.distance = t * (square * inverse_length);
+    s.distance = t * speed;
     s.normal = rotate(look.rotation, turned);
     s.albedo = look.albedo_strength.rgb;
     s.uv = vec2(0.0);

@@ -156,8 +156,8 @@ pub struct Truth<'a> {
     painter: Colors<'a>,
     camera: CameraFrame,
     eye: DVec3,
-    /// Whether the eye is in a solid.
-    inside: bool,
+    /// If the eye is in a solid: the solids around it, and the others.
+    inside: Option<[Reference; 2]>,
     /// Tolerances, object units: of a silhouette, of a drawn hit.
     tolerance: [f64; 2],
     /// World length of a texel.
@@ -197,7 +197,8 @@ impl<'a> Truth<'a> {
         }
         let silhouette = 0.1 * TEXEL + 8.0 * ROUNDING * extent;
         Ok(Self {
-            inside: reference.clearance_within(here, [0.0, 0.0], 1e-9) < 0.0,
+            inside: (reference.clearance_within(here, [0.0, 0.0], 1e-9) < 0.0)
+                .then(|| reference.split_at(eye)),
             limit: (frame.pixels() / 10_000).max(2),
             frame,
             painter: Colors::new(scene)?,
@@ -327,17 +328,25 @@ impl<'a> Truth<'a> {
             if !self.reference.goes_deeper(ray, about, -tolerance, fine) {
                 return true;
             }
-            if self.inside {
+            if let Some([around, others]) = &self.inside {
                 // From within all is solid before the hit: what counts is the distance to the true
                 // hit's tangent plane, in units of the smallest object.
                 let n = DVec3::from(self.frame.normal[k].map(f64::from));
                 let steep = n.dot(ray.direction).abs().max(0.02);
-                let off = (z - truth).abs() * steep * TEXEL / self.texel;
-                return !hit || off > 4.0 * tolerance;
+                let is_at = |t: f64| (z - t).abs() * steep * TEXEL / self.texel <= 4.0 * tolerance;
+                if hit && is_at(truth) {
+                    return false;
+                }
+                // Another solid may be grazed before the ray leaves those around the eye: then both
+                // are right, the grazed surface and the one behind it.
+                let leaves = around.trace(ray).hit.map_or(f64::INFINITY, |hit| hit.t);
+                let grazes = z <= leaves && others.goes_deeper(ray, about, -tolerance, fine);
+                return !(grazes || is_at(leaves))
+                    || others.goes_deeper(ray, [0.0, z], tolerance, fine);
             }
             return hit && z > truth && self.reference.goes_deeper(ray, [0.0, z], tolerance, fine);
         }
-        if self.inside {
+        if self.inside.is_some() {
             return true;
         }
         self.reference

@@ -178,8 +178,8 @@ fn random_scenes_are_as_the_reference_has_them() {
 
 /// Those of ten thousand seeds that once failed: loops that touch (87, 103411, 103587, 104603,
 /// 105839, 106341, 108163), all but level faces (101001, 101182, 102085, 102185, 105034, 106944,
-/// 107060, 108513), rims and ledges (101862, 108119), and what the judge took for a fault (100107,
-/// 104954, 107022).
+/// 107060, 108513), rims and ledges (101862, 108119), roundings of a distance of 50,000 units (991800),
+/// and what the judge took for a fault (100107, 104954, 107022, 990673).
 #[test]
 fn random_scenes_that_once_failed() {
     let device = Device::open_validated(None).unwrap();
@@ -187,6 +187,7 @@ fn random_scenes_that_once_failed() {
     let seeds = [
         87, 100_107, 101_001, 101_182, 101_862, 102_085, 102_185, 103_411, 103_587, 104_603,
         104_954, 105_034, 105_839, 106_341, 106_944, 107_022, 107_060, 108_119, 108_163, 108_513,
+        990_673, 991_800,
     ];
     for seed in seeds {
         let failures = random::run(&device, (seed, 1), folder.path(), &mut |_| true).unwrap();
@@ -214,5 +215,25 @@ fn a_solid_seen_from_within_is_judged_in_its_units() {
         let pixels = truth.frame.pixels();
         assert_eq!(moved(1e-5), 0, "{scale}");
         assert!(moved(0.01) > pixels / 2, "{scale}: {}", moved(0.01));
+    }
+}
+
+/// A second solid within the first one may be drawn or not where a ray grazes it, and nowhere else.
+#[test]
+fn a_solid_within_another_is_judged_by_its_own_surface() {
+    let step = Step::seen([0.0, -0.35, 0.0], [0.0, 0.0, 0.0]);
+    let step = step
+        .object(BALL)
+        .object(&format!("{BALL}\nscale = [0.2, 0.2, 0.2]"));
+    let scene = step.read(std::path::Path::new("")).unwrap();
+    let mut alone = scene.clone();
+    alone.objects.truncate(1);
+    let both = Truth::new(&scene, &step).unwrap();
+    let outer = Truth::new(&alone, &step).unwrap();
+    let differs = |k: &usize| both.frame.distance[*k] != outer.frame.distance[*k];
+    let inner = (0..both.frame.pixels()).filter(differs).count();
+    for (truth, drawn) in [(&both, &outer), (&outer, &both)] {
+        let wrong = truth.judge(&drawn.frame, None).unwrap().0.wrong;
+        assert!(inner > 100 && wrong > 9 * inner / 10, "{wrong} of {inner}");
     }
 }
