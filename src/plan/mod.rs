@@ -8,7 +8,6 @@
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;
-mod rectangle;
 pub(crate) mod tiles;
 mod view;
 
@@ -19,7 +18,7 @@ pub use view::{DepthOrder, View, Viewport};
 use crate::shader::generated::{
     BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
 };
-use crate::shader::{Kind, Variant};
+use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -89,26 +88,6 @@ pub(crate) enum Call {
     Dispatch(u32, Pushed),
     /// Work groups; the head at this word of the lists holds their number.
     Indirect(u32, Pushed),
-}
-
-/// `Pushed` of `compute.glsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Pushed {
-    /// Number of the first record.
-    pub first: u32,
-    /// Number of records.
-    pub count: u32,
-    /// Word of the heads of their lists.
-    pub heads: u32,
-    /// Word at which the tiles of their lists begin.
-    pub tiles: u32,
-    /// Number of the list that is read.
-    pub list: u32,
-    /// Number of the only solid.
-    pub solid: u32,
-    /// Number of the only instance.
-    pub instance: u32,
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.

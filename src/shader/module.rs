@@ -1,6 +1,7 @@
 //! SPIR-V words by module.
 
 use super::list::{Module, modules};
+use crate::search::unpacked;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -34,24 +35,6 @@ pub fn listed(module: &Module) -> Option<Module> {
 #[must_use]
 pub fn words(module: &Module) -> Option<Vec<u32>> {
     unpacked(ARCHIVE.get(places().get(&listed(module)?)?.clone())?)
-}
-
-/// Unpacks words that `build.rs` packed. The bytes are deflated. A byte holds seven bits of a word,
-/// the lowest first; the eighth bit is set if more bytes follow.
-#[must_use]
-pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
-    let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
-    let mut words = Vec::with_capacity(bytes.len() / 2);
-    let (mut word, mut shift) = (0u32, 0);
-    for byte in bytes {
-        word |= u32::from(byte & 127).checked_shl(shift)?;
-        shift += 7;
-        if byte & 128 == 0 {
-            words.push(word);
-            (word, shift) = (0, 0);
-        }
-    }
-    Some(words)
 }
 
 /// A module's words for reversed depth. Fragments that declare a depth no nearer than their

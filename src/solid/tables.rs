@@ -1,9 +1,8 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
 use crate::search::SearchTable;
-use crate::shader::generated::{LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS};
+use crate::shader::generated::{LISTED_PATCHES, PATCH_ROWS};
 use crate::surface::{GpuPatch, QuadricPatch, Tables};
-use ash::vk;
 
 /// A table that may be placed anywhere in a buffer.
 pub(crate) struct GpuTables {
@@ -57,11 +56,6 @@ impl GpuTables {
             facts: table.facts,
         }
     }
-}
-
-/// Most vectors of one solid's tables that a device's uniform buffers hold.
-pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
-    (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
 }
 
 /// Patches for lists, in the layout of `patch_runs.glsl`; empty if there are none, or too many.

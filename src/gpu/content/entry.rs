@@ -1,13 +1,13 @@
 //! A renderer's record of an object: its values, and the resources that are prepared from them.
 
 use crate::gpu::resources::block::{note_growth, solid_block};
-use crate::gpu::resources::blocks::SolidBlock;
-use crate::gpu::resources::map_key::MapFacts;
+use crate::gpu::resources::shape_texture::MapFacts;
 use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::TextureSet;
 use crate::scene::{GrownObject, Object};
 use crate::settings::{SearchSettings, Solver};
+use crate::shader::SolidBlock;
 use crate::shader::Variant;
 use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::solid::offset_surface::OffsetSurface;

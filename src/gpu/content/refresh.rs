@@ -5,7 +5,7 @@ use super::Content;
 use super::entry::{Entry, Prepared};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::resources::block::check_format;
-use crate::gpu::resources::map_key::MapKey;
+use crate::gpu::resources::shape_texture::MapKey;
 use crate::gpu::resources::shape_texture::ShapeTexture;
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::{Bound, ShadowMaps};

@@ -3,7 +3,8 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::instance::{API_VERSION, Instance};
 use crate::gpu::vk::call::Call;
-use crate::shader::generated::GROUP_PIXELS;
+use crate::gpu::vk::pipelines::DeviceConstants;
+use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
 use ash::vk;
 use std::ffi::CStr;
 
@@ -92,6 +93,15 @@ impl Candidate {
     pub fn offers(&self, extension: &CStr) -> bool {
         let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
         self.extensions.iter().any(named)
+    }
+
+    /// The constants of all pipelines.
+    pub fn constants(&self) -> DeviceConstants {
+        let most = self.properties.limits.max_uniform_buffer_range / 16;
+        DeviceConstants {
+            own_vectors: most.clamp(PATCH_VECTORS, MOST_OWN_VECTORS),
+            large_points: self.large_points(),
+        }
     }
 
     /// The optional features that are enabled if the device offers them.

@@ -10,13 +10,127 @@
 //! Device memory replaces host memory, and the reverse, on a device that has no other. Memory that
 //! the host sees is coherent: the allocator takes no other, so nothing is flushed.
 
+use super::{allocate, bound, free};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::Buffer;
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::usage::{self, Usage};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
 use vk::BufferUsageFlags as B;
+
+/// A buffer with its memory. The owner must wait for the device before dropping it.
+pub struct Buffer {
+    /// The buffer.
+    pub raw: vk::Buffer,
+    /// The size in bytes.
+    pub bytes: u64,
+    allocation: Option<Allocation>,
+    device: Arc<Shared>,
+}
+
+impl Buffer {
+    pub(crate) fn new(
+        device: &Arc<Shared>,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Self> {
+        Self::among(device, name, bytes, usage, location, u32::MAX)
+    }
+
+    /// Makes a buffer in memory of one of these types, if one of them fits, else of any type.
+    pub(crate) fn among(
+        device: &Arc<Shared>,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+        types: u32,
+    ) -> Result<Self> {
+        let bytes = bytes.max(16);
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(usage);
+        // SAFETY: a plain creation; the handle is destroyed in Drop.
+        let raw = unsafe { device.raw.create_buffer(&info, None) }.call("vkCreateBuffer")?;
+        let mut buffer = Self {
+            raw,
+            bytes,
+            allocation: None,
+            device: device.clone(),
+        };
+        // SAFETY: the buffer is live.
+        let mut requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
+        if requirements.memory_type_bits & types != 0 {
+            requirements.memory_type_bits &= types;
+        }
+        let allocation = allocate(device, name, requirements, location, true)?;
+        let (memory, offset) = bound(&mut buffer.allocation, allocation);
+        // SAFETY: the allocation meets the buffer's requirements and is bound once.
+        unsafe { device.raw.bind_buffer_memory(raw, memory, offset) }.call("vkBindBufferMemory")?;
+        Ok(buffer)
+    }
+
+    /// The bytes of a buffer in host memory. Such memory is coherent here: the allocator takes no
+    /// other.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for a buffer in other memory.
+    pub fn mapped(&mut self) -> Result<&mut [u8]> {
+        let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
+        self.allocation
+            .as_mut()
+            .and_then(Allocation::mapped_slice_mut)
+            .and_then(|all| all.get_mut(..bytes))
+            .ok_or_else(|| Error::new(ErrorKind::Usage, "the buffer is not in host memory"))
+    }
+
+    /// Writes bytes of a buffer in host memory that may have other owners, too.
+    ///
+    /// # Safety
+    /// The call writes from byte `at` on.
+    ///
+    /// The caller must ensure that nothing else reads or writes these bytes during the call, here
+    /// or on the device.
+    pub(crate) unsafe fn write_shared(&self, at: usize, bytes: &[u8]) -> Result<()> {
+        let mapped = self.allocation.as_ref().and_then(Allocation::mapped_ptr);
+        let fits = at
+            .checked_add(bytes.len())
+            .is_some_and(|end| end as u64 <= self.bytes);
+        let Some(mapped) = mapped.filter(|_| fits) else {
+            return Err(Error::new(ErrorKind::Other, "a host buffer is not mapped"));
+        };
+        // SAFETY: the allocation is mapped as long as it lives, and the bytes are within it; no
+        // other access happens by the caller's promise.
+        unsafe {
+            let to = mapped.as_ptr().cast::<u8>().add(at);
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), to, bytes.len());
+        }
+        Ok(())
+    }
+
+    /// Records a barrier between two uses of the buffer.
+    pub(crate) fn barrier(&self, cmd: vk::CommandBuffer, from: Usage, to: Usage) {
+        let barrier = vk::BufferMemoryBarrier::default()
+            .src_access_mask(from.access())
+            .dst_access_mask(to.access())
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(self.raw)
+            .size(vk::WHOLE_SIZE);
+        usage::wait(&self.device.raw, cmd, (from, to), &[barrier], &[]);
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: users wait for the GPU before they drop a buffer.
+        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
+        free(&self.device, self.allocation.take());
+    }
+}
 
 /// A buffer that only the device writes and reads.
 pub(crate) fn device_local(

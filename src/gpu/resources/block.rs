@@ -1,14 +1,14 @@
 //! Conversion of scene values to the blocks that shaders read.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::resources::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
-use crate::gpu::resources::map_key::MapFacts;
+use crate::gpu::resources::shape_texture::MapFacts;
 use crate::maps::MapFormat;
 use crate::plan::{DepthOrder, View};
 use crate::scene::{Growth, Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
 use crate::shader::is_beveled;
+use crate::shader::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
 use crate::solid::reach::{farthest_corner, largest_width};
 use glam::DVec3;
 

@@ -6,9 +6,9 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::uploads::Uploads;
-use crate::gpu::resources::map_key::{MapFacts, MapKey};
+use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
+use crate::gpu::resources::shape_texture::{MapFacts, MapKey};
 use crate::plan::levels;
 use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Growth, Offset};

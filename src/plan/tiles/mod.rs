@@ -1,11 +1,10 @@
 //! Tiles of the screen and the copies that each may show, nearest first: one list for all objects
 //! and copies of a frame.
 //!
-//! 1. Clusters of neighbouring copies are projected to the picture ([`cluster_bounds`]) and sorted,
+//! 1. Clusters of neighbouring copies are projected to the picture ([`bounds`]) and sorted,
 //!    nearest first ([`candidates`]).
 //! 2. Clusters are opened from the nearest to the farthest, except for wholly hidden ones
-//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth
-//!    ([`bounds`]). Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
+//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth. Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
 //!    first.
 //! 3. In this order, copies are listed in the tiles that may show them ([`outer`]). The pixels that
 //!    a copy is sure to hide are marked there ([`cover`]). Later copies are not listed for pixels
@@ -21,7 +20,6 @@
 
 mod bounds;
 mod candidates;
-mod cluster_bounds;
 mod cover;
 mod deal;
 mod outer;

@@ -116,12 +116,13 @@ impl<'a> Strip<'a> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::gpu::resources::solid_cache::SolidCache;
     use crate::plan::View;
     use crate::plan::tiles::{Cylinder, Drawer, Placements, Visible};
     use crate::profile::Profile;
-    use crate::scene::{Camera, Copies, Growth, Offset, Placement};
-    use crate::solid::offset_surface::OffsetSurface;
+    use crate::scene::{Camera, Copies, Offset, Placement};
+    use crate::solid::offset_surface::{OffsetSurface, Recipe};
+    use crate::solid::outline_cache::OutlineCache;
+    use crate::surface::FitOptions;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -140,9 +141,9 @@ mod tests {
 
     fn surface(points: &[[f64; 2]]) -> Arc<OffsetSurface> {
         let profile = Arc::new(Profile::polygon(points, 0.5).unwrap());
-        let solid = SolidCache::default().get(&profile);
-        let offset = Offset::default();
-        solid.patches(&offset, &Growth::default(), 0).unwrap()
+        let (outline, tolerance) = (OutlineCache::new(&profile), FitOptions::default().tolerance);
+        let recipe = Recipe::Patches(outline.into(), Offset::default(), 0, tolerance);
+        OffsetSurface::new(recipe).into()
     }
 
     /// A field of 20 x 20 world units with copies of about this size. `tall`: ratio of height to

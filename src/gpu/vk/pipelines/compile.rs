@@ -2,8 +2,8 @@
 
 use super::Pipelines;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::call::Call;
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::color_formats;
 use crate::plan::DepthOrder;
 use crate::shader::{Kind, Module, Search, Variant, depth_less, words};

@@ -3,6 +3,7 @@
 
 mod tolerance;
 
+pub use crate::names::name_of;
 pub use tolerance::Tolerance;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -30,13 +31,6 @@ impl DrawStage {
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, &self)
     }
-}
-
-/// The name of a value among these; the last, if it has several.
-#[must_use]
-pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
-    let found = names.iter().rev().find(|(_, known)| known == value);
-    found.map_or("unknown", |(name, _)| name)
 }
 
 /// The search for the first hit along a ray.

@@ -1,6 +1,6 @@
 //! Data that the CPU passes to the GPU. A test compares the layouts with `blocks.glsl`.
 
-use crate::shader::generated::{MAX_LIGHTS, MAX_SHADOW_BATCHES};
+use super::generated::{MAX_LIGHTS, MAX_SHADOW_BATCHES};
 use bytemuck::{Pod, Zeroable};
 
 /// `Light` of `blocks.glsl`.
@@ -102,4 +102,24 @@ pub struct ShadowBlock {
     pub shadow_batches: [u32; 4],
     /// Only the first `shadow_batches[0]` solids count.
     pub shadow_solids: [SolidBlock; MAX_SHADOW_BATCHES as usize],
+}
+
+/// `Pushed` of `compute.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Pushed {
+    /// Number of the first record.
+    pub first: u32,
+    /// Number of records.
+    pub count: u32,
+    /// Word of the heads of their lists.
+    pub heads: u32,
+    /// Word at which the tiles of their lists begin.
+    pub tiles: u32,
+    /// Number of the list that is read.
+    pub list: u32,
+    /// Number of the only solid.
+    pub solid: u32,
+    /// Number of the only instance.
+    pub instance: u32,
 }

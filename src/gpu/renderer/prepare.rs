@@ -2,15 +2,15 @@
 //! slot's view and the content stand still, it writes the frame block alone. Any change plans all
 //! objects anew.
 
+use super::Renderer;
+use super::slot::{Bound, BoundStep};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::planned::Planned;
-use crate::gpu::frame::slot::{Bound, BoundStep};
-use crate::gpu::renderer::Renderer;
 use crate::gpu::resources::block::{frame_block, instance_block};
-use crate::gpu::resources::blocks::{SOLID_STRIDE, SolidBlock};
 use crate::plan::View;
 use crate::scene::Shadow;
 use crate::shader::Kind;
+use crate::shader::{SOLID_STRIDE, SolidBlock};
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;

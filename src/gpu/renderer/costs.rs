@@ -1,10 +1,10 @@
 //! The draw path of each object, and the memory that it takes on the device.
 
-use super::entry::Entry;
-use super::planned::PlannedObject;
-use crate::gpu::renderer::Renderer;
-use crate::gpu::resources::blocks::InstanceBlock;
+use super::Renderer;
+use crate::gpu::content::entry::Entry;
+use crate::gpu::content::planned::PlannedObject;
 use crate::plan::{DrawPath, View};
+use crate::shader::InstanceBlock;
 use crate::solid::table_slot::Part;
 
 /// The draw path of an object in the last prepared frame, and its memory on the device.

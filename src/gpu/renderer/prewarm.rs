@@ -1,16 +1,17 @@
 //! Pipelines compiled before they are needed.
 
+use super::Renderer;
+use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
 use crate::gpu::content::entry::Entry;
 use crate::gpu::content::planned::PlannedObject;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::device::Shared;
-use crate::gpu::frame::output::Output;
-use crate::gpu::frame::prepare::PreparedFrame;
-use crate::gpu::renderer::Renderer;
-use crate::plan::{PlanObject, Pushed, variants};
+use crate::gpu::vk::output::Output;
+use crate::plan::{PlanObject, variants};
 use crate::settings::Solver;
+use crate::shader::Pushed;
 use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::sync::Arc;

@@ -4,17 +4,15 @@
 use crate::error::Result;
 use crate::gpu::content::planned::Planned;
 use crate::gpu::device::Shared;
-use crate::gpu::frame::target::ComputeTarget;
 use crate::gpu::memory::Buffer;
 use crate::gpu::memory::buffers::{indirect, lists, storage, uniform, write, write_slice};
-use crate::gpu::memory::uploads::Upload;
-use crate::gpu::resources::blocks::{
-    FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
-};
+use crate::gpu::memory::images::Upload;
 use crate::gpu::resources::geometry::Placed;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
+use crate::gpu::vk::output::ComputeTarget;
 use crate::plan::{FramePlan, View};
+use crate::shader::{FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock};
 use ash::vk;
 use std::sync::Arc;
 

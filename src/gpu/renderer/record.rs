@@ -1,12 +1,13 @@
 //! The commands of a frame, translated from the steps of its plan. The number of commands follows
 //! the pipelines and texture sets in use, and the size of the picture.
 
+use super::Renderer;
+use super::prepare::PreparedFrame;
+use super::slot::{Bound, BoundStep, FrameSlot};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::prepare::PreparedFrame;
-use crate::gpu::frame::slot::{Bound, BoundStep, FrameSlot};
-use crate::gpu::renderer::Renderer;
-use crate::gpu::vk::usage::{Usage, buffer_barrier};
-use crate::plan::{Call, IndexedDraw, Pushed, Step};
+use crate::gpu::vk::usage::Usage;
+use crate::plan::{Call, IndexedDraw, Step};
+use crate::shader::Pushed;
 use ash::vk;
 
 /// Bytes of one indirect draw.
@@ -77,7 +78,7 @@ impl Renderer {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
         let plan = &bound.planned.plan;
-        let barrier = |from, to| buffer_barrier(&self.device, cmd, &slot.lists, from, to);
+        let barrier = |from, to| slot.lists.barrier(cmd, from, to);
         if plan.list_heads > 0 {
             let bytes = 4 * u64::from(plan.list_heads);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.

@@ -9,9 +9,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::create;
 use crate::gpu::device::instance::Instance;
 use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
-use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::pipelines::DeviceConstants;
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
@@ -102,7 +101,7 @@ impl PipelineCompiler {
         let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
-        let constants = DeviceConstants::of(&chosen);
+        let constants = chosen.constants();
         let pipelines = Pipelines::new(raw.clone(), None, constants)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
