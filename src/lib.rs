@@ -112,6 +112,7 @@
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|
+//! | [`frame`] | the planes of a picture |
 //! | [`profile`] | a polygon or an outline: a region of the half-plane |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
 //! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of heights; colours; lengths along the profile |
@@ -123,7 +124,6 @@
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
-//! | [`frame`] | the planes of a picture |
 //!
 //! # Features
 //!
