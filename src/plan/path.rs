@@ -120,52 +120,37 @@ pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// The possible paths of an object, in the order in which they are tried. The last one is
-    /// always valid.
-    fn candidates(&self, of: &PlanObject) -> impl Iterator<Item = Path> + use<> {
-        let copies = of.object.placements().len();
-        let wraps = self.shows_patches(of) && !self.compute;
-        let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
-        // The box is as good as tiles for one copy whose outline is not used.
-        let outlined = self.uses_outline(of);
-        let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
-        let cells_of = |cut| Path::Cells {
-            frusta: Vec::new(),
-            cut,
-        };
-        let may_cut = self.clips && proxy::may_be_cut(of.object);
-        [
-            cells.then(|| cells_of(false)),
-            (cells && may_cut).then(|| cells_of(true)),
-            tiles.then_some(Path::Tiles),
-            (!self.compute).then_some(Path::Box),
-        ]
-        .into_iter()
-        .flatten()
+    /// True if an object may be drawn by cells. The view, and the sides of the box if they cut it,
+    /// may still rule that out.
+    fn takes_cells(&self, of: &PlanObject) -> bool {
+        let few = of.copies().len() <= MOST_PROXIES;
+        self.shows_patches(of) && !self.compute && self.passes_cells && few
     }
 
-    /// The path of an object in a view: the first candidate that shows all of it.
+    /// True if cells may be clipped by the sides of an object's box.
+    fn clips_cells(&self, of: &PlanObject) -> bool {
+        self.clips && proxy::may_be_cut(of.object)
+    }
+
+    /// True if an object may be drawn by tiles. The box is as good as tiles for one copy whose
+    /// outline is not used.
+    fn takes_tiles(&self, of: &PlanObject) -> bool {
+        let pays = of.copies().len() > 1 || self.uses_outline(of);
+        self.compute || (of.variant.is_shaded() && pays)
+    }
+
+    /// The path of an object in a view: cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
-        let mut chosen = Path::Box;
-        for candidate in self.candidates(of) {
-            match candidate {
-                Path::Cells { cut, .. } => {
-                    let seen = of.surface.and_then(|s| {
-                        let least = self.least_pixels(of.copies().len());
-                        proxy::frusta(of.object, s, view, least).filter(|found| found.1 == cut)
-                    });
-                    if let Some((frusta, cut)) = seen {
-                        return Path::Cells { frusta, cut };
-                    }
-                }
-                Path::Tiles if view.parallel => {}
-                other => {
-                    chosen = other;
-                    break;
-                }
-            }
+        let surface = of.surface.filter(|_| self.takes_cells(of));
+        let cells = surface.and_then(|surface| {
+            let least = self.least_pixels(of.copies().len());
+            proxy::frusta(of.object, surface, view, least)
+        });
+        match cells {
+            Some((frusta, cut)) if !cut || self.clips_cells(of) => Path::Cells { frusta, cut },
+            _ if self.takes_tiles(of) && !view.parallel => Path::Tiles,
+            _ => Path::Box,
         }
-        chosen
     }
 
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
@@ -220,30 +205,31 @@ impl Conditions {
     }
 
     /// Every pipeline that an object may need while parameters, lights, camera and placements
-    /// change: the pipelines of all its candidates. `variant`: the result of
+    /// change: the pipelines of all its paths. `variant`: the result of
     /// [`variants`](super::variants) for the object.
     pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
-        let mut kinds = Vec::new();
-        for path in self.candidates(of) {
-            match path {
-                Path::Cells { cut: false, .. } => kinds.push((Kind::Cells, [1].as_slice())),
-                Path::Cells { cut: true, .. } => {
-                    kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
-                }
-                Path::Box => kinds.push((Kind::Boxes, &[0, 1])),
-                Path::Tiles if !self.compute => kinds.push((Kind::Quads, &[0, 1])),
-                Path::Tiles => {
-                    let may_cut = proxy::may_be_cut(of.object);
-                    let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
-                    if self.may_list(of) {
-                        kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
-                    }
-                    kinds.extend([
-                        (Kind::TileTree, [0, 1].as_slice()),
-                        (Kind::TileCopies, &[0, 1]),
-                    ]);
-                }
+        let mut kinds: Vec<(Kind, &[u32])> = Vec::new();
+        if self.takes_cells(of) {
+            kinds.push((Kind::Cells, &[1]));
+            if self.clips_cells(of) {
+                kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
             }
+        }
+        if self.takes_tiles(of) && !self.compute {
+            kinds.push((Kind::Quads, &[0, 1]));
+        } else if self.takes_tiles(of) {
+            let may_cut = proxy::may_be_cut(of.object);
+            let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
+            if self.may_list(of) {
+                kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
+            }
+            kinds.extend([
+                (Kind::TileTree, [0, 1].as_slice()),
+                (Kind::TileCopies, &[0, 1]),
+            ]);
+        }
+        if !self.compute {
+            kinds.push((Kind::Boxes, &[0, 1]));
         }
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
         // An offset may move the size of the tables across the limit.

@@ -11,6 +11,7 @@ use crate::shader::SolidBlock;
 use crate::shader::Variant;
 use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::outline_cache::OffsetContour;
 use crate::solid::table_slot::{Part, Slot};
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,11 +34,11 @@ pub(in crate::gpu) struct Entry {
 pub(in crate::gpu) struct Prepared {
     /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
+    /// The contour whose patches are searched, or would be if it closed; `None` for a search on the
+    /// map or on a table of its own.
+    pub contour: Option<Arc<OffsetContour>>,
     /// Surfaces by level, for levels that views needed. Empty for a search on the map.
     pub levels: Vec<(u8, Arc<OffsetSurface>)>,
-    /// True if the contour does not close, so that another search replaces the search of the
-    /// settings.
-    pub fails: bool,
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
     /// True if cells and lists of patches may replace the tree.

@@ -34,7 +34,7 @@ impl Content {
     /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
     /// the view's slot, is of this view and version.
     pub fn planned(&mut self, view: &View, known: Option<&Arc<Planned>>) -> Result<Arc<Planned>> {
-        self.refresh(Some(view))?;
+        self.refresh()?;
         let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
         if let Some(planned) = self
             .planned
@@ -47,7 +47,7 @@ impl Content {
             self.planned = Some(planned.clone());
             return Ok(planned);
         }
-        let objects = self.with_surfaces(view)?;
+        let objects = self.with_surfaces(Some(view))?;
         let with = self.conditions();
         let read: Vec<PlanObject> = objects
             .iter()
@@ -86,44 +86,10 @@ impl Content {
         }
     }
 
-    /// Returns true if objects may be drawn at other levels than the exact one.
-    pub fn has_levels(&self) -> bool {
-        self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
-    }
-
-    /// Returns all objects with the surfaces of the levels that the view allows. With shadows, all
-    /// objects take the finest level that one of them needs. The reason is that a shadow may fall
-    /// nearer to the eye than its caster.
-    fn with_surfaces(&mut self, view: &View) -> Result<Vec<PlannedObject>> {
-        let casts = self.lighting.shadow != Shadow::Off;
-        let level_of = |entry: &Entry, prepared: &Prepared| {
-            if !self.has_levels() || !prepared.solver.follows_tolerance() {
-                return 0;
-            }
-            let pixels = entry.pixels_per_unit(view, casts);
-            if pixels > 0.0 || casts {
-                coarsest(self.settings.tolerance, pixels)
-            } else {
-                // An object that does not show takes a level that is already made.
-                prepared.levels.first().map_or(0, |(level, _)| *level)
-            }
-        };
-        let mut found: Vec<PlannedObject> = self
-            .objects
-            .ordered()
-            .filter_map(|(number, entry)| {
-                let level = level_of(entry, entry.prepared.as_ref()?);
-                Some(PlannedObject {
-                    number,
-                    level,
-                    surface: None,
-                })
-            })
-            .collect();
-        if casts {
-            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
-            found.iter_mut().for_each(|f| f.level = finest);
-        }
+    /// Returns all objects with surfaces of the levels that the view allows. Makes the surfaces that
+    /// are new.
+    pub fn with_surfaces(&mut self, view: Option<&View>) -> Result<Vec<PlannedObject>> {
+        let mut found = self.levels(view);
         let mut new = Vec::new();
         for one in &mut found {
             let Some(entry) = self.objects.at_mut(one.number) else {
@@ -133,25 +99,50 @@ impl Content {
             let Some(prepared) = &mut entry.prepared else {
                 continue;
             };
-            if prepared.levels.is_empty() {
-                continue;
-            }
             let known = prepared
                 .levels
                 .iter()
                 .find(|(level, _)| *level == one.level);
-            one.surface = match known {
-                Some((_, surface)) => Some(surface.clone()),
-                None => {
-                    let surface = prepared.solid.patches(&offset, &growth, one.level)?;
-                    prepared.levels.push((one.level, surface.clone()));
-                    new.push(surface.clone());
-                    Some(surface)
-                }
-            };
+            one.surface = known.map(|(_, surface)| surface.clone());
+            if one.surface.is_none() && prepared.solver.follows_tolerance() {
+                let surface = prepared.solid.patches(&offset, &growth, one.level)?;
+                prepared.levels.push((one.level, surface.clone()));
+                new.push(surface.clone());
+                one.surface = Some(surface);
+            }
         }
         self.make_surfaces(&new);
         Ok(found)
+    }
+
+    /// The level of each object: the coarsest that the view allows, or the exact one if there is no
+    /// view. With shadows, all objects take the finest level that one of them needs. The reason is
+    /// that a shadow may fall nearer to the eye than its caster.
+    fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
+        let casts = self.lighting.shadow != Shadow::Off;
+        let tolerance = self.settings.tolerance;
+        let level_of = |entry: &Entry, prepared: &Prepared| match view {
+            Some(view) if tolerance != Tolerance::EXACT && prepared.solver.follows_tolerance() => {
+                let pixels = entry.pixels_per_unit(view, casts);
+                // An object that does not show takes a level that is already made.
+                let made = prepared.levels.first().filter(|_| pixels <= 0.0 && !casts);
+                made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
+            }
+            _ => 0,
+        };
+        let planned = |(number, entry): (u32, &Entry)| {
+            Some(PlannedObject {
+                number,
+                level: level_of(entry, entry.prepared.as_ref()?),
+                surface: None,
+            })
+        };
+        let mut found: Vec<_> = self.objects.ordered().filter_map(planned).collect();
+        if casts {
+            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
+            found.iter_mut().for_each(|f| f.level = finest);
+        }
+        found
     }
 
     /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.

@@ -115,7 +115,7 @@ impl Renderer {
     /// The number of surfaces that were made: one for each profile under each offset that no object
     /// had in the previous frame. A moving camera makes surfaces of levels that it needs for the
     /// first time; with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT) it makes none.
-    /// Searches on the map never make any.
+    /// Searches on the map never make any. A contour that does not close counts as a surface.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.content.rebuilds

@@ -59,7 +59,8 @@ impl Renderer {
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         let view = self.content.planned.as_ref().map(|p| p.view);
-        self.content.refresh(view.as_ref())?;
+        self.content.refresh()?;
+        self.content.with_surfaces(view.as_ref())?;
         Ok(Prewarm {
             wanted: self
                 .content

@@ -121,7 +121,7 @@ mod tests {
     use crate::profile::Profile;
     use crate::scene::{Camera, Copies, Offset, Placement};
     use crate::solid::offset_surface::{OffsetSurface, Recipe};
-    use crate::solid::outline_cache::OutlineCache;
+    use crate::solid::outline_cache::{OffsetContour, OutlineCache};
     use crate::surface::FitOptions;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
@@ -141,8 +141,9 @@ mod tests {
 
     fn surface(points: &[[f64; 2]]) -> Arc<OffsetSurface> {
         let profile = Arc::new(Profile::polygon(points, 0.5).unwrap());
-        let (outline, tolerance) = (OutlineCache::new(&profile), FitOptions::default().tolerance);
-        let recipe = Recipe::Patches(outline.into(), Offset::default(), 0, tolerance);
+        let outline = Arc::new(OutlineCache::new(&profile));
+        let contour = OffsetContour::new(&outline, &Offset::default()).into();
+        let recipe = Recipe::Patches(contour, 0, FitOptions::default().tolerance);
         OffsetSurface::new(recipe).into()
     }
 
