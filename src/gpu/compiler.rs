@@ -16,7 +16,7 @@ use crate::maps::MapFormat;
 use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
-use crate::shader::{Kind, ShadowCasters, Variant, listed};
+use crate::shader::{Kind, ShadowCasters, Variant, catalogued};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -232,7 +232,7 @@ impl PipelineCompiler {
                 shader: stage_name(&text(&executable.name)),
                 module: match variant.external {
                     Some(external) if !vertices => external.name(&module),
-                    _ => listed(&module).unwrap_or(module).name(),
+                    _ => catalogued(&module).unwrap_or(module).name(),
                 },
                 subgroup_size: executable.subgroup_size,
                 statistics: said.iter().filter_map(statistic).collect(),

@@ -38,11 +38,12 @@ pub(crate) struct FramePlan {
     /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
-    /// Records and lists of tiles.
+    /// Records of tiles, and the copies of tiles that have several.
     pub words: Vec<u32>,
-    /// Words that the device fills with lists. The first of them are zeroed before that.
-    pub list_words: u32,
-    pub list_heads: u32,
+    /// Words of the bins, to which the device sorts tiles by the length of their lists of patches.
+    pub bin_words: u32,
+    /// Words of the bins' heads, which come first and are zeroed before that.
+    pub bin_head_words: u32,
     /// One path per object.
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
@@ -86,7 +87,7 @@ pub(crate) enum Call {
     Quads(Range<u32>),
     /// Work groups.
     Dispatch(u32, Pushed),
-    /// Work groups; the head at this word of the lists holds their number.
+    /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
 }
 
@@ -296,7 +297,7 @@ impl FramePlan {
             let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
             dealt.layers.iter().map(counted).sum()
         };
-        let lists = sum(list_words) <= with.room() && with.pays_to_list(sum(|tiles| tiles));
+        let lists = sum(bin_words) <= with.room() && with.pays_to_list(sum(|tiles| tiles));
         if !lists {
             dealt.layers.iter_mut().for_each(LayerTiles::unlist);
         }
@@ -306,7 +307,7 @@ impl FramePlan {
             }
             let shows = !copies.is_empty();
             self.parts[n].tables = shows;
-            self.parts[n].patches = shows && lists && visible.takes_lists(batch);
+            self.parts[n].patches = shows && lists && visible.lists_patches(batch);
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
@@ -337,11 +338,11 @@ impl FramePlan {
         let several = tiles.iter().any(|t| !t.several.is_empty());
         self.compares_depths = several || with.host_depths;
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.list_heads = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
+        self.bin_head_words = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
         let mut later = Vec::new();
         let mut head = 0;
-        self.list_words = self.list_heads;
+        self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = Variant {
                 depth_test: u32::from(self.compares_depths),
@@ -359,24 +360,24 @@ impl FramePlan {
             let (solid, instance) = (first.number, first.first_instance);
             for records in chunks(&tiles.listed) {
                 let count = records.end - records.start;
-                let (first, tiles) = (records.start, self.list_words);
-                let pushed = |list| Pushed {
+                let (first, tiles) = (records.start, self.bin_words);
+                let pushed = |bin| Pushed {
                     first,
                     count,
                     heads: head,
                     tiles,
-                    list,
+                    bin,
                     solid,
                     instance,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
-                // The last list holds tiles that walk the tree.
+                // The last bin holds tiles that walk the tree.
                 let lengths = LIST_LENGTHS_OF.into_iter().chain([1]);
-                for (list, list_length) in (0..).zip(lengths) {
-                    let call = Call::Indirect(head + 4 * list, pushed(list));
-                    let kind = match list < LIST_LENGTHS {
+                for (bin, list_length) in (0..).zip(lengths) {
+                    let call = Call::Indirect(head + 4 * bin, pushed(bin));
+                    let kind = match bin < LIST_LENGTHS {
                         true => Kind::TilePatches,
                         false => Kind::TileTree,
                     };
@@ -387,7 +388,7 @@ impl FramePlan {
                     later.push(step(1, kind, variant, call));
                 }
                 head += 4 * TILE_LISTS;
-                self.list_words += 4 * TILE_LISTS * count;
+                self.bin_words += 4 * TILE_LISTS * count;
             }
             let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
             let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
@@ -427,12 +428,12 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
             .or(of_outline),
         surface,
         half_side: of.object.profile.radius,
-        lists: with.takes_lists(of),
+        permits_lists: with.permits_lists(of),
     }
 }
 
-/// Words of the lists of this many tiles: see `compute.glsl`.
-fn list_words(tiles: u32) -> u32 {
+/// Words of the bins of this many tiles: see `compute.glsl`.
+fn bin_words(tiles: u32) -> u32 {
     4 * TILE_LISTS * (tiles.div_ceil(MOST_GROUPS) + tiles)
 }
 

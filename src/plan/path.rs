@@ -170,12 +170,12 @@ impl Conditions {
     }
 
     /// True if patches may be listed for tiles of an object.
-    pub fn takes_lists(&self, of: &PlanObject) -> bool {
-        self.may_list(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
+    pub fn permits_lists(&self, of: &PlanObject) -> bool {
+        self.may_permit_lists(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
     }
 
     /// True if patches may be listed for tiles of an object under some offset.
-    fn may_list(&self, of: &PlanObject) -> bool {
+    fn may_permit_lists(&self, of: &PlanObject) -> bool {
         self.shows_patches(of) && self.compute && self.subgroup_size >= LEAST_SUBGROUP
     }
 
@@ -220,7 +220,7 @@ impl Conditions {
         } else if self.takes_tiles(of) {
             let may_cut = proxy::may_be_cut(of.object);
             let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
-            if self.may_list(of) {
+            if self.may_permit_lists(of) {
                 kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
             }
             kinds.extend([
@@ -246,7 +246,7 @@ impl Conditions {
         } else {
             &[false, true]
         };
-        let lengths: Vec<u32> = if self.may_list(of) {
+        let lengths: Vec<u32> = if self.may_permit_lists(of) {
             std::iter::once(0).chain(LIST_LENGTHS_OF).collect()
         } else {
             vec![0]

@@ -39,10 +39,10 @@ fn is_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
 
 /// True if a point of object space, relative to the axis, is clear of the solid's bounding
 /// cylinder.
-pub(crate) fn is_apart(surface: &OffsetSurface, place: DVec3) -> bool {
+pub(crate) fn is_apart(surface: &OffsetSurface, point: DVec3) -> bool {
     let [r_max, z_min, z_max] = surface.extent();
-    let place = flat(place);
-    place.x > r_max + CLEARANCE || place.y < z_min - CLEARANCE || place.y > z_max + CLEARANCE
+    let point = flat(point);
+    point.x > r_max + CLEARANCE || point.y < z_min - CLEARANCE || point.y > z_max + CLEARANCE
 }
 
 /// True if [`is_apart`] may be false for a copy of the cluster. `axis`: distance of a copy's axis

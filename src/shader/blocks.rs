@@ -112,12 +112,12 @@ pub struct Pushed {
     pub first: u32,
     /// Number of records.
     pub count: u32,
-    /// Word of the heads of their lists.
+    /// Word of the heads of their bins.
     pub heads: u32,
-    /// Word at which the tiles of their lists begin.
+    /// Word at which the records of their bins begin.
     pub tiles: u32,
-    /// Number of the list that is read.
-    pub list: u32,
+    /// Number of the bin that is read.
+    pub bin: u32,
     /// Number of the only solid.
     pub solid: u32,
     /// Number of the only instance.

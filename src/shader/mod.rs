@@ -2,8 +2,8 @@
 //! data that it reads, and the variants from which pipelines are made.
 
 mod blocks;
+mod catalogue;
 mod external;
-mod list;
 mod module;
 mod variant;
 
@@ -11,10 +11,10 @@ pub use blocks::{
     FrameBlock, InstanceBlock, LightBlock, Pushed, SOLID_STRIDE, ShadowBlock, SolidBlock,
 };
 #[cfg(test)]
-pub(crate) use list::modules;
-pub use list::{Module, Search};
+pub(crate) use catalogue::modules;
+pub use catalogue::{Module, Search};
 #[cfg(feature = "other-shaders")]
-pub use module::listed;
+pub use module::catalogued;
 pub use module::{depth_less, words};
 pub(crate) use variant::is_beveled;
 pub use variant::{Kind, ShadowCasters, Variant};

@@ -1,12 +1,12 @@
-//! Rust and GLSL agree on shared bytes: block layouts, specialisation constants, the list of
-//! modules, and the stored SPIR-V for builds without shaderc.
+//! Rust and GLSL agree on shared bytes: block layouts, specialisation constants, the
+//! catalogue of modules, and the stored SPIR-V for builds without shaderc.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
 use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::list::{Entry, Features, Output, modules};
+use crate::shader::catalogue::{Entry, Features, Output, modules};
 use crate::shader::{
     FrameBlock, InstanceBlock, Kind, LightBlock, Module, SOLID_STRIDE, ShadowBlock, ShadowCasters,
     SolidBlock, Variant, depth_less, generated as g, words,
@@ -209,7 +209,7 @@ fn kept_file(name: &str) -> String {
     format!("{}/shaders-spirv/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The list of modules is finite and of known length, so that any growth is visible.
+/// The catalogue of modules is finite and of known length, so that any growth is visible.
 #[test]
 fn modules_are_few_and_small() {
     let all = modules();

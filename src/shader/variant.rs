@@ -6,9 +6,9 @@
 //! [`Conditions::reachable`](crate::plan::Conditions::reachable) lists all variants that can follow
 //! from it.
 
+use super::catalogue::{Entry, Features, Module, Output, Search};
 use super::external::External;
 use super::generated as g;
-use super::list::{Entry, Features, Module, Output, Search};
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};

@@ -4,7 +4,7 @@ use crate::search::SearchTable;
 use crate::shader::generated::{LISTED_PATCHES, PATCH_ROWS};
 use crate::surface::{GpuPatch, QuadricPatch, Tables};
 
-/// A table that may be placed anywhere in a buffer.
+/// A table that may be stored anywhere in a buffer.
 pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
     /// Number of vectors, from the first on, that the search itself reads.

@@ -1,4 +1,4 @@
-//! A renderer's record of an object: its values, and the resources that are prepared from them.
+//! A renderer's record of an object: its values, and the resources that are derived from them.
 
 use crate::gpu::resources::block::{note_growth, solid_block};
 use crate::gpu::resources::shape_texture::MapFacts;
@@ -19,19 +19,19 @@ use std::sync::Arc;
 /// One object.
 pub(in crate::gpu) struct Entry {
     pub object: Object,
-    /// Values that were set since the last preparation.
+    /// Values that were set since the last refresh.
     pub wanted: Option<Object>,
     /// The object that is drawn in its place, in a box that has grown with the offset.
     pub grown: Option<GrownObject>,
-    /// `None` before the first frame, and if the first preparation failed.
-    pub prepared: Option<Prepared>,
+    /// `None` before the first refresh, and if that failed.
+    pub derived: Option<Derived>,
     pub instances: Range<u32>,
     /// The renderer's version at the last change.
     pub version: u64,
 }
 
 /// Resources that follow from an object's values, whatever the view.
-pub(in crate::gpu) struct Prepared {
+pub(in crate::gpu) struct Derived {
     /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
     /// The contour whose patches are searched, or would be if it closed; `None` for a search on the
@@ -58,7 +58,7 @@ impl Entry {
             object,
             wanted: None,
             grown: None,
-            prepared: None,
+            derived: None,
             instances,
             version,
         }
@@ -69,19 +69,19 @@ impl Entry {
         self.wanted.as_ref().unwrap_or(&self.object)
     }
 
-    /// The values that were prepared last, in a box that cuts nothing.
+    /// The values of the last refresh, in a box that cuts nothing.
     pub fn drawn(&self) -> &Object {
         self.grown.as_ref().map_or(&self.object, |g| &g.object)
     }
 
-    /// The block that shaders read, for this surface; `None` before the object is prepared.
+    /// The block that shaders read, for this surface; `None` before the object is derived.
     pub fn block(
         &self,
         number: u32,
         surface: Option<&OffsetSurface>,
         settings: &SearchSettings,
     ) -> Option<SolidBlock> {
-        let p = self.prepared.as_ref()?;
+        let p = self.derived.as_ref()?;
         let length = p.arc.as_ref().map_or(1.0, |a| a.length);
         let (instances, map) = (&self.instances, p.shadow_map);
         let mut block = solid_block(

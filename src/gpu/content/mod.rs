@@ -2,12 +2,12 @@
 //! plan of the last view. It records no commands.
 //!
 //! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
-//! derives resources from new values. `planned.rs` plans a view's frame.
+//! derives resources from new values. `view_plan.rs` plans a view's frame.
 
 pub(super) mod entry;
 pub(super) mod objects;
-pub(super) mod planned;
 pub(super) mod refresh;
+pub(super) mod view_plan;
 
 use crate::error::Result;
 use crate::gpu::device::Shared;
@@ -19,8 +19,8 @@ use crate::scene::Lighting;
 use crate::settings::{Planes, SearchSettings};
 use crate::shader::ShadowCasters;
 use objects::{Objects, next_renderer};
-use planned::Planned;
 use std::sync::Arc;
+use view_plan::ViewPlan;
 
 /// Objects, lights, and all that is derived from them.
 pub(super) struct Content {
@@ -32,7 +32,7 @@ pub(super) struct Content {
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
     pub lit: Lighting,
-    /// Entries whose values differ from their prepared state.
+    /// Entries whose values differ from what was derived.
     pub changed: Vec<u32>,
     /// True if the fallback draws every entry, because one has no surface and shadows meet all by
     /// one search.
@@ -41,7 +41,7 @@ pub(super) struct Content {
     /// Counts changes.
     pub version: u64,
     /// The plan of the last view.
-    pub planned: Option<Arc<Planned>>,
+    pub plan: Option<Arc<ViewPlan>>,
     /// True if compute compares depths with those of the target.
     pub target_has_depths: bool,
     pub rebuilds: u64,
@@ -73,7 +73,7 @@ impl Content {
             all_fall_back: false,
             casters: ShadowCasters::default(),
             version: 1,
-            planned: None,
+            plan: None,
             target_has_depths: true,
             rebuilds: 0,
             notes: Vec::new(),

@@ -59,7 +59,7 @@ pub(in crate::gpu) fn next_renderer() -> u32 {
 pub(crate) struct Objects {
     /// The renderer that ids name.
     pub renderer: u32,
-    places: Vec<Place>,
+    numbered: Vec<Numbered>,
     free: Vec<u32>,
     /// Numbers and generations in the order in which objects were added, including dead ones.
     order: Vec<(u32, u32)>,
@@ -68,18 +68,19 @@ pub(crate) struct Objects {
     instances: RangeAllocator<u32>,
 }
 
+/// The entry that has a number now, and how many had it before.
 #[derive(Default)]
-struct Place {
+struct Numbered {
     generation: u32,
     entry: Option<Entry>,
 }
 
 impl Objects {
-    /// An empty list, for the renderer of this identity.
+    /// No objects, for the renderer of this identity.
     pub fn of(renderer: u32) -> Self {
         Self {
             renderer,
-            places: Vec::new(),
+            numbered: Vec::new(),
             free: Vec::new(),
             order: Vec::new(),
             dead: 0,
@@ -93,8 +94,8 @@ impl Objects {
     }
 
     /// One more than the largest number that an object has had.
-    pub fn places(&self) -> usize {
-        self.places.len()
+    pub fn number_count(&self) -> usize {
+        self.numbered.len()
     }
 
     /// One more than the number of the last instance.
@@ -105,9 +106,9 @@ impl Objects {
     /// All objects with their numbers, in the order in which they were added.
     pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
         self.order.iter().filter_map(|&(number, generation)| {
-            let place = &self.places[number as usize];
-            let entry = place.entry.as_ref()?;
-            (place.generation == generation).then_some((number, entry))
+            let numbered = &self.numbered[number as usize];
+            let entry = numbered.entry.as_ref()?;
+            (numbered.generation == generation).then_some((number, entry))
         })
     }
 
@@ -118,12 +119,12 @@ impl Objects {
 
     /// The entry of a number; `None` if it is gone.
     pub fn at(&self, number: u32) -> Option<&Entry> {
-        self.places.get(number as usize)?.entry.as_ref()
+        self.numbered.get(number as usize)?.entry.as_ref()
     }
 
     /// The mutable entry of a number; `None` if it is gone.
     pub fn at_mut(&mut self, number: u32) -> Option<&mut Entry> {
-        self.places.get_mut(number as usize)?.entry.as_mut()
+        self.numbered.get_mut(number as usize)?.entry.as_mut()
     }
 
     /// The position of an object in the order of all objects.
@@ -132,37 +133,37 @@ impl Objects {
     }
 
     pub fn add(&mut self, object: Object, version: u64) -> Result<ObjectId> {
-        if self.free.is_empty() && self.places.len() == MOST_NUMBERS {
+        if self.free.is_empty() && self.numbered.len() == MOST_NUMBERS {
             let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
         let instances = self.allocate(object.placements().len())?;
         let number = self.free.pop().unwrap_or_else(|| {
-            self.places.push(Place::default());
-            self.places.len() as u32 - 1
+            self.numbered.push(Numbered::default());
+            self.numbered.len() as u32 - 1
         });
-        let place = &mut self.places[number as usize];
-        place.entry = Some(Entry::new(object, instances, version));
-        self.order.push((number, place.generation));
+        let numbered = &mut self.numbered[number as usize];
+        numbered.entry = Some(Entry::new(object, instances, version));
+        self.order.push((number, numbered.generation));
         Ok(ObjectId {
             renderer: self.renderer,
             number,
-            generation: place.generation,
+            generation: numbered.generation,
         })
     }
 
     pub fn remove(&mut self, id: ObjectId) {
-        let place = &mut self.places[id.number as usize];
-        place.generation += 1;
-        if let Some(entry) = place.entry.take() {
+        let numbered = &mut self.numbered[id.number as usize];
+        numbered.generation += 1;
+        if let Some(entry) = numbered.entry.take() {
             self.instances.free_range(entry.instances);
         }
-        if place.generation < MOST_GENERATIONS {
+        if numbered.generation < MOST_GENERATIONS {
             self.free.push(id.number);
         }
         self.dead += 1;
         if self.dead > self.order.len() / 2 {
-            let alive = |&(n, g): &(u32, u32)| self.places[n as usize].generation == g;
+            let alive = |&(n, g): &(u32, u32)| self.numbered[n as usize].generation == g;
             self.order.retain(alive);
             self.dead = 0;
         }
@@ -194,14 +195,16 @@ impl Objects {
 impl Content {
     /// Returns the entry of an object, or an error if the object does not exist.
     pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
-        let place = self.objects.places.get(id.number as usize);
-        let place = place.filter(|place| {
-            place.generation == id.generation && id.renderer == self.objects.renderer
+        let numbered = self.objects.numbered.get(id.number as usize);
+        let numbered = numbered.filter(|numbered| {
+            numbered.generation == id.generation && id.renderer == self.objects.renderer
         });
-        place.and_then(|place| place.entry.as_ref()).ok_or_else(|| {
-            let message = "the object was removed, or is another renderer's";
-            Error::new(ErrorKind::Usage, message)
-        })
+        numbered
+            .and_then(|numbered| numbered.entry.as_ref())
+            .ok_or_else(|| {
+                let message = "the object was removed, or is another renderer's";
+                Error::new(ErrorKind::Usage, message)
+            })
     }
 
     /// Returns the entry of an object, marked as changed.

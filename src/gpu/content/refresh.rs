@@ -1,14 +1,14 @@
 //! Conversion of values to all that does not depend on a view: solids, contours, maps, textures and
-//! variants. All objects are prepared before any new value is stored. A failure restores what
+//! variants. All is derived before any new value is stored. A failure restores what
 //! shadows need of all objects.
 
 use super::Content;
-use super::entry::{Entry, Prepared};
+use super::entry::{Derived, Entry};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
-use crate::gpu::resources::textures::{Bound, ShadowMaps};
+use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
 use crate::maps::Projection;
 use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// The search for objects without a surface of their own; it reads only the map.
 pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
-/// An object that is prepared anew, and what was found for it so far.
+/// An object for which all is derived anew, and what was found for it so far.
 struct Resolved {
     number: u32,
     /// The object in a box that has grown.
@@ -119,13 +119,13 @@ impl Content {
         }
         let mut ready = Vec::with_capacity(work.len());
         for one in work {
-            let prepared = self.prepared(&one);
-            let prepared = prepared.map_err(|e| self.named(e, one.number, "profile"))?;
-            ready.push((one.number, one.grown, prepared));
+            let derived = self.derive(&one);
+            let derived = derived.map_err(|e| self.named(e, one.number, "profile"))?;
+            ready.push((one.number, one.grown, derived));
         }
         self.version += 1;
         let version = self.version;
-        for (number, grown, prepared) in ready {
+        for (number, grown, derived) in ready {
             let Some(entry) = self.objects.at_mut(number) else {
                 continue;
             };
@@ -133,7 +133,7 @@ impl Content {
                 entry.object = wanted;
             }
             entry.grown = grown;
-            entry.prepared = Some(prepared);
+            entry.derived = Some(derived);
             entry.version = version;
         }
         Ok(())
@@ -211,13 +211,13 @@ impl Content {
     /// Returns true if shadows force the fallback on all objects: a shadow's ray meets every solid
     /// by one search.
     fn falls_back(&self, work: &[Resolved]) -> bool {
-        let fails = |prepared: &Prepared| {
-            let contour = prepared.contour.as_ref();
+        let fails = |derived: &Derived| {
+            let contour = derived.contour.as_ref();
             contour.is_some_and(|contour| contour.get().is_err())
         };
         let old = |number: &u32| {
             let entry = self.objects.at(*number);
-            entry.is_some_and(|entry| entry.prepared.as_ref().is_some_and(fails))
+            entry.is_some_and(|entry| entry.derived.as_ref().is_some_and(fails))
         };
         self.lighting.shadow != Shadow::Off
             && (work.iter().any(Resolved::fails) || self.others(work).iter().any(old))
@@ -263,7 +263,7 @@ impl Content {
         }
         let (wanted, growth) = one.shown(entry);
         let key = MapKey::new(wanted, &growth, &self.settings);
-        let there = entry.prepared.as_ref().and_then(|p| p.map.as_ref());
+        let there = entry.derived.as_ref().and_then(|p| p.map.as_ref());
         if let Some(there) = there
             && Arc::ptr_eq(&wanted.profile, &entry.drawn().profile)
             && there.key.holds(&key)
@@ -288,7 +288,7 @@ impl Content {
         for (number, entry) in self.objects.ordered() {
             let map = match work.iter().find(|one| one.number == number) {
                 Some(one) => one.map.as_ref(),
-                None => entry.prepared.as_ref().and_then(|p| p.map.as_ref()),
+                None => entry.derived.as_ref().and_then(|p| p.map.as_ref()),
             };
             if let Some(map) = map
                 && !maps.iter().any(|m| Arc::ptr_eq(m, map))
@@ -317,12 +317,12 @@ impl Content {
     }
 
     /// Makes all that draws an object.
-    fn prepared(&mut self, one: &Resolved) -> Result<Prepared> {
+    fn derive(&mut self, one: &Resolved) -> Result<Derived> {
         let (number, solid, solver) = (one.number, &one.solid, self.solver_of(one));
         let Some(entry) = self.objects.at(number) else {
             return Err(Error::new(
                 ErrorKind::Other,
-                "an object is gone while it is prepared",
+                "an object is gone while it is refreshed",
             ));
         };
         let (object, growth) = one.shown(entry);
@@ -343,13 +343,13 @@ impl Content {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
         });
-        let bound = Bound {
+        let bound = ObjectTextures {
             look: &object.texturing,
             shape: one.map.clone(),
             arc: arc.clone(),
             shadows: &self.shadow_maps,
         };
-        Ok(Prepared {
+        Ok(Derived {
             textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
             solid: solid.clone(),
             contour: one.contour.clone(),

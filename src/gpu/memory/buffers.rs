@@ -169,10 +169,10 @@ pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Bu
     per_frame(device, name, bytes, B::STORAGE_BUFFER | B::UNIFORM_BUFFER)
 }
 
-/// Lists of tiles, which the device makes and counts.
-pub(crate) fn lists(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
+/// Bins of tiles, which the device fills and counts.
+pub(crate) fn bins(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
     let usage = B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
-    device_local(device, "lists of tiles", bytes, usage)
+    device_local(device, "bins of tiles", bytes, usage)
 }
 
 /// Draws that the host writes.

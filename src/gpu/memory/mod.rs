@@ -38,9 +38,9 @@ fn allocate(
 /// Moves an allocation to its owner, which frees it, before anything else can fail.
 fn bound(owner: &mut Option<Allocation>, allocation: Allocation) -> (vk::DeviceMemory, u64) {
     // SAFETY: the handle is used only to bind the resource that owns the allocation.
-    let place = (unsafe { allocation.memory() }, allocation.offset());
+    let binding = (unsafe { allocation.memory() }, allocation.offset());
     *owner = Some(allocation);
-    place
+    binding
 }
 
 fn free(device: &Shared, allocation: Option<Allocation>) {

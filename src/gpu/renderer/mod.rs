@@ -108,8 +108,8 @@ impl Renderer {
     /// The draw path of each object in the last planned frame, in order.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
-        let planned = self.content.planned.as_ref();
-        planned.map_or_else(Vec::new, |p| p.plan.paths.clone())
+        let plan = self.content.plan.as_ref();
+        plan.map_or_else(Vec::new, |p| p.frame.paths.clone())
     }
 
     /// The number of surfaces that were made: one for each profile under each offset that no object
@@ -127,10 +127,10 @@ impl Renderer {
     pub fn map_bytes(&self) -> [u64; 2] {
         let mut seen = Vec::new();
         let mut shapes = 0;
-        for prepared in (self.content.objects.ordered()).filter_map(|(_, e)| e.prepared.as_ref()) {
+        for derived in (self.content.objects.ordered()).filter_map(|(_, e)| e.derived.as_ref()) {
             let images = [
-                prepared.map.as_ref().map(|m| &m.texture),
-                prepared.arc.as_ref().map(|a| &a.texture),
+                derived.map.as_ref().map(|m| &m.texture),
+                derived.arc.as_ref().map(|a| &a.texture),
             ];
             for image in images.into_iter().flatten() {
                 if !seen.contains(&Arc::as_ptr(image)) {

@@ -2,12 +2,12 @@
 //! that bind them. The slot also keeps alive all else that its commands read.
 
 use crate::error::Result;
-use crate::gpu::content::planned::Planned;
+use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Buffer;
-use crate::gpu::memory::buffers::{indirect, lists, storage, uniform, write, write_slice};
+use crate::gpu::memory::buffers::{bins, indirect, storage, uniform, write, write_slice};
 use crate::gpu::memory::images::Upload;
-use crate::gpu::resources::geometry::Placed;
+use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
@@ -25,10 +25,10 @@ pub(crate) struct FrameSlot {
     instances: Buffer,
     shadows: Buffer,
     tiles: Buffer,
-    pub lists: Buffer,
+    pub bins: Buffer,
     pub draws: Buffer,
-    /// The plan and bindings to record; `None` before the slot is prepared.
-    pub bound: Option<Bound>,
+    /// The plan and bindings to record; `None` before the slot is derived.
+    pub bound: Option<BoundPlan>,
     /// Counts the slot's frames. A token of an earlier frame records nothing.
     pub serial: u64,
     /// The view and the renderer's version that solids and instances were written for. `None` if
@@ -43,11 +43,11 @@ pub(crate) struct FrameSlot {
 }
 
 /// A plan with all objects that its commands bind.
-pub(crate) struct Bound {
-    pub planned: Arc<Planned>,
+pub(crate) struct BoundPlan {
+    pub plan: Arc<ViewPlan>,
     /// One per step.
     pub steps: Vec<BoundStep>,
-    pub placed: Placed,
+    pub buffers: TableBuffers,
 }
 
 /// The bindings of a step.
@@ -69,7 +69,7 @@ impl FrameSlot {
             instances: storage(device, "instances", 0)?,
             shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
             tiles: storage(device, "tiles", 0)?,
-            lists: lists(device, 0)?,
+            bins: bins(device, 0)?,
             draws: indirect(device, 0)?,
             bound: None,
             serial: 0,
@@ -114,7 +114,7 @@ impl FrameSlot {
             &self.instances,
             &self.shadows,
             &self.tiles,
-            &self.lists,
+            &self.bins,
             &self.draws,
         ];
         all.iter().map(|buffer| buffer.bytes).sum()
@@ -143,16 +143,16 @@ impl FrameSlot {
         write(&mut self.shadows, 0, &all)
     }
 
-    /// Writes a plan's tiles and draws, and makes room for its lists.
+    /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
         let words = 4 * plan.words.len() as u64;
         if self.tiles.bytes < words {
             self.tiles = roomy(&self.device, "tiles", words)?;
             self.named = None;
         }
-        let listed = 4 * u64::from(plan.list_words);
-        if self.lists.bytes < listed {
-            self.lists = lists(&self.device, listed + listed / 2)?;
+        let bins_bytes = 4 * u64::from(plan.bin_words);
+        if self.bins.bytes < bins_bytes {
+            self.bins = bins(&self.device, bins_bytes + bins_bytes / 2)?;
             self.named = None;
         }
         let draws = size_of_val(plan.draws.as_slice()) as u64;
@@ -181,7 +181,7 @@ impl FrameSlot {
             Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.lists))];
+        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.bins))];
         if let Some((target, _)) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));

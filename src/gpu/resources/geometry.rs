@@ -28,9 +28,9 @@ pub(crate) struct State {
     device: Arc<Shared>,
 }
 
-/// The buffers of a frame. Parts that were placed for the frame stay at their places in these.
+/// The buffers of a frame. Parts that were stored for the frame keep their positions in these.
 #[derive(Clone)]
-pub(crate) struct Placed {
+pub(crate) struct TableBuffers {
     pub tables: Arc<Buffer>,
     pub indices: Arc<Buffer>,
 }
@@ -61,11 +61,11 @@ impl Geometry {
 }
 
 impl State {
-    /// Gives parts of surfaces their places. Frames that were prepared earlier keep their buffers.
-    pub fn place<'a>(
+    /// Stores parts of surfaces. Frames that were prepared earlier keep their buffers.
+    pub fn store<'a>(
         &mut self,
         surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, Parts)>,
-    ) -> Result<Placed> {
+    ) -> Result<TableBuffers> {
         for (surface, parts) in surfaces {
             let wanted = [
                 (parts.tables, Part::Tables),
@@ -73,13 +73,13 @@ impl State {
                 (parts.patches, Part::Patches),
             ];
             for (_, part) in wanted.into_iter().filter(|(is, _)| *is) {
-                self.arena.place(surface, part)?;
+                self.arena.store(surface, part)?;
             }
             if parts.frusta {
                 self.fit(surface.hull().hull.frusta.len() as u32)?;
             }
         }
-        Ok(Placed {
+        Ok(TableBuffers {
             tables: self.arena.buffer.clone(),
             indices: self.indices.clone(),
         })
@@ -121,8 +121,8 @@ struct TableArena {
     ranges: Ranges,
     /// The number of 16-byte vectors in a unit. Every slot begins at a whole unit.
     unit: u32,
-    placed: Vec<(Weak<OffsetSurface>, Part)>,
-    /// The length of `placed` above which dead entries are removed.
+    stored: Vec<(Weak<OffsetSurface>, Part)>,
+    /// The length of `stored` above which dead entries are removed.
     crowded: usize,
     device: Arc<Shared>,
 }
@@ -138,14 +138,14 @@ impl TableArena {
             buffer: Arc::new(table_buffer(device, unit, FIRST_UNITS)?),
             ranges: Arc::new(Mutex::new(RangeAllocator::new(0..FIRST_UNITS))),
             unit,
-            placed: Vec::new(),
+            stored: Vec::new(),
             crowded: 64,
             device: device.clone(),
         })
     }
 
-    /// Gives a part of a surface a place and writes it there, if it has no place yet.
-    pub fn place(&mut self, surface: &Arc<OffsetSurface>, part: Part) -> Result<()> {
+    /// Writes a part of a surface to a free range, unless it has one.
+    pub fn store(&mut self, surface: &Arc<OffsetSurface>, part: Part) -> Result<()> {
         if surface.slot(part).is_some() {
             return Ok(());
         }
@@ -165,11 +165,11 @@ impl TableArena {
         let begin = slot.begin();
         self.write(begin, vectors)?;
         surface.keep_slot(part, slot);
-        self.placed.push((Arc::downgrade(surface), part));
-        if self.placed.len() > self.crowded {
-            self.placed
+        self.stored.push((Arc::downgrade(surface), part));
+        if self.stored.len() > self.crowded {
+            self.stored
                 .retain(|(surface, _)| surface.strong_count() > 0);
-            self.crowded = 2 * self.placed.len().max(32);
+            self.crowded = 2 * self.stored.len().max(32);
         }
         Ok(())
     }
@@ -178,22 +178,22 @@ impl TableArena {
         self.ranges.lock().map_err(|_| full())
     }
 
-    /// Makes at least twice the room. Everything that lives keeps its place.
+    /// Makes at least twice the room. Everything that lives keeps its position.
     fn grow(&mut self, more: u32) -> Result<()> {
         let units = self.ranges()?.initial_range().end;
         let wanted = units.saturating_mul(2).max(units.saturating_add(more));
         let bigger = table_buffer(&self.device, self.unit, wanted)?;
         self.ranges()?.grow_to(wanted);
         self.buffer = Arc::new(bigger);
-        let placed = std::mem::take(&mut self.placed);
-        for (surface, part) in &placed {
+        let stored = std::mem::take(&mut self.stored);
+        for (surface, part) in &stored {
             if let Some(surface) = surface.upgrade()
                 && let Some(slot) = surface.slot(*part)
             {
                 self.write(slot.begin(), surface.vectors(*part))?;
             }
         }
-        self.placed = placed;
+        self.stored = stored;
         Ok(())
     }
 

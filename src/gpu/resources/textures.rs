@@ -54,7 +54,7 @@ pub(crate) struct Textures {
 }
 
 /// The textures that an object binds.
-pub(crate) struct Bound<'a> {
+pub(crate) struct ObjectTextures<'a> {
     pub look: &'a Texturing,
     pub shape: Option<Arc<ShapeTexture>>,
     pub arc: Option<Arc<ArcTexture>>,
@@ -88,9 +88,9 @@ impl Textures {
         &mut self,
         device: &Arc<Shared>,
         uploads: &mut Uploads,
-        bound: Bound,
+        bound: ObjectTextures,
     ) -> Result<Arc<TextureSet>> {
-        let Bound {
+        let ObjectTextures {
             look,
             shape,
             arc,

@@ -54,8 +54,8 @@ pub(crate) struct Batch<'a> {
     pub surface: Option<&'a OffsetSurface>,
     /// Half of the box's side.
     pub half_side: f64,
-    /// True if patches may be listed for its tiles.
-    pub lists: bool,
+    /// True if patches may be listed for its tiles in some views.
+    pub permits_lists: bool,
 }
 
 /// The placements of an object's copies.
@@ -73,8 +73,8 @@ struct Item {
     batch: u32,
     copy: u32,
     pixels: [u16; 4],
-    /// Position among the batch's clusters.
-    place: u32,
+    /// Rank in the order of the batch's clusters.
+    rank: u32,
 }
 
 /// Rows of tiles in a band, and columns in a block. The records of a block are contiguous.
@@ -172,10 +172,10 @@ impl<'a> Visible<'a> {
         self.facts[batch].apart
     }
 
-    /// True if patches may be listed for a batch's tiles.
-    pub fn takes_lists(&self, batch: usize) -> bool {
+    /// True if patches are listed for a batch's tiles in this view.
+    pub fn lists_patches(&self, batch: usize) -> bool {
         let facts = &self.facts[batch];
-        self.batches[batch].lists && facts.apart && facts.even
+        self.batches[batch].permits_lists && facts.apart && facts.even
     }
 
     /// The copies of each batch that may show, in ascending order.
@@ -195,7 +195,7 @@ impl<'a> Visible<'a> {
     pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
         let [across, down] = self.size;
         let lists: Vec<bool> = (0..self.batches.len())
-            .map(|b| drawer == Drawer::Groups && self.takes_lists(b))
+            .map(|b| drawer == Drawer::Groups && self.lists_patches(b))
             .collect();
         let single: Vec<bool> = self
             .batches
@@ -204,8 +204,8 @@ impl<'a> Visible<'a> {
             .collect();
         let of_band = |band: u32| {
             let corner = |tile: u32| {
-                let [block, place] = [tile / (BLOCK * BLOCK), tile % (BLOCK * BLOCK)];
-                [block * BLOCK + place % BLOCK, band * BLOCK + place / BLOCK]
+                let [block, at] = [tile / (BLOCK * BLOCK), tile % (BLOCK * BLOCK)];
+                [block * BLOCK + at % BLOCK, band * BLOCK + at / BLOCK]
             };
             let listed = self.strips.iter().map(|s| &s.listed[band as usize][..]);
             let dealer = Dealer {

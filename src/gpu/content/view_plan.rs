@@ -1,7 +1,7 @@
 //! A frame's plan and the surfaces that it draws.
 
 use super::Content;
-use super::entry::{Entry, Prepared};
+use super::entry::{Derived, Entry};
 use crate::error::Result;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
@@ -14,10 +14,10 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The plan of one view, for one version of a renderer's objects.
-pub(crate) struct Planned {
+pub(crate) struct ViewPlan {
     pub view: View,
     pub version: u64,
-    pub plan: FramePlan,
+    pub frame: FramePlan,
     /// One per drawn object, in order.
     pub objects: Vec<PlannedObject>,
 }
@@ -33,19 +33,19 @@ pub(crate) struct PlannedObject {
 impl Content {
     /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
     /// the view's slot, is of this view and version.
-    pub fn planned(&mut self, view: &View, known: Option<&Arc<Planned>>) -> Result<Arc<Planned>> {
+    pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
         self.refresh()?;
-        let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
-        if let Some(planned) = self
-            .planned
+        let same = |p: &&Arc<ViewPlan>| p.version == self.version && p.view == *view;
+        if let Some(plan) = self
+            .plan
             .as_ref()
             .into_iter()
             .chain(known)
             .find(same)
             .cloned()
         {
-            self.planned = Some(planned.clone());
-            return Ok(planned);
+            self.plan = Some(plan.clone());
+            return Ok(plan);
         }
         let objects = self.with_surfaces(Some(view))?;
         let with = self.conditions();
@@ -56,13 +56,13 @@ impl Content {
                 entry.plan_object(planned, &self.settings)
             })
             .collect();
-        let made = Arc::new(Planned {
+        let made = Arc::new(ViewPlan {
             view: *view,
             version: self.version,
-            plan: plan(view, &read, &with),
+            frame: plan(view, &read, &with),
             objects,
         });
-        self.planned = Some(made.clone());
+        self.plan = Some(made.clone());
         Ok(made)
     }
 
@@ -96,17 +96,14 @@ impl Content {
                 continue;
             };
             let (growth, offset) = (entry.growth(), entry.drawn().offset);
-            let Some(prepared) = &mut entry.prepared else {
+            let Some(derived) = &mut entry.derived else {
                 continue;
             };
-            let known = prepared
-                .levels
-                .iter()
-                .find(|(level, _)| *level == one.level);
+            let known = derived.levels.iter().find(|(level, _)| *level == one.level);
             one.surface = known.map(|(_, surface)| surface.clone());
-            if one.surface.is_none() && prepared.solver.follows_tolerance() {
-                let surface = prepared.solid.patches(&offset, &growth, one.level)?;
-                prepared.levels.push((one.level, surface.clone()));
+            if one.surface.is_none() && derived.solver.follows_tolerance() {
+                let surface = derived.solid.patches(&offset, &growth, one.level)?;
+                derived.levels.push((one.level, surface.clone()));
                 new.push(surface.clone());
                 one.surface = Some(surface);
             }
@@ -121,11 +118,11 @@ impl Content {
     fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
         let casts = self.lighting.shadow != Shadow::Off;
         let tolerance = self.settings.tolerance;
-        let level_of = |entry: &Entry, prepared: &Prepared| match view {
-            Some(view) if tolerance != Tolerance::EXACT && prepared.solver.follows_tolerance() => {
+        let level_of = |entry: &Entry, derived: &Derived| match view {
+            Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
                 let pixels = entry.pixels_per_unit(view, casts);
                 // An object that does not show takes a level that is already made.
-                let made = prepared.levels.first().filter(|_| pixels <= 0.0 && !casts);
+                let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
                 made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
             }
             _ => 0,
@@ -133,7 +130,7 @@ impl Content {
         let planned = |(number, entry): (u32, &Entry)| {
             Some(PlannedObject {
                 number,
-                level: level_of(entry, entry.prepared.as_ref()?),
+                level: level_of(entry, entry.derived.as_ref()?),
                 surface: None,
             })
         };
@@ -180,13 +177,13 @@ impl Entry {
         levels::bound(level) * self.pixels_per_unit(view, false)
     }
 
-    /// The object in the form that a plan reads; `None` before it is prepared.
+    /// The object in the form that a plan reads; `None` before it is derived.
     pub fn plan_object<'a>(
         &'a self,
         planned: &'a PlannedObject,
         settings: &crate::settings::SearchSettings,
     ) -> Option<PlanObject<'a>> {
-        let prepared = self.prepared.as_ref()?;
+        let derived = self.derived.as_ref()?;
         let surface = planned.surface.as_ref();
         let block = self.block(planned.number, surface.map(Arc::as_ref), settings)?;
         let texels = 2.0 / f64::from(block.map[1]);
@@ -195,12 +192,12 @@ impl Entry {
             object: self.drawn(),
             number: planned.number,
             first_instance: self.instances.start,
-            variant: prepared.variant,
-            textures: Arc::as_ptr(&prepared.textures) as usize,
+            variant: derived.variant,
+            textures: Arc::as_ptr(&derived.textures) as usize,
             surface,
-            takes_patches: prepared.takes_patches && surface.is_some(),
+            takes_patches: derived.takes_patches && surface.is_some(),
             shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
-            outline: Some((prepared.solid.outline.as_ref(), away)),
+            outline: Some((derived.solid.outline.as_ref(), away)),
         })
     }
 }
