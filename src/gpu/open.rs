@@ -100,7 +100,7 @@ impl Device {
             None => allocator(host.instance, host.physical, host.device)?,
         };
         let (raw, cache) = (host.device.clone(), host.pipeline_cache);
-        let shared = Shared::new(host.instance, &candidate, raw, host.queue, memory, cache)?;
+        let shared = Shared::new(host.instance, candidate, raw, host.queue, memory, cache)?;
         Ok(shared.into())
     }
 
@@ -138,25 +138,15 @@ impl Device {
     #[cfg(feature = "other-shaders")]
     pub unsafe fn with_shaders(&self, shaders: ShaderSource) -> Result<Self> {
         let shared = &self.shared;
-        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.constants)?;
+        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.chosen.constants())?;
         pipelines.source = Some(shaders);
         let own = Shared {
             allocator: shared.allocator.clone(),
             pipelines: Some(pipelines),
             raw: shared.raw.clone(),
             queue: shared.queue.clone(),
-            family: shared.family,
             functions: shared.functions.clone(),
-            physical: shared.physical,
-            fragment_stores: shared.fragment_stores,
-            limits: shared.limits,
-            constants: shared.constants,
-            subgroup_size: shared.subgroup_size,
-            timestamp_bits: shared.timestamp_bits,
-            anisotropy: shared.anisotropy,
-            clips: shared.clips,
-            most_draws: shared.most_draws,
-            report: shared.report.clone(),
+            chosen: shared.chosen.clone(),
             budget: MemoryBudget::default(),
             host_types: shared.host_types,
             instance: None,
@@ -187,7 +177,7 @@ impl Device {
         let made = allocator(&instance.raw, chosen.physical, &raw).and_then(|memory| {
             Shared::new(
                 &instance.raw,
-                &chosen,
+                chosen,
                 raw.clone(),
                 Some(queue),
                 memory,
@@ -210,7 +200,7 @@ impl Device {
     /// The description of the device.
     #[must_use]
     pub fn report(&self) -> &DeviceReport {
-        &self.shared.report
+        &self.shared.chosen.report
     }
 
     /// The number of pipelines that were compiled on the device.
@@ -263,7 +253,7 @@ impl Device {
         usage: vk::BufferUsageFlags,
         location: MemoryLocation,
     ) -> Result<Buffer> {
-        Buffer::new(&self.shared, name, bytes, usage, location)
+        Buffer::new(&self.shared, name, bytes, usage, location, u32::MAX)
     }
 
     /// Takes the validation layers' messages since the last call. The list is always empty without

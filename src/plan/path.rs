@@ -252,13 +252,10 @@ impl Conditions {
             vec![0]
         };
         let mut data = Vec::new();
-        for &lights in counts {
-            for &own_tables in own {
-                for &depths in depths {
-                    for &list_length in &lengths {
-                        data.push((lights, own_tables, u32::from(depths), list_length));
-                    }
-                }
+        for (&lights, &own_tables) in counts.iter().flat_map(|c| own.iter().map(move |o| (c, o))) {
+            for &depths in depths {
+                let of = |&length: &u32| (lights, own_tables, u32::from(depths), length);
+                data.extend(lengths.iter().map(of));
             }
         }
         let forms = variant.forms();

@@ -5,7 +5,7 @@ use super::entry::{Derived, Entry};
 use crate::error::Result;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
-use crate::scene::{Growth, Shadow};
+use crate::scene::Shadow;
 use crate::settings::{Solver, Tolerance};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
@@ -36,14 +36,8 @@ impl Content {
     pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
         self.refresh()?;
         let same = |p: &&Arc<ViewPlan>| p.version == self.version && p.view == *view;
-        if let Some(plan) = self
-            .plan
-            .as_ref()
-            .into_iter()
-            .chain(known)
-            .find(same)
-            .cloned()
-        {
+        let mut plans = self.plan.iter().chain(known);
+        if let Some(plan) = plans.find(same).cloned() {
             self.plan = Some(plan.clone());
             return Ok(plan);
         }
@@ -68,17 +62,17 @@ impl Content {
 
     /// The inputs of a plan other than view and objects.
     pub fn conditions(&self) -> Conditions {
-        let limits = &self.device.limits;
+        let limits = self.device.limits();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            clips: self.device.clips,
-            software: self.device.report.kind == "cpu",
-            subgroup_size: self.device.subgroup_size,
+            clips: self.device.chosen.clips(),
+            software: self.device.chosen.report.kind == "cpu",
+            subgroup_size: self.device.chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
-            own_vectors: self.device.constants.own_vectors as usize,
+            own_vectors: self.device.chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             casts: self.lighting.shadow != Shadow::Off,
@@ -161,11 +155,6 @@ impl Content {
 }
 
 impl Entry {
-    /// The growth of the box with the offset.
-    pub fn growth(&self) -> Growth {
-        self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
-    }
-
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
     pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {

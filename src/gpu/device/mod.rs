@@ -6,12 +6,12 @@ pub(crate) mod report;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::pipelines::{DeviceConstants, Pipelines};
+use crate::gpu::vk::pipelines::Pipelines;
 use ash::vk;
 use budget::MemoryBudget;
 use gpu_allocator::vulkan::Allocator;
 use instance::Instance;
-use report::{Candidate, DeviceReport};
+use report::Candidate;
 use std::ffi::CStr;
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -22,23 +22,10 @@ pub(crate) struct Shared {
     pub pipelines: Option<Pipelines>,
     pub raw: ash::Device,
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
-    pub family: u32,
     /// The functions of the instance.
     pub functions: ash::Instance,
-    pub physical: vk::PhysicalDevice,
-    /// True if fragment shaders may write to buffers.
-    pub fragment_stores: bool,
-    pub limits: vk::PhysicalDeviceLimits,
-    pub constants: DeviceConstants,
-    /// The number of invocations that run together.
-    pub subgroup_size: u32,
-    pub timestamp_bits: u32,
-    pub anisotropy: Option<f32>,
-    /// Same as [`Candidate::clips`].
-    pub clips: bool,
-    /// Same as [`Candidate::most_draws`].
-    pub most_draws: u32,
-    pub report: DeviceReport,
+    /// The physical device, with the features that are on.
+    pub chosen: Candidate,
     pub budget: MemoryBudget,
     /// Bits of the memory types that are host-visible and coherent, but not device-local.
     pub host_types: u32,
@@ -80,40 +67,30 @@ pub(in crate::gpu) fn create(
 impl Shared {
     pub fn new(
         instance: &ash::Instance,
-        chosen: &Candidate,
+        chosen: Candidate,
         raw: ash::Device,
         queue: Option<vk::Queue>,
         memory: Arc<Mutex<Allocator>>,
         pipeline_cache: Option<vk::PipelineCache>,
     ) -> Result<Self> {
-        let limits = chosen.properties.limits;
-        let constants = chosen.constants();
-        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, constants)?;
+        let pipelines = Pipelines::new(raw.clone(), pipeline_cache, chosen.constants())?;
         Ok(Self {
             allocator: Some(memory),
             pipelines: Some(pipelines),
             queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
-            family: chosen.family,
             functions: instance.clone(),
-            physical: chosen.physical,
-            fragment_stores: chosen.features.fragment_stores_and_atomics == vk::TRUE,
-            limits,
-            constants,
-            subgroup_size: chosen.subgroup_size,
-            timestamp_bits: chosen.timestamp_bits,
-            anisotropy: chosen
-                .anisotropic()
-                .then_some(limits.max_sampler_anisotropy),
-            clips: chosen.clips(),
-            most_draws: chosen.most_draws(),
             budget: MemoryBudget::default(),
             host_types: host_types(instance, chosen.physical),
-            report: chosen.report.clone(),
+            chosen,
             raw,
             instance: None,
             #[cfg(feature = "other-shaders")]
             opened: None,
         })
+    }
+
+    pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.chosen.properties.limits
     }
 
     pub fn allocator(&self) -> Result<MutexGuard<'_, Allocator>> {

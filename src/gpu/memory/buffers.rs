@@ -1,11 +1,11 @@
-//! Buffers by their users, which decide the kind of memory.
+//! Buffers by their uses, which decide the kind of memory.
 //!
-//! | constructor | the host | the device | memory |
+//! | use | the host | the device | memory |
 //! |---|---|---|---|
-//! | [`device_local`] | never touches it | writes and reads it | of the device |
-//! | [`upload`] | writes it once | copies from it once | of the host |
-//! | [`per_frame`] | writes it every frame | reads it | of the device, seen by the host |
-//! | [`read_back`] | reads it | copies into it | of the host, cached where there is such |
+//! | [`Bins`](Use::Bins), [`Pixels`](Use::Pixels) | never touches it | writes and reads it | of the device |
+//! | [`Upload`](Use::Upload) | writes it once | copies from it once | of the host |
+//! | [`ReadBack`](Use::ReadBack) | reads it | copies into it | of the host, cached where there is such |
+//! | others | writes it every frame | reads it | of the device, seen by the host |
 //!
 //! Device memory replaces host memory, and the reverse, on a device that has no other. Memory that
 //! the host sees is coherent: the allocator takes no other, so nothing is flushed.
@@ -32,18 +32,25 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    pub(crate) fn new(
-        device: &Arc<Shared>,
-        name: &str,
-        bytes: u64,
-        usage: vk::BufferUsageFlags,
-        location: MemoryLocation,
-    ) -> Result<Self> {
-        Self::among(device, name, bytes, usage, location, u32::MAX)
+    /// Makes a buffer for a use, called `name` in messages.
+    pub(crate) fn for_use(device: &Arc<Shared>, to: Use, name: &str, bytes: u64) -> Result<Self> {
+        let (limit, usage) = (device.limits().max_storage_buffer_range, to.usage());
+        if usage.contains(B::STORAGE_BUFFER) && bytes > u64::from(limit) {
+            let device = &device.chosen.report.name;
+            let message =
+                format!("the {name} take {bytes} bytes, and {device} takes {limit}; draw fewer");
+            return Err(Error::new(ErrorKind::TooLarge, message));
+        }
+        let types = if to == Use::Upload {
+            device.host_types
+        } else {
+            u32::MAX
+        };
+        Self::new(device, name, bytes, usage, to.location(), types)
     }
 
     /// Makes a buffer in memory of one of these types, if one of them fits, else of any type.
-    pub(crate) fn among(
+    pub(crate) fn new(
         device: &Arc<Shared>,
         name: &str,
         bytes: u64,
@@ -132,74 +139,48 @@ impl Drop for Buffer {
     }
 }
 
-/// A buffer that only the device writes and reads.
-pub(crate) fn device_local(
-    device: &Arc<Shared>,
-    name: &str,
-    bytes: u64,
-    usage: B,
-) -> Result<Buffer> {
-    make(device, name, bytes, usage, MemoryLocation::GpuOnly)
+/// The use of a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// A uniform block, written every frame.
+    Uniform,
+    /// Tables and instances, bound both as storage buffers and as uniform buffers.
+    Storage,
+    /// Draws that the host writes.
+    Draws,
+    /// Corners of proxies.
+    Indices,
+    /// Bins of tiles, which the device fills and counts.
+    Bins,
+    /// Words of pixels, which shaders write.
+    Pixels,
+    /// Bytes that are copied to the device once.
+    Upload,
+    /// Bytes that the host reads.
+    ReadBack,
 }
 
-/// A buffer of small data that the host writes every frame.
-pub(crate) fn per_frame(device: &Arc<Shared>, name: &str, bytes: u64, usage: B) -> Result<Buffer> {
-    make(device, name, bytes, usage, MemoryLocation::CpuToGpu)
-}
-
-/// A buffer that the host writes once, and that is copied from once.
-pub(crate) fn upload(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let (usage, location) = (B::TRANSFER_SRC, MemoryLocation::CpuToGpu);
-    Buffer::among(device, name, bytes, usage, location, device.host_types)
-}
-
-/// A buffer that the host reads.
-pub(crate) fn read_back(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let (usage, location) = (B::TRANSFER_DST, MemoryLocation::GpuToCpu);
-    make(device, name, bytes, usage, location)
-}
-
-/// A uniform block.
-pub(crate) fn uniform(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    per_frame(device, name, bytes, B::UNIFORM_BUFFER)
-}
-
-/// Tables and instances, bound both as storage buffers and as uniform buffers.
-pub(crate) fn storage(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    per_frame(device, name, bytes, B::STORAGE_BUFFER | B::UNIFORM_BUFFER)
-}
-
-/// Bins of tiles, which the device fills and counts.
-pub(crate) fn bins(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
-    let usage = B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST;
-    device_local(device, "bins of tiles", bytes, usage)
-}
-
-/// Draws that the host writes.
-pub(crate) fn indirect(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
-    per_frame(device, "draws", bytes, B::INDIRECT_BUFFER)
-}
-
-/// Corners of proxies.
-pub(crate) fn indices(device: &Arc<Shared>, bytes: u64) -> Result<Buffer> {
-    per_frame(device, "corners of proxies", bytes, B::INDEX_BUFFER)
-}
-
-fn make(
-    device: &Arc<Shared>,
-    name: &str,
-    bytes: u64,
-    usage: B,
-    location: MemoryLocation,
-) -> Result<Buffer> {
-    let limit = u64::from(device.limits.max_storage_buffer_range);
-    if usage.contains(B::STORAGE_BUFFER) && bytes > limit {
-        let device = &device.report.name;
-        let message =
-            format!("the {name} take {bytes} bytes, and {device} takes {limit}; draw fewer");
-        return Err(Error::new(ErrorKind::TooLarge, message));
+impl Use {
+    fn usage(self) -> B {
+        match self {
+            Self::Uniform => B::UNIFORM_BUFFER,
+            Self::Storage => B::STORAGE_BUFFER | B::UNIFORM_BUFFER,
+            Self::Draws => B::INDIRECT_BUFFER,
+            Self::Indices => B::INDEX_BUFFER,
+            Self::Bins => B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST,
+            Self::Pixels => B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC,
+            Self::Upload => B::TRANSFER_SRC,
+            Self::ReadBack => B::TRANSFER_DST,
+        }
     }
-    Buffer::new(device, name, bytes, usage, location)
+
+    fn location(self) -> MemoryLocation {
+        match self {
+            Self::Bins | Self::Pixels => MemoryLocation::GpuOnly,
+            Self::ReadBack => MemoryLocation::GpuToCpu,
+            _ => MemoryLocation::CpuToGpu,
+        }
+    }
 }
 
 /// Writes a value `at` bytes into a buffer.

@@ -1,7 +1,7 @@
 //! Images with their memory, and uploads to them: bytes are written to staging buffers at once, and
 //! copied by the next commands that are prepared.
 
-use super::buffers::{Buffer, upload};
+use super::buffers::{Buffer, Use};
 use super::{allocate, bound, free};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
@@ -156,7 +156,7 @@ impl Uploads {
         (width, height): (u32, u32),
         levels: &[&[u8]],
     ) -> Result<Arc<Image>> {
-        let limit = device.limits.max_image_dimension2_d;
+        let limit = device.limits().max_image_dimension2_d;
         if width > limit || height > limit {
             return Err(Error::new(
                 ErrorKind::TooLarge,
@@ -175,7 +175,7 @@ impl Uploads {
         };
         let image = Arc::new(Image::new(device, name, kind)?);
         let total: usize = levels.iter().map(|l| l.len().next_multiple_of(16)).sum();
-        let mut staging = upload(device, "staging", total as u64)?;
+        let mut staging = Buffer::for_use(device, Use::Upload, "staging", total as u64)?;
         let mut regions = Vec::new();
         let mut at = 0;
         for (level, bytes) in (0u32..).zip(levels) {

@@ -23,7 +23,7 @@ impl Commands {
             device: device.clone(),
         };
         let pool = vk::CommandPoolCreateInfo::default()
-            .queue_family_index(device.family)
+            .queue_family_index(device.chosen.family)
             .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
         // SAFETY: plain creations, destroyed in Drop; a half-made value drops its null handles.
         unsafe {
@@ -127,7 +127,7 @@ pub(crate) struct Clock {
 
 impl Clock {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
-        let pool = if device.timestamp_bits > 0 {
+        let pool = if device.chosen.timestamp_bits > 0 {
             let info = vk::QueryPoolCreateInfo::default()
                 .query_type(vk::QueryType::TIMESTAMP)
                 .query_count(2);
@@ -189,7 +189,7 @@ impl Clock {
             )
         }
         .call("vkGetQueryPoolResults")?;
-        let bits = self.device.timestamp_bits;
+        let bits = self.device.chosen.timestamp_bits;
         let mask = if bits >= 64 {
             u64::MAX
         } else {
@@ -197,7 +197,7 @@ impl Clock {
         };
         let ticks = stamps[1].wrapping_sub(stamps[0]) & mask;
         #[allow(clippy::cast_precision_loss)] // frames are shorter than 2^52 ns
-        let ns = ticks as f64 * f64::from(self.device.limits.timestamp_period);
+        let ns = ticks as f64 * f64::from(self.device.limits().timestamp_period);
         Ok(Some(ns * 1e-6))
     }
 }

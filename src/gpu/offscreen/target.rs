@@ -3,7 +3,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::buffers::{Buffer, device_local, read_back};
+use crate::gpu::memory::buffers::{Buffer, Use};
 use crate::gpu::memory::{Image, ImageKind};
 use crate::gpu::offscreen::commands::Commands;
 use crate::gpu::vk::call::Call;
@@ -48,7 +48,7 @@ enum Part<'a> {
 /// Returns an error for more pixels than the device draws, or than fit into a buffer at two words
 /// per pixel.
 fn check_size(device: &Shared, (width, height): (u32, u32), needs_words: bool) -> Result<()> {
-    let limits = &device.limits;
+    let limits = device.limits();
     let side = limits.max_image_dimension2_d;
     let most_x = limits.max_framebuffer_width.min(side);
     let most_y = limits.max_framebuffer_height.min(side);
@@ -57,7 +57,7 @@ fn check_size(device: &Shared, (width, height): (u32, u32), needs_words: bool) -
     if width <= most_x && height <= most_y && (words_fit || !needs_words) {
         return Ok(());
     }
-    let name = &device.report.name;
+    let name = &device.chosen.report.name;
     let message = format!(
         "{width}x{height} pixels are more than {name} takes ({most_x}x{most_y}, and {most_words} in all for this kind of picture); make it smaller"
     );
@@ -131,10 +131,13 @@ impl Target {
             target.depth = Some(depth);
         }
         if needs_words {
-            use vk::BufferUsageFlags as B;
-            let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
             let pixels = u64::from(width) * u64::from(height);
-            target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
+            target.words = Some(Buffer::for_use(
+                device,
+                Use::Pixels,
+                "pixel words",
+                8 * pixels,
+            )?);
         }
         Ok(target)
     }
@@ -287,7 +290,7 @@ impl Target {
         let sizes: Vec<u64> = parts.iter().map(bytes).collect();
         let host = match kept {
             Some(host) => host,
-            None => read_back(&self.device, "read back", sizes.iter().sum())?,
+            None => Buffer::for_use(&self.device, Use::ReadBack, "read back", sizes.iter().sum())?,
         };
         commands.run(|cmd| {
             let mut at = 0;

@@ -21,7 +21,9 @@ impl Output {
         let Self::Pass(pass) = self else {
             return Ok(());
         };
-        if pass.planes == Planes::All && !device.fragment_stores {
+        if pass.planes == Planes::All
+            && device.chosen.features.fragment_stores_and_atomics == vk::FALSE
+        {
             return Err(Error::new(
                 ErrorKind::Unsupported,
                 "all planes in a pass need the feature fragmentStoresAndAtomics; enable it",
@@ -79,7 +81,7 @@ impl PassFormats {
         if raw == vk::RenderPass::null() {
             return Err(usage("pass", "the render pass is null; give one".into()));
         }
-        let limits = &device.limits;
+        let limits = device.limits();
         let colors = limits.framebuffer_color_sample_counts;
         self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
     }
@@ -136,7 +138,7 @@ impl PassFormats {
             device
                 .functions
                 .get_physical_device_image_format_properties(
-                    device.physical,
+                    device.chosen.physical,
                     format,
                     vk::ImageType::TYPE_2D,
                     vk::ImageTiling::OPTIMAL,
@@ -145,7 +147,7 @@ impl PassFormats {
                 )
         };
         let found = found.map_err(|code| {
-            let name = &device.report.name;
+            let name = &device.chosen.report.name;
             let message = format!("{name} does not draw into {format:?} ({code:?})");
             Error::new(kind_of(code), message)
         })?;
@@ -156,7 +158,7 @@ impl PassFormats {
         if counts.contains(vk::SampleCountFlags::from_raw(self.samples)) {
             return Ok(());
         }
-        let name = &device.report.name;
+        let name = &device.chosen.report.name;
         let message = format!("{name} has no {} samples; it has {counts:?}", self.samples);
         Err(Error::new(ErrorKind::Unsupported, message).at_key("samples"))
     }

@@ -33,7 +33,7 @@ impl Renderer {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
         let point = vk::PipelineBindPoint::GRAPHICS;
-        let large_points = self.device.constants.large_points;
+        let large_points = self.device.chosen.constants().large_points;
         let vertices = if large_points { 1 } else { 6 };
         // SAFETY: `cmd` is recording within a render pass; all bound objects live as long as the
         // caller promised.
@@ -129,7 +129,7 @@ impl Renderer {
         end: u32,
     ) {
         let raw = &self.device.raw;
-        let most = self.device.most_draws;
+        let most = self.device.chosen.most_draws();
         if most == 0 {
             let draws = &bound.plan.frame.draws[first as usize..end as usize];
             for &[indices, instances, first, _, instance] in draws {

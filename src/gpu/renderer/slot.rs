@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Buffer;
-use crate::gpu::memory::buffers::{bins, indirect, storage, uniform, write, write_slice};
+use crate::gpu::memory::buffers::{Use, write, write_slice};
 use crate::gpu::memory::images::Upload;
 use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
@@ -61,16 +61,21 @@ pub(crate) struct BoundStep {
 
 impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
+        let buffer = |to, name, bytes| Buffer::for_use(device, to, name, bytes);
         let mut slot = Self {
             frame_set: vk::DescriptorSet::null(),
             target_set: vk::DescriptorSet::null(),
-            frame: uniform(device, "frame block", size_of::<FrameBlock>() as u64)?,
-            solids: storage(device, "objects", u64::from(SOLID_STRIDE))?,
-            instances: storage(device, "instances", 0)?,
-            shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
-            tiles: storage(device, "tiles", 0)?,
-            bins: bins(device, 0)?,
-            draws: indirect(device, 0)?,
+            frame: buffer(Use::Uniform, "frame block", size_of::<FrameBlock>() as u64)?,
+            solids: buffer(Use::Storage, "objects", u64::from(SOLID_STRIDE))?,
+            instances: buffer(Use::Storage, "instances", 0)?,
+            shadows: buffer(
+                Use::Uniform,
+                "shadow block",
+                size_of::<ShadowBlock>() as u64,
+            )?,
+            tiles: buffer(Use::Storage, "tiles", 0)?,
+            bins: buffer(Use::Bins, "bins of tiles", 0)?,
+            draws: buffer(Use::Draws, "draws", 0)?,
             bound: None,
             serial: 0,
             written: None,
@@ -152,12 +157,14 @@ impl FrameSlot {
         }
         let bins_bytes = 4 * u64::from(plan.bin_words);
         if self.bins.bytes < bins_bytes {
-            self.bins = bins(&self.device, bins_bytes + bins_bytes / 2)?;
+            let bytes = bins_bytes + bins_bytes / 2;
+            self.bins = Buffer::for_use(&self.device, Use::Bins, "bins of tiles", bytes)?;
             self.named = None;
         }
         let draws = size_of_val(plan.draws.as_slice()) as u64;
         if self.draws.bytes < draws {
-            self.draws = indirect(&self.device, draws.next_power_of_two())?;
+            let bytes = draws.next_power_of_two();
+            self.draws = Buffer::for_use(&self.device, Use::Draws, "draws", bytes)?;
         }
         write_slice(&mut self.tiles, &plan.words)?;
         write_slice(&mut self.draws, &plan.draws)
@@ -170,7 +177,7 @@ impl FrameSlot {
             return;
         }
         let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
-        let window = 16 * u64::from(self.device.constants.own_vectors);
+        let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
         let frame = [
             whole(&self.frame),
             whole(&self.solids),
@@ -201,8 +208,9 @@ impl FrameSlot {
 /// Makes a storage buffer with half as much again to spare, because moving objects grow it in small
 /// steps.
 fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let limit = u64::from(device.limits.max_storage_buffer_range);
-    storage(device, name, bytes.max((bytes + bytes / 2).min(limit)))
+    let limit = u64::from(device.limits().max_storage_buffer_range);
+    let bytes = bytes.max((bytes + bytes / 2).min(limit));
+    Buffer::for_use(device, Use::Storage, name, bytes)
 }
 
 impl Drop for FrameSlot {

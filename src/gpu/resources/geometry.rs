@@ -4,7 +4,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::{Buffer, buffers};
+use crate::gpu::memory::buffers::{Buffer, Use, write_slice};
 use crate::gpu::resources::solid_cache::SolidCache;
 use crate::plan::Parts;
 use crate::solid::offset_surface::OffsetSurface;
@@ -103,8 +103,13 @@ impl State {
 
 fn indices(device: &Arc<Shared>, frusta: u32) -> Result<Buffer> {
     let all = proxy_hull::indices(frusta);
-    let mut buffer = buffers::indices(device, 4 * all.len() as u64)?;
-    buffers::write_slice(&mut buffer, &all)?;
+    let mut buffer = Buffer::for_use(
+        device,
+        Use::Indices,
+        "corners of proxies",
+        4 * all.len() as u64,
+    )?;
+    write_slice(&mut buffer, &all)?;
     Ok(buffer)
 }
 
@@ -132,7 +137,7 @@ const FIRST_UNITS: u32 = 1024;
 
 impl TableArena {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
-        let align = device.limits.min_uniform_buffer_offset_alignment.max(16);
+        let align = device.limits().min_uniform_buffer_offset_alignment.max(16);
         let unit = u32::try_from(align / 16).unwrap_or(16);
         Ok(Self {
             buffer: Arc::new(table_buffer(device, unit, FIRST_UNITS)?),
@@ -215,6 +220,7 @@ fn full() -> Error {
 /// Makes a buffer with a window's length after the last unit. The window on the last tables is then
 /// as long as all others.
 fn table_buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
-    let vectors = u64::from(unit) * u64::from(units) + u64::from(device.constants.own_vectors);
-    buffers::storage(device, "tables", 16 * vectors)
+    let vectors =
+        u64::from(unit) * u64::from(units) + u64::from(device.chosen.constants().own_vectors);
+    Buffer::for_use(device, Use::Storage, "tables", 16 * vectors)
 }

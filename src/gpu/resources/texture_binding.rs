@@ -50,7 +50,7 @@ impl Sampler {
             info = info
                 .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
                 .max_lod(vk::LOD_CLAMP_NONE);
-            if let Some(most) = device.anisotropy {
+            if let Some(most) = device.chosen.anisotropy() {
                 info = info.anisotropy_enable(true).max_anisotropy(most.min(8.0));
             }
         }

@@ -122,14 +122,7 @@ impl Pipelines {
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default()
-            .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(match is_quads {
-                true => vk::CullModeFlags::NONE,
-                false => vk::CullModeFlags::BACK,
-            })
-            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-            .line_width(1.0);
+        let raster = rasterization(is_quads);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
@@ -182,6 +175,18 @@ impl Pipelines {
         let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
+}
+
+/// Filled triangles; quads have no back.
+fn rasterization(is_quads: bool) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    vk::PipelineRasterizationStateCreateInfo::default()
+        .polygon_mode(vk::PolygonMode::FILL)
+        .cull_mode(match is_quads {
+            true => vk::CullModeFlags::NONE,
+            false => vk::CullModeFlags::BACK,
+        })
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .line_width(1.0)
 }
 
 fn first(
