@@ -149,7 +149,7 @@ impl PipelineCompiler {
             ..self.conditions
         };
         let alone = Variant {
-            one_solid: 1,
+            one_object: 1,
             ..variant
         };
         let outside = u32::from(object.clip != Clip::Box);

@@ -12,11 +12,11 @@ pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, LIST_LENGTHS_OF, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, LIST_LENGTHS, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 use crate::shader::generated::{
-    BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
+    BOX_INDICES, GROUP_PIXELS, RING_CORNERS, STRIP_INDICES, TILE_BINS, TREE_BIN,
 };
 use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
@@ -138,7 +138,7 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
-            one_solid: u32::from(alone),
+            one_object: u32::from(alone),
             one_instance: u32::from(alone && of.copies().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant
@@ -218,7 +218,7 @@ impl FramePlan {
                     self.parts[n].tables = true;
                 }
                 Path::Cells { frusta, cut } => {
-                    let corners = |frusta: u32| 6 * HULL_SIDES * frusta;
+                    let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
                     let all = BOX_INDICES + STRIP_INDICES;
                     let of_run = |run: &Range<u32>| {
                         draw(corners(run.end - run.start), all + corners(run.start))
@@ -338,7 +338,7 @@ impl FramePlan {
         let several = tiles.iter().any(|t| !t.several.is_empty());
         self.compares_depths = several || with.host_depths;
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.bin_head_words = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
+        self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
         let mut later = Vec::new();
         let mut head = 0;
@@ -357,27 +357,27 @@ impl FramePlan {
                 call,
             };
             let first = &objects[layer.objects[0] as usize];
-            let (solid, instance) = (first.number, first.first_instance);
+            let (object, instance) = (first.number, first.first_instance);
             for records in chunks(&tiles.listed) {
                 let count = records.end - records.start;
-                let (first, tiles) = (records.start, self.bin_words);
+                let (first, begin) = (records.start, self.bin_words);
                 let pushed = |bin| Pushed {
                     first,
                     count,
                     heads: head,
-                    tiles,
+                    records: begin,
                     bin,
-                    solid,
+                    object,
                     instance,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
                 // The last bin holds tiles that walk the tree.
-                let lengths = LIST_LENGTHS_OF.into_iter().chain([1]);
+                let lengths = LIST_LENGTHS.into_iter().chain([1]);
                 for (bin, list_length) in (0..).zip(lengths) {
                     let call = Call::Indirect(head + 4 * bin, pushed(bin));
-                    let kind = match bin < LIST_LENGTHS {
+                    let kind = match bin < TREE_BIN {
                         true => Kind::TilePatches,
                         false => Kind::TileTree,
                     };
@@ -387,15 +387,15 @@ impl FramePlan {
                     };
                     later.push(step(1, kind, variant, call));
                 }
-                head += 4 * TILE_LISTS;
-                self.bin_words += 4 * TILE_LISTS * count;
+                head += 4 * TILE_BINS;
+                self.bin_words += 4 * TILE_BINS * count;
             }
             let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
             let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
             for (phase, kind, records) in alone.chain(shared) {
                 let pushed = Pushed {
                     first: records.start,
-                    solid,
+                    object,
                     instance,
                     ..Pushed::default()
                 };
@@ -434,7 +434,7 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
 
 /// Words of the bins of this many tiles: see `compute.glsl`.
 fn bin_words(tiles: u32) -> u32 {
-    4 * TILE_LISTS * (tiles.div_ceil(MOST_GROUPS) + tiles)
+    4 * TILE_BINS * (tiles.div_ceil(MOST_GROUPS) + tiles)
 }
 
 /// Runs of records, each short enough for one dispatch.

@@ -6,7 +6,7 @@ use super::view::View;
 use crate::scene::Object;
 use crate::shader::Search;
 use crate::shader::generated::{
-    GROUP_PIXELS, LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST,
+    GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
 use crate::shader::{Kind, Variant};
 use crate::solid::offset_surface::OffsetSurface;
@@ -116,7 +116,7 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 const LISTED_PIXELS: u64 = 300;
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
-pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
+pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
@@ -236,7 +236,7 @@ impl Conditions {
         let large = of
             .surface
             .is_some_and(|s| 4 * s.tables().own > 3 * self.own_vectors);
-        let own: &[u32] = match (variant.one_solid == 0, large) {
+        let own: &[u32] = match (variant.one_object == 0, large) {
             (true, _) => &[0],
             (false, false) => &[1],
             (false, true) => &[0, 1],
@@ -247,7 +247,7 @@ impl Conditions {
             &[false, true]
         };
         let lengths: Vec<u32> = if self.may_permit_lists(of) {
-            std::iter::once(0).chain(LIST_LENGTHS_OF).collect()
+            std::iter::once(0).chain(LIST_LENGTHS).collect()
         } else {
             vec![0]
         };

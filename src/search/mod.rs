@@ -140,7 +140,7 @@ impl Steps {
 pub struct SearchTable {
     /// The results of `patch_vector(0)` and so on in GLSL.
     pub vectors: Vec<[u32; 4]>,
-    /// The value of `solid.patches.yzw` in GLSL.
+    /// The value of `object.patches.yzw` in GLSL.
     pub facts: [u32; 3],
 }
 

@@ -8,7 +8,7 @@ mod module;
 mod variant;
 
 pub use blocks::{
-    FrameBlock, InstanceBlock, LightBlock, Pushed, SOLID_STRIDE, ShadowBlock, SolidBlock,
+    FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, ShadowBlock,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

@@ -8,8 +8,8 @@ use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Features, Output, modules};
 use crate::shader::{
-    FrameBlock, InstanceBlock, Kind, LightBlock, Module, SOLID_STRIDE, ShadowBlock, ShadowCasters,
-    SolidBlock, Variant, depth_less, generated as g, words,
+    FrameBlock, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE, ObjectBlock, ShadowBlock,
+    ShadowCasters, Variant, depth_less, generated as g, words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
@@ -108,8 +108,8 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
     assert_layout!(words, "Light", LightBlock { towards, color });
     assert_layout!(
         words,
-        "Solid",
-        SolidBlock {
+        "Object",
+        ObjectBlock {
             map,
             bounds,
             offset,
@@ -120,15 +120,15 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             cells,
             instances,
             patches,
-            hull
+            parts
         }
     );
     assert_layout!(
         words,
         "ShadowBlock",
         ShadowBlock {
-            shadow_batches,
-            shadow_solids
+            shadow_count,
+            shadow_objects
         }
     );
     assert_layout!(
@@ -139,11 +139,11 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             rotation,
             scale_depth,
             origin,
-            solid
+            object
         }
     );
     assert_eq!(size_of::<InstanceBlock>(), 80);
-    assert!(size_of::<SolidBlock>() <= SOLID_STRIDE as usize);
+    assert!(size_of::<ObjectBlock>() <= OBJECT_STRIDE as usize);
 }
 
 /// The comparison must fail when a member moves.

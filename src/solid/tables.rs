@@ -9,12 +9,12 @@ pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
     /// Number of vectors, from the first on, that the search itself reads.
     pub own: usize,
-    /// The words of `Solid.patches` of `blocks.glsl` after the first vector's number.
+    /// The words of `Object.patches` of `blocks.glsl` after the first vector's number.
     facts: [u32; 3],
 }
 
 impl GpuTables {
-    /// `Solid.patches` of a table whose first vector is number `begin` of the buffer.
+    /// `Object.patches` of a table whose first vector is number `begin` of the buffer.
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;
         [begin, a, b, c]

@@ -6,7 +6,7 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::scene::{GrownObject, Growth, Object};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::FRUSTUM_VECTORS;
-use crate::shader::{SolidBlock, Variant, is_beveled};
+use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OffsetContour;
 use crate::solid::reach::{farthest_corner, largest_width};
@@ -83,7 +83,7 @@ impl Entry {
         number: u32,
         surface: Option<&OffsetSurface>,
         settings: &SearchSettings,
-    ) -> Option<SolidBlock> {
+    ) -> Option<ObjectBlock> {
         let derived = self.derived.as_ref()?;
         let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
         #[allow(clippy::cast_possible_truncation)]
@@ -101,7 +101,7 @@ impl Entry {
         let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
         let begin = |part| surface.and_then(|s| s.slot(part)).map(Slot::begin);
         let frusta = begin(Part::Frusta);
-        Some(SolidBlock {
+        Some(ObjectBlock {
             #[allow(clippy::cast_precision_loss)] // at most 16384
             map: [
                 map.columns as f32,
@@ -143,7 +143,7 @@ impl Entry {
             patches: begin(Part::Tables)
                 .zip(surface)
                 .map_or([0; 4], |(at, s)| s.tables().block(at)),
-            hull: [
+            parts: [
                 frusta.unwrap_or(0),
                 0,
                 begin(Part::Patches).unwrap_or(0),

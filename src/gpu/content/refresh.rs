@@ -12,7 +12,7 @@ use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
 use crate::maps::Projection;
 use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
-use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
+use crate::shader::generated::{MAX_SHADOW_MAPS, MAX_SHADOW_OBJECTS};
 use crate::shader::{ShadowCasters, Variant};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OffsetContour;
@@ -100,8 +100,8 @@ impl Content {
             work.extend(self.resolve(&self.others(&work))?);
         }
         let casts = self.lighting.shadow != Shadow::Off;
-        if casts && self.objects.len() > MAX_SHADOW_BATCHES as usize {
-            let (count, most) = (self.objects.len(), MAX_SHADOW_BATCHES);
+        if casts && self.objects.len() > MAX_SHADOW_OBJECTS as usize {
+            let (count, most) = (self.objects.len(), MAX_SHADOW_OBJECTS);
             return Err(Error::new(
                 ErrorKind::Content,
                 format!("shadows between {count} objects; at most {most} are drawn: use instances, or set \"off\""),

@@ -10,7 +10,7 @@ use crate::gpu::resources::block::{frame_block, instance_block};
 use crate::plan::View;
 use crate::scene::Shadow;
 use crate::shader::Kind;
-use crate::shader::{SOLID_STRIDE, SolidBlock};
+use crate::shader::{OBJECT_STRIDE, ObjectBlock};
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
@@ -145,7 +145,7 @@ impl Renderer {
                     self.owner,
                 )?,
                 textures: derived.textures.clone(),
-                offsets: [16 * begin, object.number * SOLID_STRIDE],
+                offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
         }
         Ok(BoundPlan {
@@ -167,7 +167,7 @@ impl Renderer {
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
         let known = known.map_or(0, |(_, version)| version);
-        let mut throwing: Vec<SolidBlock> = Vec::new();
+        let mut throwing: Vec<ObjectBlock> = Vec::new();
         for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
             let number = object.number;
             let Some(entry) = self.content.objects.at(number) else {
@@ -179,7 +179,7 @@ impl Renderer {
                 continue;
             };
             let placements = entry.drawn().placements();
-            to.write_solid(number, &block)?;
+            to.write_object(number, &block)?;
             if casts {
                 throwing.push(block);
             }

@@ -176,7 +176,7 @@ impl Content {
             let mut reachable = with.reachable(object, variant);
             for object in fallback.iter() {
                 let variant = Variant {
-                    one_solid: variant.one_solid,
+                    one_object: variant.one_object,
                     one_instance: variant.one_instance,
                     ..object.variant
                 };

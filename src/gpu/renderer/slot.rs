@@ -12,7 +12,7 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::plan::{FramePlan, View};
-use crate::shader::{FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock};
+use crate::shader::{FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock, ShadowBlock};
 use ash::vk;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(crate) struct FrameSlot {
     pub frame_set: vk::DescriptorSet,
     pub target_set: vk::DescriptorSet,
     frame: Buffer,
-    solids: Buffer,
+    objects: Buffer,
     instances: Buffer,
     shadows: Buffer,
     tiles: Buffer,
@@ -31,7 +31,7 @@ pub(crate) struct FrameSlot {
     pub bound: Option<BoundPlan>,
     /// Counts the slot's frames. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The view and the renderer's version that solids and instances were written for. `None` if
+    /// The view and the renderer's version that objects and instances were written for. `None` if
     /// all must be written.
     pub written: Option<(View, u64)>,
     /// Copies that the frame's commands make.
@@ -66,7 +66,7 @@ impl FrameSlot {
             frame_set: vk::DescriptorSet::null(),
             target_set: vk::DescriptorSet::null(),
             frame: buffer(Use::Uniform, "frame block", size_of::<FrameBlock>() as u64)?,
-            solids: buffer(Use::Storage, "objects", u64::from(SOLID_STRIDE))?,
+            objects: buffer(Use::Storage, "objects", u64::from(OBJECT_STRIDE))?,
             instances: buffer(Use::Storage, "instances", 0)?,
             shadows: buffer(
                 Use::Uniform,
@@ -93,13 +93,13 @@ impl FrameSlot {
         Ok(slot)
     }
 
-    /// Makes room for this many solids and instances. The caller must ensure that no frame reads
+    /// Makes room for this many objects and instances. The caller must ensure that no frame reads
     /// the buffers.
-    pub fn fit(&mut self, solids: usize, instances: u32) -> Result<()> {
-        let solids = solids as u64 * u64::from(SOLID_STRIDE);
+    pub fn fit(&mut self, objects: usize, instances: u32) -> Result<()> {
+        let objects = objects as u64 * u64::from(OBJECT_STRIDE);
         let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
         for (buffer, bytes, name) in [
-            (&mut self.solids, solids, "objects"),
+            (&mut self.objects, objects, "objects"),
             (&mut self.instances, instances, "instances"),
         ] {
             if buffer.bytes < bytes {
@@ -115,7 +115,7 @@ impl FrameSlot {
     pub fn bytes(&self) -> u64 {
         let all = [
             &self.frame,
-            &self.solids,
+            &self.objects,
             &self.instances,
             &self.shadows,
             &self.tiles,
@@ -129,9 +129,9 @@ impl FrameSlot {
         write(&mut self.frame, 0, block)
     }
 
-    pub fn write_solid(&mut self, number: u32, block: &SolidBlock) -> Result<()> {
-        let at = number as usize * SOLID_STRIDE as usize;
-        write(&mut self.solids, at, block)
+    pub fn write_object(&mut self, number: u32, block: &ObjectBlock) -> Result<()> {
+        let at = number as usize * OBJECT_STRIDE as usize;
+        write(&mut self.objects, at, block)
     }
 
     pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
@@ -139,10 +139,10 @@ impl FrameSlot {
         write(&mut self.instances, at, instance)
     }
 
-    pub fn write_shadows(&mut self, blocks: &[SolidBlock]) -> Result<()> {
+    pub fn write_shadows(&mut self, blocks: &[ObjectBlock]) -> Result<()> {
         let mut all: ShadowBlock = bytemuck::Zeroable::zeroed();
-        all.shadow_batches[0] = u32::try_from(blocks.len()).unwrap_or(0);
-        for (to, block) in all.shadow_solids.iter_mut().zip(blocks) {
+        all.shadow_count[0] = u32::try_from(blocks.len()).unwrap_or(0);
+        for (to, block) in all.shadow_objects.iter_mut().zip(blocks) {
             *to = *block;
         }
         write(&mut self.shadows, 0, &all)
@@ -180,12 +180,12 @@ impl FrameSlot {
         let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
         let frame = [
             whole(&self.frame),
-            whole(&self.solids),
+            whole(&self.objects),
             whole(&self.instances),
             whole(&self.shadows),
             whole(tables),
             Resource::Buffer(tables.raw, window),
-            Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
+            Resource::Buffer(self.objects.raw, size_of::<ObjectBlock>() as u64),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
         let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.bins))];

@@ -31,7 +31,7 @@ pub(crate) fn check_format(
 pub(crate) fn instance_block(
     object: &Object,
     placement: &Placement,
-    solid: u32,
+    number: u32,
     view: &View,
 ) -> InstanceBlock {
     let rotation = placement.rotation.normalize();
@@ -55,7 +55,7 @@ pub(crate) fn instance_block(
         rotation: q.to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
-        solid: [solid, reach.to_bits(), 0, 0],
+        object: [number, reach.to_bits(), 0, 0],
     }
 }
 

@@ -48,12 +48,12 @@ pub(crate) const TARGET_SET: usize = 2;
 pub(crate) const SETS: [&[Binding]; 3] = [
     &[
         one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // the frame
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // solids
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // objects
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // instances
-        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // solids that may throw shadows
+        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // objects that may throw shadows
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tables of all solids
         one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
-        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only solid
+        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
     ],
     &[
         TEXTURE, // shape map
@@ -75,7 +75,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(
             vk::DescriptorType::STORAGE_BUFFER,
             vk::ShaderStageFlags::COMPUTE,
-        ), // lists of tiles
+        ), // bins of tiles
     ],
 ];
 

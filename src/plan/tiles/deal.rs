@@ -18,10 +18,10 @@ pub(super) struct TileCopy {
     pub pixels: u64,
 }
 
-/// Records and lists of one layer in one band, in the layout of `tile_words.glsl`. Lists count from
-/// the band's first.
+/// Records and queues of one layer in one band, in the layout of `tile_words.glsl`. Queues count from
+/// the band's first word.
 #[derive(Default)]
-pub(super) struct BandLists {
+pub(super) struct BandRecords {
     /// Compute: tiles of several copies.
     pub several: Vec<[u32; 4]>,
     /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
@@ -31,18 +31,18 @@ pub(super) struct BandLists {
     /// Fragments: quads of one copy each.
     pub quads: Vec<[u32; 4]>,
     pub words: Vec<u32>,
-    /// Pixels that wait until a record is full: their position, the start of their list and its
+    /// Pixels that wait until a record is full: their position, the start of their queue and its
     /// number of copies.
     waiting: Vec<[u32; 3]>,
 }
 
 /// Pixels of a tile.
 const PIXELS: usize = (SIDE * SIDE) as usize;
-/// A single list serves a tile if its copies cover at least three quarters of it on average.
+/// A single queue serves a tile if its copies cover at least three quarters of it on average.
 const LEAST_PART: [u32; 2] = [3, 4];
 /// Least number of a tile's pixels for which a copy gets a record of its own.
 const SINGLE_PIXELS: u32 = 24;
-/// Most copies per pixel, on average, in the lists of a tile's pixels. Longer lists would take too
+/// Most copies per pixel, on average, in the queues of a tile's pixels. Longer queues would take too
 /// much memory where many copies are behind each other.
 const MOST_COPIES: u32 = 8;
 
@@ -68,8 +68,8 @@ impl Dealer<'_> {
         tiles: u32,
         layers: usize,
         corner: impl Fn(u32) -> [u32; 2],
-    ) -> Vec<BandLists> {
-        let mut lists: Vec<BandLists> = (0..layers).map(|_| BandLists::default()).collect();
+    ) -> Vec<BandRecords> {
+        let mut lists: Vec<BandRecords> = (0..layers).map(|_| BandRecords::default()).collect();
         let (sorted, ends) = by_tile(listed, tiles);
         let mut rest = Vec::new();
         for tile in (0..tiles).filter(|t| ends[*t as usize] < ends[*t as usize + 1]) {
@@ -98,7 +98,7 @@ impl Dealer<'_> {
                 rest.retain(|one| !of(one));
             }
         }
-        lists.iter_mut().for_each(BandLists::gather);
+        lists.iter_mut().for_each(BandRecords::gather);
         lists
     }
 
@@ -137,7 +137,7 @@ fn by_tile(listed: &[TileCopy], tiles: u32) -> (Vec<TileCopy>, Vec<u32>) {
     (order.iter().map(|n| listed[*n as usize]).collect(), ends)
 }
 
-impl BandLists {
+impl BandRecords {
     /// Adds a tile's only copy, or a copy with a record of its own.
     fn add_single(&mut self, one: &TileCopy, [x, y]: [u32; 2], lists: bool) {
         let corner = (x * SIDE) | ((y * SIDE) << 16);
@@ -286,7 +286,7 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn dealt(copies: &[TileCopy], tiles: u32, lists: bool) -> BandLists {
+    fn dealt(copies: &[TileCopy], tiles: u32, lists: bool) -> BandRecords {
         let dealer = Dealer {
             drawer: Drawer::Groups,
             layer_of: &[0],
@@ -318,7 +318,7 @@ mod tests {
     }
 
     /// The lists that work groups search, and the number of idle invocations.
-    fn visited(lists: &BandLists) -> (Found, u32) {
+    fn visited(lists: &BandRecords) -> (Found, u32) {
         let mut found = BTreeMap::new();
         let mut idle = 0;
         for &[corner, first, count, _] in &lists.several {

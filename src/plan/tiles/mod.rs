@@ -1,5 +1,5 @@
-//! Tiles of the screen and the copies that each may show, nearest first: one list for all objects
-//! and copies of a frame.
+//! Tiles of the screen and the copies that each may show, nearest first, for all objects and copies
+//! of a frame.
 //!
 //! 1. Clusters of neighbouring copies are projected to the picture ([`bounds`]) and sorted,
 //!    nearest first ([`candidates`]).
@@ -34,7 +34,7 @@ use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
 use candidates::{Candidates, CopyFacts};
 use cover::{SIDE, within};
-use deal::{BandLists, Dealer};
+use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
 use strip::Strip;
@@ -99,7 +99,7 @@ pub(crate) enum Drawer {
     Groups,
 }
 
-/// Records of all tiles and their lists, in the layout of the shaders' single buffer of words
+/// Records of all tiles and queues of copies, in the layout of the shaders' single buffer of words
 /// (`tile_words.glsl`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct TileWords {
@@ -218,7 +218,7 @@ impl<'a> Visible<'a> {
             let tiles = across.next_multiple_of(BLOCK) * BLOCK;
             dealer.deal(&listed.collect::<Vec<_>>().concat(), tiles, layers, corner)
         };
-        let bands: Vec<Vec<BandLists>> = (0..down.div_ceil(BLOCK))
+        let bands: Vec<Vec<BandRecords>> = (0..down.div_ceil(BLOCK))
             .into_par_iter()
             .map(of_band)
             .collect();
@@ -226,13 +226,13 @@ impl<'a> Visible<'a> {
     }
 }
 
-/// Joins the records and lists of all bands to one buffer.
-fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
+/// Joins the records and queues of all bands to one buffer.
+fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
     let mut records: Vec<[u32; 4]> = Vec::new();
     let mut lists = 0;
     let mut all = Vec::with_capacity(layers);
     for layer in 0..layers {
-        let mut put = |of: for<'b> fn(&'b BandLists) -> &'b [[u32; 4]]| {
+        let mut put = |of: for<'b> fn(&'b BandRecords) -> &'b [[u32; 4]]| {
             let first = records.len() as u32;
             for band in bands {
                 records.extend(of(&band[layer]));
@@ -255,7 +255,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
             several: first..records.len() as u32,
         });
     }
-    // Lists follow all records.
+    // Queues follow all records.
     let behind = 4 * records.len() as u32;
     for layer in &all {
         for record in &mut records[layer.several.start as usize..layer.several.end as usize] {

@@ -1,7 +1,7 @@
 //! Quads of pixels for which fragments are drawn.
 
 use super::cover::{SIDE, block};
-use super::deal::{BandLists, TileCopy};
+use super::deal::{BandRecords, TileCopy};
 use crate::shader::generated::QUAD_BITS;
 
 /// A quad within a tile.
@@ -54,7 +54,7 @@ impl Quad {
     }
 }
 
-impl BandLists {
+impl BandRecords {
     /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
     pub(super) fn add_quads(&mut self, one: &TileCopy, corner: [u32; 2], inside: u64) {
         Quad::WHOLE.cut(one.pixels & inside, inside, &mut |quad| {
