@@ -24,9 +24,12 @@ void main()
     gl_Position = clip_of(i, corner);
     hand_over(i, frame.forward.w);
     cell_sides = sides_of_box();
-    [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-        cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
-        cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+    cell_record = at;
+    if (FETCHED_CELLS == 0u) {
+        [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+            cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
+            cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+        }
     }
 #if CLIPPED
     // The clip planes are outside the sides by a margin, so that no triangle that begins within the sides is lost.

@@ -192,7 +192,7 @@ fn a_variant_sets_every_specialisation_constant() {
         .iter()
         .map(|(id, _)| *id)
         // Constants of the device.
-        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID])
+        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID, g::FETCHED_CELLS_ID])
         .collect();
     let mut all = BTreeSet::new();
     for module in modules() {

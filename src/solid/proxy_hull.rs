@@ -4,8 +4,8 @@ use crate::shader::generated::{FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS, 
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices pass to its fragments: the common ones, then a cell's quadrics
-/// and guards, and the box's sides.
-pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
+/// and guards, the box's sides and the frustum's number.
+pub(crate) const COMPONENTS: u32 = 4 * (13 + 2 * PATCHES_PER_CELL);
 
 /// All output components of these vertices: a position and four clip distances are added.
 pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;

@@ -81,6 +81,7 @@ layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: there is one object, 
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
+layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it

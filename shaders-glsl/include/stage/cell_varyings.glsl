@@ -5,6 +5,7 @@
 
 layout(location = 11) flat VARYING vec4 cell_quadric[PATCHES_PER_CELL];
 layout(location = 19) flat VARYING vec4 cell_guard[PATCHES_PER_CELL];
+layout(location = 28) flat VARYING uint cell_record; // first vector of the frustum in patch_tables
 layout(location = 27) flat VARYING vec4 cell_sides; // box sides relative to the axis: low x, low y, high x, high y
 
 #endif

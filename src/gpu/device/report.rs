@@ -103,6 +103,7 @@ impl Candidate {
         DeviceConstants {
             own_vectors: most.clamp(PATCH_VECTORS, MOST_OWN_VECTORS),
             large_points: self.large_points(),
+            fetched_cells: self.properties.device_type != vk::PhysicalDeviceType::CPU,
         }
     }
 
