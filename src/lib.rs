@@ -121,6 +121,7 @@
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values |
 //! | `shader` | modules of SPIR-V, the blocks that they read, and the variants of pipelines |
 //! | `solid` | all that is made from one outline under an offset, without Vulkan |
+//! | [`cast`] | rays on the CPU, for picking and physics |
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
@@ -139,6 +140,7 @@
 //! are in `revmap-lab`; the program is `revmap-cli`.
 
 pub mod antialias;
+pub mod cast;
 pub mod error;
 pub mod frame;
 pub mod gpu;

@@ -5,6 +5,7 @@
 mod common;
 
 mod antialias;
+mod cast;
 mod contours;
 mod hull_rays;
 mod surface;

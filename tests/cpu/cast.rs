@@ -1,0 +1,121 @@
+//! Rays of the CPU's caster beside the reference in double precision.
+
+use crate::common::rays::{Random, count};
+use crate::common::shapes;
+use glam::{DQuat, DVec3};
+use revmap::cast::RayCaster;
+use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
+use revmap_reference::{Ray, Reference};
+
+/// Objects of each kind: offsets, cuts, replicas, placements, copies.
+fn objects() -> Vec<Object> {
+    let placed = Placement {
+        position: DVec3::new(3.0, -2.0, 1.0),
+        rotation: DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.9, -2.0),
+        scale: DVec3::new(0.5, 0.8, 2.0),
+    };
+    let mut all: Vec<Object> = (shapes::all().into_iter())
+        .map(|(name, profile)| Object::new(name, profile.into()))
+        .collect();
+    let plain = |profile: revmap::profile::Profile| Object::new("solid", profile.into());
+    let offset = |extend, bevel, chamfer| Offset {
+        extend,
+        bevel,
+        chamfer,
+    };
+    let vase = plain(shapes::vase());
+    all.extend([
+        Object {
+            offset: offset(0.04, 0.3, 0.2),
+            placement: placed,
+            ..vase.clone()
+        },
+        Object {
+            offset: offset(0.1, 0.0, 0.0),
+            clip: Clip::Box,
+            ..vase.clone()
+        },
+        Object {
+            axis: [0.75, 0.4],
+            ..vase.clone()
+        },
+        Object {
+            repeat: [2, 3, 2],
+            mirror: [true, false, true],
+            axis: [0.6, 0.5],
+            ..plain(shapes::glass())
+        },
+        Object {
+            instances: (0..200)
+                .map(|k| Placement {
+                    position: DVec3::new(f64::from(k % 10), f64::from(k / 10), 0.0),
+                    scale: DVec3::splat(0.5 + 0.002 * f64::from(k)),
+                    ..placed
+                })
+                .collect(),
+            ..vase
+        },
+    ]);
+    all
+}
+
+/// Hits are those of the reference, to within the fit of the patches. Rays that graze a surface may
+/// miss it; they are counted, and few.
+#[test]
+fn casts_hit_what_the_reference_hits() {
+    for object in objects() {
+        let mut scene = Scene::new(Camera::new(DVec3::ONE, DVec3::ZERO));
+        scene.objects.push(object.clone());
+        let (truth, caster) = (
+            Reference::new(&scene).unwrap(),
+            RayCaster::new(&object).unwrap(),
+        );
+        let [low, high] = caster.bounds().unwrap();
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut random = Random(7);
+        let mut vector = |scale: f64| {
+            let mut one = || 2.0 * random.next() - 1.0;
+            DVec3::new(one(), one(), one()) * half * scale
+        };
+        let (mut hits, mut off, rays) = (0, 0, count(2000));
+        for n in 0..rays {
+            // Every fourth ray starts in the box, and so perhaps in the solid.
+            let origin = middle + vector(if n % 4 == 0 { 1.0 } else { 6.0 });
+            let direction = middle + vector(1.0) - origin;
+            let expected = truth.trace(Ray { origin, direction });
+            let found = caster.cast(origin, direction);
+            if let (Some(a), Some(b)) = (found, expected.hit) {
+                let point = origin + a.t * direction;
+                assert!(point.cmpge(low - 1e-4).all() && point.cmple(high + 1e-4).all());
+                let gap = (a.t - b.t).abs() * direction.dot(b.normal).abs();
+                hits += 1;
+                off += usize::from(
+                    gap > 1e-4 || a.normal.dot(b.normal) < 0.999 || a.copy != b.instance,
+                );
+                let leaves = direction.dot(a.normal) > 0.0;
+                assert!(
+                    a.leaves == leaves || expected.grazes,
+                    "{}: {a:?}",
+                    object.name
+                );
+            } else {
+                off += usize::from(found.is_some() != expected.hit.is_some() && !expected.grazes);
+            }
+        }
+        assert!(hits > rays / 5, "{}: {hits} of {rays}", object.name);
+        assert!(
+            off <= rays / 500,
+            "{}: {off} of {hits} are off",
+            object.name
+        );
+    }
+}
+
+#[test]
+fn rays_that_are_none_hit_nothing() {
+    let caster = RayCaster::new(&objects()[0]).unwrap();
+    for direction in [DVec3::ZERO, DVec3::NAN, DVec3::splat(f64::INFINITY)] {
+        assert_eq!(caster.cast(DVec3::splat(2.0), direction), None);
+    }
+    assert_eq!(caster.cast(DVec3::NAN, DVec3::X), None);
+}
