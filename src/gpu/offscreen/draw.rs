@@ -36,12 +36,14 @@ pub trait Guest {
 }
 
 impl Offscreen {
-    /// Compiles every pipeline that updates may need while no object's technique changes
-    /// ([`Renderer::prewarm`]). Then runs each pipeline on nothing, because some drivers compile
-    /// only then ([`Renderer::record_prewarm`]).
+    /// Compiles every pipeline that updates may need while no object's technique changes, as
+    /// [`Renderer::prewarm`](crate::gpu::Renderer::prewarm) does. Then runs each pipeline on
+    /// nothing, because some drivers compile only then: see
+    /// [`Renderer::record_prewarm`](crate::gpu::Renderer::record_prewarm).
     ///
     /// # Errors
-    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way.
+    /// Errors of Vulkan calls; [`Usage`](crate::error::ErrorKind::Usage) after an update that failed half
+    /// way.
     pub fn prewarm(&mut self) -> Result<()> {
         self.check_whole()?;
         self.renderer.prewarm()?.compile()?;
@@ -69,7 +71,8 @@ impl Offscreen {
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Errors of Vulkan calls; [`ErrorKind::Usage`] after an update that failed half way.
+    /// Errors of Vulkan calls; [`Usage`](crate::error::ErrorKind::Usage) after an update that failed half
+    /// way.
     pub fn draw(&mut self) -> Result<Times> {
         self.draw_with(None)
     }
