@@ -90,7 +90,7 @@ impl Content {
         Ok(())
     }
 
-    /// Prepares the changed objects, and all others if the frame's common data changes.
+    /// Derives all of the changed objects, and of all others if data that they share changes.
     fn apply(&mut self, changed: &[u32]) -> Result<()> {
         let mut work = self.resolve(changed)?;
         let common = (self.falls_back(&work), self.shadow_casters());
