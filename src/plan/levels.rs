@@ -65,7 +65,7 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
             scale * stretch / (nearest.max(view.near) * pixel)
         }
     };
-    let visible = Visible::new(object, view, all);
+    let visible = InPicture::new(object, view, all);
     let radius = object.profile.radius;
     let at_most = |cluster: &Cluster| {
         let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
@@ -92,13 +92,13 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
 }
 
 /// Selects the copies that may be in the picture.
-struct Visible {
+struct InPicture {
     /// None if all copies count as visible.
     projector: Option<Projector>,
     shape: Cylinder,
 }
 
-impl Visible {
+impl InPicture {
     fn new(object: &Object, view: &View, all: bool) -> Self {
         Self {
             projector: (!all && !view.parallel).then(|| Projector::new(view)),

@@ -8,29 +8,23 @@
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;
+mod tile_steps;
 pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, LIST_LENGTHS, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
-use crate::shader::generated::{
-    BOX_INDICES, GROUP_PIXELS, RING_CORNERS, STRIP_INDICES, TILE_BINS, TREE_BIN,
-};
+use crate::shader::generated::{BOX_INDICES, RING_CORNERS, STRIP_INDICES};
 use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
-use tiles::{Batch, Drawer, LayerTiles, Projector, Visible};
 
 /// Number of objects from which paths are chosen on all cores. Waking the cores takes as long as
 /// choosing a thousand paths.
 const MANY: usize = 4096;
-
-/// Most work groups of one dispatch; every device supports this number.
-const MOST_GROUPS: u32 = 65_535;
 
 /// A frame's draws and dispatches, and all data that they read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -245,209 +239,4 @@ impl FramePlan {
             });
         }
     }
-
-    /// Tiles of all objects whose path is [`Path::Tiles`].
-    fn add_tiles(
-        &mut self,
-        view: &View,
-        objects: &[PlanObject],
-        (paths, variants): (&[Path], &[Variant]),
-        with: &Conditions,
-    ) {
-        let drawn = |n: &usize| paths[*n] == Path::Tiles;
-        let numbers: Vec<usize> = (0..objects.len()).filter(drawn).collect();
-        if numbers.is_empty() {
-            self.compares_depths = with.host_depths;
-            return;
-        }
-        let batches: Vec<Batch> = (numbers.iter())
-            .map(|&n| batch(&objects[n], with))
-            .collect();
-        let projector = Projector::new(view);
-        let visible = Visible::new(view, &projector, &batches);
-        let mut layers = Vec::new();
-        let mut layer_of = Vec::with_capacity(numbers.len());
-        let kind = if with.compute {
-            Kind::TileTree
-        } else {
-            Kind::Quads
-        };
-        let copies = visible.copies();
-        for (batch, &n) in numbers.iter().enumerate() {
-            let of = &objects[n];
-            if copies[batch].is_empty() {
-                // The object is in no layer, because none of its copies is listed.
-                layer_of.push(u32::MAX);
-                continue;
-            }
-            let variant = Variant {
-                outside: u32::from(of.is_whole() && visible.is_apart(batch)),
-                ..variants[n]
-            };
-            let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
-            layer_of.push(layer as u32);
-        }
-        let drawer = if with.compute {
-            Drawer::Groups
-        } else {
-            Drawer::Fragments
-        };
-        let mut dealt = visible.deal(drawer, &layer_of, layers.len());
-        for (layer, tiles) in layers.iter().zip(&mut dealt.layers) {
-            let patches = |&n: &u32| objects[n as usize].listed_patches();
-            let patches = layer.objects.iter().map(patches).sum();
-            if !with.gains_by_lists(tiles.listed.len() as u64, patches) {
-                tiles.unlist();
-            }
-        }
-        let sum = |of: fn(u32) -> u32| -> u64 {
-            let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
-            dealt.layers.iter().map(counted).sum()
-        };
-        if sum(bin_words) > with.room() || !with.pays_to_list(sum(|tiles| tiles)) {
-            dealt.layers.iter_mut().for_each(LayerTiles::unlist);
-        }
-        for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
-            if copies.is_empty() {
-                self.paths[n] = DrawPath::Nothing;
-            }
-            let shows = !copies.is_empty();
-            let lists = || !dealt.layers[layer_of[batch] as usize].listed.is_empty();
-            self.parts[n].tables = shows;
-            self.parts[n].patches = shows && visible.lists_patches(batch) && lists();
-            self.copies[n] = (!with.casts).then_some(copies);
-        }
-        if with.compute {
-            self.dispatch(&layers, &dealt.layers, objects, with);
-        } else {
-            for (layer, tiles) in layers.iter().zip(&dealt.layers) {
-                self.steps.push(Step {
-                    phase: 0,
-                    variant: layer.variant.of_kind(kind),
-                    kind,
-                    object: layer.objects[0],
-                    call: Call::Quads(tiles.quads.clone()),
-                });
-            }
-        }
-        self.words = dealt.words;
-    }
-
-    /// Adds the dispatches of tiles. Lists of patches come first, then tiles of one copy, which
-    /// share no pixels. Tiles of several copies follow, layer by layer.
-    fn dispatch(
-        &mut self,
-        layers: &[Layer],
-        tiles: &[LayerTiles],
-        objects: &[PlanObject],
-        with: &Conditions,
-    ) {
-        let several = tiles.iter().any(|t| !t.several.is_empty());
-        self.compares_depths = several || with.host_depths;
-        let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
-        let mut phase = 2;
-        let mut later = Vec::new();
-        let mut head = 0;
-        self.bin_words = self.bin_head_words;
-        for (layer, tiles) in layers.iter().zip(tiles) {
-            let base = Variant {
-                depth_test: u32::from(self.compares_depths),
-                depth_keep: u32::from(self.compares_depths),
-                ..layer.variant
-            };
-            let step = |phase, kind, variant: Variant, call| Step {
-                phase,
-                variant: variant.of_kind(kind),
-                kind,
-                object: layer.objects[0],
-                call,
-            };
-            let first = &objects[layer.objects[0] as usize];
-            let (object, instance) = (first.number, first.first_instance);
-            for records in chunks(&tiles.listed) {
-                let count = records.end - records.start;
-                let (first, begin) = (records.start, self.bin_words);
-                let pushed = |bin| Pushed {
-                    first,
-                    count,
-                    heads: head,
-                    records: begin,
-                    bin,
-                    object,
-                    instance,
-                };
-                let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
-                let call = Call::Dispatch(groups, pushed(0));
-                self.steps.push(step(0, Kind::TileLists, base, call));
-                // The last bin holds tiles that walk the tree.
-                let lengths = LIST_LENGTHS.into_iter().chain([1]);
-                for (bin, list_length) in (0..).zip(lengths) {
-                    let call = Call::Indirect(head + 4 * bin, pushed(bin));
-                    let kind = match bin < TREE_BIN {
-                        true => Kind::TilePatches,
-                        false => Kind::TileTree,
-                    };
-                    let variant = Variant {
-                        list_length,
-                        ..base
-                    };
-                    later.push(step(1, kind, variant, call));
-                }
-                head += 4 * TILE_BINS;
-                self.bin_words += 4 * TILE_BINS * count;
-            }
-            let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
-            let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
-            for (phase, kind, records) in alone.chain(shared) {
-                let pushed = Pushed {
-                    first: records.start,
-                    object,
-                    instance,
-                    ..Pushed::default()
-                };
-                let call = Call::Dispatch(records.len() as u32, pushed);
-                later.push(step(phase, kind, base, call));
-            }
-            phase += u32::from(!tiles.several.is_empty());
-        }
-        later.sort_by_key(|step| step.phase);
-        self.steps.extend(later);
-    }
-}
-
-/// An object's copies, as input for finding tiles.
-fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
-    let surface = of.surface.filter(|_| of.object.repeat == [1; 3]);
-    let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
-    let culls = surface.filter(|_| with.occlusion_culling);
-    let outlined = with.uses_outline(of) && of.object.repeat == [1; 3];
-    let of_outline = of.outline.filter(|_| outlined && surface.is_none());
-    let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
-    Batch {
-        placements: of.copies(),
-        first: of.first_instance,
-        shape: of.shape,
-        inner: culls.filter(|_| of.is_whole()).and_then(|s| s.inner()),
-        outer: culls
-            .and_then(|s| s.outer())
-            .map(|outer| (outer, 0.0))
-            .or(of_outline),
-        surface,
-        half_side: of.object.profile.radius,
-        permits_lists: with.permits_lists(of),
-    }
-}
-
-/// Words of the bins of this many tiles: see `compute.glsl`.
-fn bin_words(tiles: u32) -> u32 {
-    4 * TILE_BINS * (tiles.div_ceil(MOST_GROUPS) + tiles)
-}
-
-/// Runs of records, each short enough for one dispatch.
-fn chunks(records: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
-    let Range { start, end } = *records;
-    (start..end)
-        .step_by(MOST_GROUPS as usize)
-        .map(move |first| first..end.min(first + MOST_GROUPS))
 }

@@ -125,8 +125,8 @@ pub(crate) fn frusta(
     let count = sampled.len().max(1);
     let covered: u64 = sampled
         .clone()
-        .filter_map(|copy| rectangle(view, 1, object.profile.radius, copy))
-        .map(Rectangle::squares)
+        .filter_map(|copy| rectangle(view, object.profile.radius, copy))
+        .map(Rectangle::area)
         .sum();
     let eyes: Vec<DVec2> = sampled
         .map(|copy| flat(seen_from(object, copy, view).0))
@@ -180,7 +180,7 @@ fn is_in_front(
     all_ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }
 
-/// A rectangle of bins or work groups, both ends included.
+/// A rectangle of pixels, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rectangle {
     low: (u32, u32),
@@ -188,15 +188,15 @@ struct Rectangle {
 }
 
 impl Rectangle {
-    /// Number of squares.
-    fn squares(self) -> u64 {
+    /// Number of pixels.
+    fn area(self) -> u64 {
         u64::from(self.high.0 - self.low.0 + 1) * u64::from(self.high.1 - self.low.1 + 1)
     }
 }
 
-/// The squares of `unit` pixels that a box may touch. Returns none if the box is behind the eye or
-/// outside of the picture.
-fn rectangle(view: &View, unit: u32, radius: f64, placement: &Placement) -> Option<Rectangle> {
+/// The pixels that a box may touch. Returns none if the box is behind the eye or outside of the
+/// picture.
+fn rectangle(view: &View, radius: f64, placement: &Placement) -> Option<Rectangle> {
     // Pixel and depth are linear except for one division. The linear part is computed for the
     // middle and for half of each side, not for each corner.
     let rows = [view.dir_x, view.dir_y].map(|d| d / d.length_squared());
@@ -252,10 +252,9 @@ fn rectangle(view: &View, unit: u32, radius: f64, placement: &Placement) -> Opti
     if low.x > high.x || low.y > high.y || !(low.is_finite() && high.is_finite()) {
         return None;
     }
-    let bin = |v: f64| (v / f64::from(unit)) as u32;
     Some(Rectangle {
-        low: (bin(low.x), bin(low.y)),
-        high: (bin(high.x), bin(high.y)),
+        low: (low.x as u32, low.y as u32),
+        high: (high.x as u32, high.y as u32),
     })
 }
 
@@ -277,7 +276,7 @@ mod tests {
                 rotation: DQuat::from_rotation_y(0.3 * turn) * DQuat::from_rotation_x(turn),
                 scale: DVec3::new(0.5, 0.7, 0.4 + 0.02 * turn),
             };
-            let found = rectangle(&view, 1, 0.6, &copy).unwrap();
+            let found = rectangle(&view, 0.6, &copy).unwrap();
             let corners = (0..8).map(|k| {
                 let side = |bit: u32, low: f64| if k & bit == 0 { low } else { 0.6 };
                 let p = DVec3::new(

@@ -43,7 +43,7 @@ pub enum Solver {
     /// parameters change.
     Quadric,
     /// The patches of [`Quadric`](Self::Quadric), found by the fastest method of each stage: the
-    /// rasteriser finds them by proxies in the fragment stage, lists of tiles in compute. Objects
+    /// rasteriser finds them by proxies in the fragment stage, a list for each tile holds them in compute. Objects
     /// without either are searched as by [`Quadric`](Self::Quadric). Scripts may use the name
     /// `hull`.
     Exact,

@@ -15,9 +15,9 @@ use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::{ShadowMaps, Textures};
 use crate::gpu::vk::output::Output;
-use crate::scene::Lighting;
-use crate::settings::{Planes, SearchSettings};
-use crate::shader::ShadowCasters;
+use crate::scene::{Lighting, Object, Shadow};
+use crate::settings::{Planes, SearchSettings, Solver};
+use crate::shader::{ShadowCasters, Variant};
 use objects::{Objects, next_renderer};
 use std::sync::Arc;
 use view_plan::ViewPlan;
@@ -86,6 +86,24 @@ impl Content {
     /// True if tiles are traced in compute.
     pub fn is_compute(&self) -> bool {
         matches!(self.output, Output::Compute(_))
+    }
+
+    /// True if objects cast shadows.
+    pub fn casts(&self) -> bool {
+        self.lighting.shadow != Shadow::Off
+    }
+
+    /// The variant that draws an object by this search.
+    pub fn variant(&self, solver: Solver, object: &Object) -> Variant {
+        let (settings, planes) = (&self.settings, self.output.planes());
+        Variant::new(
+            settings,
+            planes,
+            solver,
+            &self.lighting,
+            object,
+            self.casters,
+        )
     }
 
     /// True if the view has parallel rays.

@@ -10,10 +10,10 @@ use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
 use crate::maps::Projection;
-use crate::scene::{GrownObject, Growth, Object, Shadow};
+use crate::scene::{GrownObject, Growth, Object};
 use crate::settings::Solver;
+use crate::shader::ShadowCasters;
 use crate::shader::generated::{MAX_SHADOW_MAPS, MAX_SHADOW_OBJECTS};
-use crate::shader::{ShadowCasters, Variant};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OffsetContour;
 use rayon::prelude::*;
@@ -90,7 +90,7 @@ impl Content {
         Ok(())
     }
 
-    /// Prepares the changed objects, and all others if the frame's common data changes.
+    /// Derives all of the changed objects, and of all others if data that they share changes.
     fn apply(&mut self, changed: &[u32]) -> Result<()> {
         let mut work = self.resolve(changed)?;
         let common = (self.falls_back(&work), self.shadow_casters());
@@ -99,14 +99,9 @@ impl Content {
             // Other code draws each object from now on.
             work.extend(self.resolve(&self.others(&work))?);
         }
-        let casts = self.lighting.shadow != Shadow::Off;
-        if casts && self.objects.len() > MAX_SHADOW_OBJECTS as usize {
-            let (count, most) = (self.objects.len(), MAX_SHADOW_OBJECTS);
-            return Err(Error::new(
-                ErrorKind::Content,
-                format!("shadows between {count} objects; at most {most} are drawn: use instances, or set \"off\""),
-            )
-            .at_key("shadow"));
+        if self.casts() {
+            let remedy = "use instances";
+            few_enough(self.objects.len(), "objects", MAX_SHADOW_OBJECTS, remedy)?;
         }
         self.find_maps(&mut work)?;
         let shadow_maps = self.shadow_maps_with(&work)?;
@@ -219,13 +214,12 @@ impl Content {
             let entry = self.objects.at(*number);
             entry.is_some_and(|entry| entry.derived.as_ref().is_some_and(fails))
         };
-        self.lighting.shadow != Shadow::Off
-            && (work.iter().any(Resolved::fails) || self.others(work).iter().any(old))
+        self.casts() && (work.iter().any(Resolved::fails) || self.others(work).iter().any(old))
     }
 
     /// The properties of solids that shadow rays may meet; the default without shadows.
     fn shadow_casters(&self) -> ShadowCasters {
-        if self.lighting.shadow == Shadow::Off {
+        if !self.casts() {
             return ShadowCasters::default();
         }
         let objects = || self.objects.ordered().map(|(_, e)| e.latest());
@@ -277,7 +271,7 @@ impl Content {
     /// The maps that shadows read, including maps of changed objects. Returns the present value if
     /// nothing differs.
     fn shadow_maps_with(&self, work: &[Resolved]) -> Result<Arc<ShadowMaps>> {
-        if self.lighting.shadow == Shadow::Off {
+        if !self.casts() {
             return Ok(if self.shadow_maps.maps.is_empty() {
                 self.shadow_maps.clone()
             } else {
@@ -296,14 +290,8 @@ impl Content {
                 maps.push(map.clone());
             }
         }
-        let (count, most) = (maps.len(), MAX_SHADOW_MAPS as usize);
-        if count > most {
-            return Err(Error::new(
-                ErrorKind::Content,
-                format!("shadows between {count} different shapes; at most {most} are drawn: share profiles, or set \"off\""),
-            )
-            .at_key("shadow"));
-        }
+        let remedy = "share profiles";
+        few_enough(maps.len(), "different shapes", MAX_SHADOW_MAPS, remedy)?;
         let same = maps.len() == self.shadow_maps.maps.len()
             && maps
                 .iter()
@@ -336,9 +324,7 @@ impl Content {
         } else {
             None
         };
-        let planes = self.output.planes();
-        let (settings, lighting) = (&self.settings, &self.lighting);
-        let variant = Variant::new(settings, planes, solver, lighting, object, self.casters);
+        let variant = self.variant(solver, object);
         let shadow_map = one.map.as_ref().and_then(|map| {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
@@ -355,7 +341,7 @@ impl Content {
             contour: one.contour.clone(),
             levels: one.table.iter().map(|table| (0, table.clone())).collect(),
             solver,
-            takes_patches: solver == Solver::Exact && settings.proxy_min_pixels != u32::MAX,
+            takes_patches: solver == Solver::Exact && self.settings.proxy_min_pixels != u32::MAX,
             map: one.map.clone(),
             facts,
             arc,
@@ -390,6 +376,17 @@ impl Content {
         }
         error
     }
+}
+
+/// Returns an error for more of these than shadows are drawn between.
+fn few_enough(count: usize, what: &str, most: u32, remedy: &str) -> Result<()> {
+    if count <= most as usize {
+        return Ok(());
+    }
+    let message = format!(
+        "shadows between {count} {what}; at most {most} are drawn: {remedy}, or set \"off\""
+    );
+    Err(Error::new(ErrorKind::Content, message).at_key("shadow"))
 }
 
 /// Makes all contours that are not made yet, on all cores, each once. Returns the number of those

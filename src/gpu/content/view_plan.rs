@@ -5,7 +5,6 @@ use super::entry::{Derived, Entry};
 use crate::error::Result;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
-use crate::scene::Shadow;
 use crate::settings::{Solver, Tolerance};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
@@ -75,7 +74,7 @@ impl Content {
             own_vectors: self.device.chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
-            casts: self.lighting.shadow != Shadow::Off,
+            casts: self.casts(),
             host_depths: self.is_compute() && self.target_has_depths,
         }
     }
@@ -110,7 +109,7 @@ impl Content {
     /// view. With shadows, all objects take the finest level that one of them needs. The reason is
     /// that a shadow may fall nearer to the eye than its caster.
     fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
-        let casts = self.lighting.shadow != Shadow::Off;
+        let casts = self.casts();
         let tolerance = self.settings.tolerance;
         let level_of = |entry: &Entry, derived: &Derived| match view {
             Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {

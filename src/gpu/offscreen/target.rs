@@ -38,8 +38,8 @@ pub(crate) struct Target {
     device: Arc<Shared>,
 }
 
-/// A part that is copied to the host as a whole.
-enum Part<'a> {
+/// A source that is copied to the host as a whole.
+enum Source<'a> {
     Image(&'a Image),
     /// Half of the words, from this byte on. Depths are the first half.
     Words(&'a Buffer, u64),
@@ -261,62 +261,62 @@ impl Target {
         }
     }
 
-    /// The parts to read, in order: images of the planes, or colours among the words; counts of
+    /// The sources to read, in order: images of the planes, or colours among the words; counts of
     /// look-ups, if all planes are drawn; depths, if kept.
-    fn parts(&self) -> Vec<Part<'_>> {
-        let mut parts: Vec<_> = self.images.iter().map(Part::Image).collect();
+    fn sources(&self) -> Vec<Source<'_>> {
+        let mut sources: Vec<_> = self.images.iter().map(Source::Image).collect();
         if let Some(words) = &self.words {
-            parts.push(Part::Words(words, words.bytes / 2));
+            sources.push(Source::Words(words, words.bytes / 2));
         }
         if self.keeps_depths {
-            parts.extend(match (&self.depth, &self.words) {
-                (Some(depth), _) => Some(Part::Image(depth)),
-                (None, Some(words)) => Some(Part::Words(words, 0)),
+            sources.extend(match (&self.depth, &self.words) {
+                (Some(depth), _) => Some(Source::Image(depth)),
+                (None, Some(words)) => Some(Source::Words(words, 0)),
                 (None, None) => None,
             });
         }
-        parts
+        sources
     }
 
-    /// Copies the parts of [`Target::parts`] to the host, and returns the bytes of each.
+    /// Copies the sources of [`Target::sources`] to the host, and returns the bytes of each.
     pub fn read(&mut self, commands: &Commands) -> Result<Vec<&[u8]>> {
         let pixels = u64::from(self.width) * u64::from(self.height);
-        let bytes = |part: &Part| match part {
-            Part::Image(image) if image.kind.format == vk::Format::R32G32B32A32_SFLOAT => 16,
-            Part::Image(_) | Part::Words(..) => 4,
+        let bytes = |source: &Source| match source {
+            Source::Image(image) if image.kind.format == vk::Format::R32G32B32A32_SFLOAT => 16,
+            Source::Image(_) | Source::Words(..) => 4,
         } * pixels;
         let kept = self.host.take();
-        let parts = self.parts();
-        let sizes: Vec<u64> = parts.iter().map(bytes).collect();
+        let sources = self.sources();
+        let sizes: Vec<u64> = sources.iter().map(bytes).collect();
         let host = match kept {
             Some(host) => host,
             None => Buffer::for_use(&self.device, Use::ReadBack, "read back", sizes.iter().sum())?,
         };
         commands.run(|cmd| {
             let mut at = 0;
-            for (part, size) in parts.iter().zip(&sizes) {
-                self.copy(cmd, part, &host, at);
+            for (source, size) in sources.iter().zip(&sizes) {
+                self.copy(cmd, source, &host, at);
                 at += size;
             }
             let (from, to) = (Usage::TransferWrite, Usage::HostRead);
             host.barrier(cmd, from, to);
         })?;
-        drop(parts);
+        drop(sources);
         let mut rest: &[u8] = self.host.insert(host).mapped()?;
         let mut out = Vec::with_capacity(sizes.len());
         for size in sizes {
-            let (part, more) = rest.split_at(usize::try_from(size).unwrap_or(usize::MAX));
-            out.push(part);
+            let (plane, more) = rest.split_at(usize::try_from(size).unwrap_or(usize::MAX));
+            out.push(plane);
             rest = more;
         }
         Ok(out)
     }
 
-    /// Records the copy of one part to `host`, from its byte `at` on.
-    fn copy(&self, cmd: vk::CommandBuffer, part: &Part, host: &Buffer, at: u64) {
+    /// Records the copy of one source to `host`, from its byte `at` on.
+    fn copy(&self, cmd: vk::CommandBuffer, source: &Source, host: &Buffer, at: u64) {
         let raw = &self.device.raw;
-        match part {
-            Part::Image(image) => {
+        match source {
+            Source::Image(image) => {
                 let in_compute = self.stage == DrawStage::Compute;
                 if in_compute {
                     let (from, to) = (Usage::ComputeWrite, Usage::TransferRead);
@@ -349,7 +349,7 @@ impl Target {
                     image.barrier(cmd, from, to);
                 }
             }
-            Part::Words(words, from) => {
+            Source::Words(words, from) => {
                 let (used, to) = (self.shader_use(), Usage::TransferRead);
                 words.barrier(cmd, used, to);
                 let region = vk::BufferCopy::default()

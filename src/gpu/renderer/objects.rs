@@ -10,8 +10,8 @@ impl Renderer {
     /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::TooLarge`] for
-    /// more than 2^31 instances or 2^24 objects.
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
+    /// [`TooLarge`](crate::error::ErrorKind::TooLarge) for more than 2^31 instances or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
         self.content.version += 1;
@@ -23,7 +23,7 @@ impl Renderer {
     /// Removes an object. Frames that were prepared earlier keep it until they are done.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for an object that does not exist.
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.content.entry(id)?;
         self.content.objects.remove(id);
@@ -34,7 +34,7 @@ impl Renderer {
     /// The values of an object that were set last.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for an object that does not exist.
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
         Ok(self.content.entry(id)?.latest())
     }
@@ -42,8 +42,8 @@ impl Renderer {
     /// Sets all values of an object. Equal values cost nothing.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::Usage`] for an
-    /// object that does not exist.
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
         let latest = self.content.entry(id)?.latest();
@@ -118,7 +118,7 @@ impl Renderer {
     /// Sets lights and shadows for all objects.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key.
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key.
     pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
         lighting.check()?;
         check_lights(lighting)?;

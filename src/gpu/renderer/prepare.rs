@@ -8,7 +8,6 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{frame_block, instance_block};
 use crate::plan::View;
-use crate::scene::Shadow;
 use crate::shader::Kind;
 use crate::shader::{OBJECT_STRIDE, ObjectBlock};
 use crate::solid::table_slot::{Part, Slot};
@@ -157,7 +156,7 @@ impl Renderer {
 
     /// Writes blocks of a slot that are older than the renderer, or of another view.
     fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
-        let casts = self.content.lighting.shadow != Shadow::Off;
+        let casts = self.content.casts();
         let to = &mut self.slots[slot];
         to.fit(
             self.content.objects.number_count(),

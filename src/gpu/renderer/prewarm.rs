@@ -4,7 +4,6 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
-use crate::gpu::content::entry::Entry;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
@@ -128,19 +127,7 @@ impl Content {
     /// Pipelines, each with a set of textures that may be bound with it.
     fn reachable(&self) -> Vec<(Variant, Kind, vk::DescriptorSet)> {
         let with = self.conditions();
-        let planes = self.output.planes();
         let solver = self.settings.solver;
-        let of = |solver, entry: &Entry| {
-            let (settings, lighting) = (&self.settings, &self.lighting);
-            Variant::new(
-                settings,
-                planes,
-                solver,
-                lighting,
-                entry.drawn(),
-                self.casters,
-            )
-        };
         let derived: Vec<_> = (self.objects.ordered())
             .filter_map(|(number, entry)| {
                 let derived = entry.derived.as_ref()?;
@@ -157,7 +144,7 @@ impl Content {
             .iter()
             .filter_map(|(entry, _, planned)| {
                 Some(PlanObject {
-                    variant: of(solver, entry),
+                    variant: self.variant(solver, entry.drawn()),
                     ..entry.plan_object(planned, &self.settings)?
                 })
             })
@@ -168,7 +155,7 @@ impl Content {
             derived.iter().zip(own.iter().zip(variants(&own, &with)))
         {
             let fallback = falls_back.then(|| PlanObject {
-                variant: of(FALLBACK, entry),
+                variant: self.variant(FALLBACK, entry.drawn()),
                 surface: None,
                 takes_patches: false,
                 ..*object
