@@ -33,7 +33,9 @@ fn rays(caster: &RayCaster) -> Vec<(DVec3, DVec3)> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let mut state = 1u64;
     let mut number = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         (state >> 40) as f64 / f64::from(1 << 23) - 1.0
     };
     let mut point = |scale: f64| {
